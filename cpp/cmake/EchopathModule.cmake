@@ -1,0 +1,43 @@
+# One module is one folder, one static library and one test program.
+# Third parties go under PRIVATE: their types appear in no header outside the module.
+add_library(echopath_options INTERFACE)
+target_compile_options(echopath_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
+if(ECHOPATH_WERROR)
+  target_compile_options(echopath_options INTERFACE -Werror)
+endif()
+if(ECHOPATH_SANITIZE)
+  target_compile_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE})
+endif()
+
+# echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...])
+function(echopath_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  list(TRANSFORM ARG_DEPENDS PREPEND echopath_)
+  if(NOT sources)  # TEMPORARY
+    add_library(echopath_${name} INTERFACE)
+    add_library(echopath::${name} ALIAS echopath_${name})
+    target_include_directories(echopath_${name} INTERFACE ${PROJECT_SOURCE_DIR}/cpp)
+    target_link_libraries(echopath_${name} INTERFACE ${ARG_DEPENDS} ${ARG_PUBLIC})
+    return()
+  endif()
+  add_library(echopath_${name} STATIC ${sources})
+  add_library(echopath::${name} ALIAS echopath_${name})
+  target_include_directories(echopath_${name} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
+  target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options)
+endfunction()
+
+# echopath_test(NAME [LIBS targets...]): every .cpp of this folder in one GoogleTest program, test_NAME.
+function(echopath_test name)
+  cmake_parse_arguments(ARG "" "" "LIBS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  if(NOT sources)  # TEMPORARY
+    return()
+  endif()
+  add_executable(test_${name} ${sources})
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(test_${name} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
+  target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_options)
+  add_test(NAME ${name} COMMAND test_${name})
+endfunction()

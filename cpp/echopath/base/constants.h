@@ -1,0 +1,22 @@
+#pragma once
+// Physical constants (SI, exact by the 2019 definition) and the conventions of the whole program.
+//
+// Conventions, their only home:
+//  * time factor e^{+jwt}: a wave that travelled L carries e^{-jkL};
+//  * |amplitude|^2 of a path is the power in W at the receiver's port, without e^{-jkL}: the phase comes from the delay;
+//  * IF signal: mixer s_tx conj(s_rx), so a delay tau gives a positive beat frequency slope * tau;
+//  * speed v = dR/dt, receding positive;
+//  * barycentric p = (1-u-v) v0 + u v1 + v v2;
+//  * cubes are ordered [tx, rx, chirp, sample].
+#include <numbers>
+
+namespace echopath {
+
+inline constexpr double kSpeedOfLight = 299792458.0;         // m/s
+inline constexpr double kBoltzmann = 1.380649e-23;           // J/K
+inline constexpr double kReferenceTemperature = 290.0;       // K, IEEE noise figure
+inline constexpr double kVacuumPermittivity = 8.8541878128e-12;  // F/m
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+}  // namespace echopath

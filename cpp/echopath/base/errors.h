@@ -1,0 +1,35 @@
+#pragma once
+// The exceptions of the core. In Python: std::invalid_argument -> ValueError, std::out_of_range -> IndexError,
+// FileError -> OSError, DeviceError -> RuntimeError, Cancelled -> KeyboardInterrupt.
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace echopath {
+
+struct FileError : std::runtime_error {  // a file is missing, damaged, or cannot be written
+  using std::runtime_error::runtime_error;
+};
+struct DeviceError : std::runtime_error {  // Embree or the machine failed, not the input
+  using std::runtime_error::runtime_error;
+};
+struct Cancelled : std::runtime_error {  // the caller asked a long computation to stop
+  Cancelled() : std::runtime_error("cancelled") {}
+};
+
+// Raises std::invalid_argument("<argument>: <rule>, got <value>") unless `holds`.
+template <class Value>
+void require(bool holds, std::string_view argument, std::string_view rule, const Value& value) {
+  if (holds) return;
+  std::ostringstream text;
+  text.precision(17);
+  text << argument << ": " << rule << ", got " << value;
+  throw std::invalid_argument(text.str());
+}
+
+// The candidates most like `word` (edit distance), best first, at most `count`; for "did you mean" texts.
+std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count = 3);
+
+}  // namespace echopath

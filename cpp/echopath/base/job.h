@@ -1,0 +1,33 @@
+#pragma once
+// Progress and cancellation of one long computation. The worker side calls `advance`; another thread may read
+// `fraction` and call `cancel`. All functions are safe from any thread.
+#include <atomic>
+#include <cstdint>
+
+#include "echopath/base/errors.h"
+
+namespace echopath {
+
+class Job {
+ public:
+  void start(int64_t total) {
+    done_ = 0;
+    total_ = total;
+  }
+  void advance(int64_t amount) { done_ += amount; }
+  void cancel() { cancelled_ = true; }
+  bool cancelled() const { return cancelled_; }
+  double fraction() const {
+    const int64_t total = total_;
+    return total > 0 ? static_cast<double>(done_) / static_cast<double>(total) : 0.0;
+  }
+  void throw_if_cancelled() const {
+    if (cancelled_) throw Cancelled();
+  }
+
+ private:
+  std::atomic<int64_t> done_{0}, total_{0};
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace echopath

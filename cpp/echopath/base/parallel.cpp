@@ -1,0 +1,63 @@
+#include "echopath/base/parallel.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <memory>
+#include <mutex>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace echopath {
+namespace {
+
+// Denormals cost hundreds of cycles each and carry no information here; the caller's mode is restored.
+class FlushDenormals {
+ public:
+#if defined(__SSE2__)
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+
+ private:
+  unsigned saved_;
+#endif
+};
+
+std::mutex arena_mutex;
+std::shared_ptr<tbb::task_arena> arena = std::make_shared<tbb::task_arena>();
+
+std::shared_ptr<tbb::task_arena> current_arena() {
+  const std::lock_guard lock(arena_mutex);
+  return arena;
+}
+
+}  // namespace
+
+void set_num_threads(int num_threads) {
+  require(num_threads >= 0, "num_threads", "must be 0 (one per core) or more", num_threads);
+  const std::lock_guard lock(arena_mutex);
+  arena = std::make_shared<tbb::task_arena>(num_threads == 0 ? tbb::task_arena::automatic : num_threads);
+}
+
+int num_threads() { return current_arena()->max_concurrency(); }
+
+void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job) {
+  if (count <= 0) return;
+  current_arena()->execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int64_t>(0, count, 1),
+        [&](const tbb::blocked_range<int64_t>& range) {
+          const FlushDenormals flush;
+          for (int64_t i = range.begin(); i != range.end(); ++i) {
+            if (job) job->throw_if_cancelled();
+            body(i);
+            if (job) job->advance(1);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+}  // namespace echopath

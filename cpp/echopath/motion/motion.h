@@ -1,0 +1,88 @@
+#pragma once
+// Motion of a node: time -> rigid transform relative to the node's placement.
+#include <memory>
+#include <vector>
+
+#include "echopath/base/geometry.h"
+
+namespace echopath {
+
+// The closed interval of times, in s, on which a motion is defined.
+struct TimeSpan {
+  double begin = -1e300;  // s
+  double end = 1e300;     // s
+};
+
+enum class Interpolation { kCubic, kLinear };
+
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  // Rigid transform at `time` (s), in the axes of the node's parent about the node's origin:
+  // parent_from_node(t) = Translation(placement) * at(t) * Rotation(placement).
+  // Raises invalid_argument when `time` lies outside span().
+  virtual Transform at(double time) const = 0;
+  // Times (s) where the motion is not smooth, ascending, ends of the span excluded.
+  virtual std::vector<double> breakpoints() const { return {}; }
+  virtual TimeSpan span() const { return {}; }
+};
+
+// Constant velocity and constant rotation: at(t) = Translation(velocity t) * Rotation(angular_velocity t).
+class LinearMotion : public Motion {
+ public:
+  // velocity [m/s]; angular_velocity [rad/s], right-handed about its own direction. Values must be finite.
+  explicit LinearMotion(const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
+  Transform at(double time) const override;
+  const Vec3& velocity() const { return velocity_; }
+  const Vec3& angular_velocity() const { return angular_velocity_; }
+
+ private:
+  Vec3 velocity_, angular_velocity_;
+};
+
+// Translations [T] in m and unit quaternions [T] at ascending times [T] in s, T >= 2.
+// kCubic: C2 not-a-knot cubic splines through the translations and through the sign-continuous quaternions (then normalised);
+// kLinear: piecewise linear and slerp, with a breakpoint at each inner time.
+class KeyframeMotion : public Motion {
+ public:
+  // Empty translations mean zero, empty rotations mean identity; not both may be empty.
+  KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations, std::vector<Quaternion> rotations,
+                 Interpolation interpolation = Interpolation::kCubic);
+  ~KeyframeMotion() override;
+  Transform at(double time) const override;
+  std::vector<double> breakpoints() const override;
+  TimeSpan span() const override;
+  const std::vector<double>& times() const;
+  const std::vector<Vec3>& translations() const;
+  const std::vector<Quaternion>& rotations() const;
+  Interpolation interpolation() const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+// Deforming mesh: time -> vertices. Replaces the vertices of the mesh of its node, in the node's own frame.
+// vertices: T frames of V vertices each, [T][V] in m. Interpolation as in KeyframeMotion.
+class VertexSequence {
+ public:
+  VertexSequence(std::vector<double> times, std::vector<std::vector<Vec3>> vertices,
+                 Interpolation interpolation = Interpolation::kCubic);
+  ~VertexSequence();
+  int64_t num_vertices() const;
+  // Vertices [V] at `time`; raises invalid_argument outside span().
+  std::vector<Vec3> at(double time) const;
+  // Vertices `indices` [I] only, at `time`; out [I].
+  void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const;
+  std::vector<double> breakpoints() const;
+  TimeSpan span() const;
+  const std::vector<double>& times() const;
+  const std::vector<std::vector<Vec3>>& vertices() const;
+  Interpolation interpolation() const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,72 @@
+#pragma once
+// Waveform, antennas and the radar that carries them.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "echopath/base/geometry.h"
+#include "echopath/motion/motion.h"
+
+namespace echopath {
+
+// A frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep.
+struct ChirpSequence {
+  double start_frequency = 77e9;    // Hz, at the first sample
+  double bandwidth = 1e9;           // Hz, sampled
+  int num_samples = 512;            // per chirp
+  double sampling_rate = 20e6;      // Hz
+  int num_chirps = 128;             // per transmitter
+  double chirp_interval = 60e-6;    // s, between neighbouring slots
+  bool real = false;                // real IF samples instead of complex
+
+  void validate() const;  // raises invalid_argument naming the field, the rule and the value
+  double slope() const { return bandwidth * sampling_rate / num_samples; }               // Hz/s
+  double chirp_duration() const { return num_samples / sampling_rate; }                  // s, sampled
+  double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }       // s after the first sample
+  double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }          // Hz
+  double wavelength() const;                                                             // m, at the centre frequency
+  double range_resolution() const;                                                       // m, c / 2B
+  double max_range() const;                                                              // m, c fs / 2 slope (half when real)
+  double velocity_resolution(int num_slots) const;                                       // m/s
+  double max_velocity(int num_slots) const;                                              // m/s, unambiguous +-
+};
+
+// Power gain over direction. Boresight is +x of the antenna's frame.
+struct AntennaPattern {
+  enum class Kind { kIsotropic, kCosinePower };
+  Kind kind = Kind::kIsotropic;
+  double peak_gain = 1.0;  // linear
+  double exponent = 0.0;   // gain = peak_gain cos^exponent(theta) in front, 0 behind (kCosinePower)
+
+  static AntennaPattern isotropic(double gain = 1.0);
+  // peak_gain <= 0: that of a lossless antenna, 2 (exponent + 1).
+  static AntennaPattern cosine_power(double exponent, double peak_gain = 0.0);
+  double gain(double cos_boresight) const;  // linear power gain
+};
+
+struct Antenna {
+  Vec3 position = Vec3::Zero();                        // m, in the radar's frame
+  Quaternion orientation = Quaternion::Identity();     // radar_from_antenna
+  AntennaPattern pattern;
+  Vec3 polarization = Vec3::UnitZ();                   // in the antenna's frame, unit
+};
+
+enum class Multiplexing { kTdm };  // one transmitter per slot
+
+struct Radar {
+  ChirpSequence waveform;
+  std::vector<Antenna> transmitters, receivers;
+  double transmit_power = 0.01;    // W per transmitter
+  double noise_figure_db = 12.0;
+  Multiplexing multiplexing = Multiplexing::kTdm;
+  std::shared_ptr<const Motion> motion;  // world_from_radar(t); none: the radar's frame is the world
+
+  void validate() const;
+  int num_slots() const { return static_cast<int>(transmitters.size()); }
+  Transform world_from_radar(double time) const;
+  // Time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`.
+  double chirp_time(int tx, int chirp) const;
+  double frame_duration() const;  // s, from the first sample to the last
+};
+
+}  // namespace echopath

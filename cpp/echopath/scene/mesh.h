@@ -1,0 +1,43 @@
+#pragma once
+// One labelled surface: a triangle mesh, checked and repaired when it is made.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "echopath/base/geometry.h"
+
+namespace echopath {
+
+using Triangle = std::array<uint32_t, 3>;
+
+// Immutable. No face of the input is lost except degenerate ones: faces on a non-manifold edge or vertex keep their place
+// by duplicated vertices (appended at the end of `vertices`, `original_vertex` maps back).
+class Mesh {
+ public:
+  // vertices [V] in m, triangles [F] of vertex indices. Raises invalid_argument for an index out of range or when no
+  // triangle is left. Triangles with a non-finite vertex or without area (longest edge times 1e-12 against its height) are
+  // removed and counted.
+  Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles);
+  ~Mesh();
+
+  const std::vector<Vec3>& vertices() const { return vertices_; }                        // [V]
+  const std::vector<Triangle>& triangles() const { return triangles_; }                  // [F]
+  const std::vector<uint32_t>& original_triangle() const { return original_triangle_; }  // [F] index in the input
+  const std::vector<uint32_t>& original_vertex() const { return original_vertex_; }      // [V] index in the input
+  int64_t num_removed_triangles() const { return num_removed_triangles_; }
+  int64_t num_duplicated_vertices() const { return num_duplicated_vertices_; }
+  bool is_closed() const { return is_closed_; }  // no boundary edge, no duplicated vertex
+  double area() const;                           // m^2
+
+ private:
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
+  std::vector<uint32_t> original_triangle_, original_vertex_;
+  int64_t num_removed_triangles_ = 0, num_duplicated_vertices_ = 0;
+  bool is_closed_ = false;
+};
+
+using MeshPtr = std::shared_ptr<const Mesh>;
+
+}  // namespace echopath

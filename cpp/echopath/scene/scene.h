@@ -1,0 +1,80 @@
+#pragma once
+// A tree of named nodes with placements, motions and meshes; and its pose at a time.
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "echopath/em/material.h"
+#include "echopath/motion/motion.h"
+#include "echopath/scene/mesh.h"
+
+namespace echopath {
+
+using MaterialPtr = std::shared_ptr<const Material>;
+
+struct Node {
+  std::string name;                                 // full path, "street/pedestrian/arm_left"
+  int parent = -1;                                  // index of the parent, -1: child of the root
+  Transform placement = Transform::Identity();      // at rest, relative to the parent
+  std::shared_ptr<const Motion> motion;             // may be null
+  MeshPtr mesh;                                     // may be null
+  std::shared_ptr<const VertexSequence> sequence;   // may be null; its frames replace the mesh's vertices
+  MaterialPtr material;                             // null where there is no mesh
+  std::string material_name;                        // as the user gave it, may be empty
+};
+
+// What a mesh ID names.
+struct SceneMesh {
+  int node = 0;      // index into Scene::nodes()
+  int object = 0;    // index of the child of the root above it (or itself)
+};
+
+class Scene {
+ public:
+  // Adds a node and returns its index. `node.name` is its own name without the parent's; it must be non-empty, unique among
+  // its siblings and free of '/', '*', '?', quotes and white space at the ends. Raises invalid_argument.
+  int add(Node node);
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<SceneMesh>& meshes() const { return meshes_; }   // by mesh ID
+  const Node& node_of(uint32_t mesh_id) const { return nodes_[static_cast<size_t>(meshes_[mesh_id].node)]; }
+  int64_t num_triangles() const;
+  std::vector<std::string> mesh_names() const;                       // by mesh ID
+  std::optional<int> find(std::string_view full_name) const;         // node index
+
+  // Mesh moves at some time (its node or an ancestor has a motion, or it has a vertex sequence).
+  bool is_moving(uint32_t mesh_id) const;
+  std::vector<double> breakpoints() const;  // of all motions, ascending
+  // Raises invalid_argument naming the node when a motion is not defined on all of [begin, end] (s).
+  void require_times(double begin, double end) const;
+
+ private:
+  std::vector<Node> nodes_;
+  std::vector<SceneMesh> meshes_;
+};
+
+// A glob takes a mesh if it takes its full name or that of an ancestor; '*' crosses '/', '?' is one character.
+bool glob_takes(std::string_view glob, std::string_view full_name);
+
+// World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh.
+class Pose {
+ public:
+  Pose(const Scene& scene, double time);
+  double time() const { return time_; }
+  const Transform& world_from_mesh(uint32_t mesh_id) const { return world_from_mesh_[mesh_id]; }
+  // In the mesh's own frame.
+  const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
+  std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
+  // Corners of a triangle in world coordinates.
+  std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
+
+ private:
+  const Scene* scene_;
+  double time_;
+  std::vector<Transform> world_from_mesh_;
+  std::vector<std::vector<Vec3>> deformed_;  // by mesh ID, empty where rigid
+};
+
+}  // namespace echopath

@@ -1,0 +1,34 @@
+#pragma once
+// The input of IF synthesis: delays and amplitudes of echoes over the chirps of a frame, for one channel.
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+namespace echopath {
+
+// How values at a few nodes give values at each chirp: value(chirp j) = sum_k value[j][k] * node[first_node[j] + k],
+// likewise `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K nodes per
+// piece) and exact evaluation (one node per chirp with central differences).
+struct TimeSampling {
+  int num_nodes = 1;
+  int order = 1;                 // nodes that take part in one chirp
+  std::vector<int> first_node;   // [T]
+  std::vector<double> value;     // [T, order]
+  std::vector<double> slope;     // [T, order], 1/s
+  // All chirps see the one node: the echoes do not move, and are synthesised once for all chirps.
+  bool is_static() const { return num_nodes == 1; }
+};
+
+TimeSampling static_sampling(int num_chirps);
+// One node per chirp at `times` [T] (s, ascending, T >= 1); slopes by second-order differences (zero when T = 1).
+TimeSampling exact_sampling(const std::vector<double>& times);
+
+struct Echoes {
+  TimeSampling sampling;
+  int64_t num_echoes = 0;
+  std::vector<double> delay;                     // [num_nodes, num_echoes] s, at the window centre, round trip
+  std::vector<std::complex<double>> amplitude;   // [num_nodes, num_echoes] sqrt(W)
+  std::vector<uint32_t> group;                   // [num_echoes], or empty: all in group 0
+};
+
+}  // namespace echopath

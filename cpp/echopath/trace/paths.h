@@ -1,0 +1,78 @@
+#pragma once
+// The record of a trace: what every ray touched. Immutable after the trace; selections share the hits.
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "echopath/radar/radar.h"
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+struct Hit {  // 16 bytes
+  uint32_t mesh_id;
+  uint32_t triangle_id;
+  float u, v;
+};
+static_assert(sizeof(Hit) == 16);
+
+// One launch stratum: uniform directions in a cone.
+struct Stratum {
+  Vec3 axis = Vec3::UnitX();   // unit, world axes
+  double cos_half_angle = -1;  // -1: whole sphere
+  int64_t num_rays = 0;
+  std::string name;            // what it aims at
+
+  double solid_angle() const;                  // sr
+  double ray_density() const;                  // rays per sr: N_k p_k inside the cone
+  bool contains(const Vec3& direction) const;  // unit direction
+};
+
+struct TraceStatistics {
+  int64_t num_rays = 0;        // launched
+  int64_t num_queries = 0;     // closest-hit and shadow queries
+  int64_t num_hits = 0;        // surface points found
+  int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
+  int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
+  int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
+};
+
+// What a path's amplitude and length are relative to.
+struct TraceFrame {
+  double start_time = 0.0;  // s, first sample of the frame
+  double trace_time = 0.0;  // s, the time the rays saw the scene at (mid-frame)
+  Vec3 transmitter = Vec3::Zero(), receiver = Vec3::Zero();  // world, mean positions at trace_time
+  std::vector<Stratum> strata;
+  uint64_t seed = 0;
+  int max_bounces = 4;
+  bool footprint_filter = true;
+  TraceStatistics statistics;
+};
+
+struct Paths {
+  // [H], shared by all selections of one trace
+  std::shared_ptr<const std::vector<Hit>> hits;
+  // [P] each. offsets: index of the path's first hit; its hits are num_bounces consecutive ones, in travel order TX -> RX.
+  std::vector<int64_t> offsets;
+  std::vector<uint8_t> num_bounces;
+  std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
+  std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
+  std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
+  std::vector<uint8_t> batch;
+  std::vector<uint32_t> flags;               // reserved, 0
+
+  std::shared_ptr<const Scene> scene;        // snapshot
+  Radar radar;                               // snapshot
+  TraceFrame frame;
+
+  int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
+  int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
+  const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
+
+  // The paths where keep [P] is not 0, in order; shares the hits.
+  Paths select(const std::vector<uint8_t>& keep) const;
+};
+
+}  // namespace echopath

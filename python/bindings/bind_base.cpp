@@ -1,0 +1,49 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <thread>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+namespace py = pybind11;
+
+// Does nothing for that long, in steps of a millisecond: shows how long work answers, without the long work.
+void wait_seconds(double seconds, const py::object& progress) {
+  require(seconds >= 0.0 && seconds <= 3600.0, "seconds", "must lie in 0 to 3600", seconds);
+  run_job("wait", progress, [&](Job& job) {
+    const auto num_steps = static_cast<int64_t>(seconds * 1000.0);
+    job.start(num_steps);
+    for (int64_t i = 0; i < num_steps; ++i) {
+      job.throw_if_cancelled();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      job.advance(1);
+    }
+  });
+}
+
+}  // namespace
+
+void bind_base(py::module_& m) {
+  m.attr("speed_of_light") = kSpeedOfLight;
+  m.attr("boltzmann") = kBoltzmann;
+  m.attr("reference_temperature") = kReferenceTemperature;
+  m.attr("vacuum_permittivity") = kVacuumPermittivity;
+
+  m.def("set_num_threads", &set_num_threads, py::arg("num_threads"),
+        "Number of threads of all parallel loops from now on.\n\n"
+        "num_threads: 0 (one per core) or more. Results do not depend on it, not by a bit.\n"
+        "Raises ValueError if negative.");
+  m.def("num_threads", &num_threads, "Number of threads of the parallel loops.");
+  m.def("nearest_names", &nearest_names, py::arg("word"), py::arg("candidates"), py::arg("count") = 3,
+        "The candidates most like `word` by edit distance, best first, at most `count`.");
+  m.def("_wait", &wait_seconds, py::arg("seconds"), py::arg("progress") = py::none());
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,82 @@
+#include "run_job.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace echopath::bindings {
+namespace {
+
+namespace py = pybind11;
+
+constexpr std::chrono::milliseconds kPollInterval{50};
+
+// A thread that runs one piece of work and keeps what it throws.
+class Worker {
+ public:
+  Worker(const std::function<void(Job&)>& work, Job& job) : thread_([this, &work, &job] { run(work, job); }) {}
+
+  // True when the work has ended; waits for that at most one poll interval, without the GIL.
+  bool wait_a_little() {
+    const py::gil_scoped_release release;
+    std::unique_lock lock(mutex_);
+    return ended_cv_.wait_for(lock, kPollInterval, [this] { return ended_; });
+  }
+
+  // Waits for the end without the GIL and returns what the work threw, or null.
+  std::exception_ptr join() {
+    const py::gil_scoped_release release;
+    thread_.join();
+    return failure_;
+  }
+
+ private:
+  void run(const std::function<void(Job&)>& work, Job& job) {
+    try {
+      work(job);
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    ended_cv_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable ended_cv_;
+  bool ended_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;  // last: it uses the others from its first moment
+};
+
+void poll(const std::string& stage, const py::object& progress, double fraction) {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  if (!progress.is_none()) progress(stage, fraction);
+}
+
+}  // namespace
+
+void run_beside(const std::string& stage, const py::object& progress, const std::function<void(Job&)>& work) {
+  if (!progress.is_none() && !PyCallable_Check(progress.ptr()))
+    throw py::type_error("progress: must be None or a callable (stage, fraction), got " +
+                         std::string(Py_TYPE(progress.ptr())->tp_name));
+  Job job;
+  Worker worker(work, job);
+  std::exception_ptr interruption;
+  while (!interruption && !worker.wait_a_little()) {
+    try {
+      poll(stage, progress, job.fraction());
+    } catch (...) {
+      interruption = std::current_exception();
+      job.cancel();
+    }
+  }
+  const std::exception_ptr failure = worker.join();
+  if (interruption) std::rethrow_exception(interruption);
+  if (failure) std::rethrow_exception(failure);
+  poll(stage, progress, 1.0);
+}
+
+}  // namespace echopath::bindings

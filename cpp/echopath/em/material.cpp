@@ -1,0 +1,36 @@
+#include "echopath/em/material.h"
+
+#include <cmath>
+
+#include "echopath/base/errors.h"
+
+namespace echopath {
+
+Material Material::metal(bool mirror) {
+  Material material;
+  material.conductor = true;
+  material.mirror = mirror;
+  return material;
+}
+
+void Material::validate() const {
+  const int kinds = (conductor ? 1 : 0) + (permittivity ? 1 : 0) + (reflectivity ? 1 : 0);
+  require(kinds == 1, "material", "takes exactly one of conductor, permittivity, reflectivity", kinds);
+  if (permittivity) {
+    require(std::isfinite(permittivity->real()) && std::isfinite(permittivity->imag()), "permittivity", "must be finite",
+            *permittivity);
+    require(permittivity->imag() <= 0, "permittivity", "is eps' - j eps'': its imaginary part must not be positive",
+            *permittivity);
+    require(*permittivity != std::complex<double>(0.0, 0.0), "permittivity", "must not be 0", *permittivity);
+  }
+  require(std::isfinite(conductivity) && conductivity >= 0, "conductivity", "must be >= 0 S/m", conductivity);
+  require(conductivity == 0 || permittivity.has_value(), "conductivity", "needs a permittivity", conductivity);
+  if (reflectivity) require(*reflectivity >= 0 && *reflectivity <= 1, "reflectivity", "must lie in [0, 1]", *reflectivity);
+  require(std::isfinite(roughness_height) && roughness_height >= 0, "roughness_height", "must be >= 0 m", roughness_height);
+  if (scattering) {
+    require(*scattering >= 0 && *scattering <= 1, "scattering", "must lie in [0, 1]", *scattering);
+    require(roughness_height == 0, "roughness_height", "excludes scattering: give one of them", roughness_height);
+  }
+}
+
+}  // namespace echopath

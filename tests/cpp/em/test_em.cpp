@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/fresnel.h"
+#include "echopath/em/surface_response.h"
+
+namespace echopath {
+namespace {
+
+using Complex = std::complex<double>;
+const Complex kEpsilon(4.0, -0.2);
+constexpr double kTableTolerance = 6e-6;  // the published table has five digits
+
+double cos_deg(double angle_deg) { return std::cos(angle_deg * kPi / 180.0); }
+
+// |Gamma| of eps = 4 - 0.2j, computed independently for the physics notes of the project.
+TEST(Fresnel, MagnitudesMatchTheReferenceTable) {
+  const double table[][3] = {{0, .33384, .33384}, {45, .45196, .20426}, {60, .56625, .05290}, {80, .81886, .42958},
+                             {89, .98008, .92252}};
+  for (const auto& [angle_deg, te, tm] : table) {
+    EXPECT_NEAR(std::abs(fresnel_te(kEpsilon, cos_deg(angle_deg))), te, kTableTolerance) << angle_deg;
+    EXPECT_NEAR(std::abs(fresnel_tm(kEpsilon, cos_deg(angle_deg))), tm, kTableTolerance) << angle_deg;
+  }
+}
+
+TEST(Fresnel, BrewsterAngleHasNoTmReflection) {
+  const double cos_brewster = 1.0 / std::sqrt(1.0 + 4.0);  // tan = sqrt(eps)
+  EXPECT_LT(std::abs(fresnel_tm(Complex(4.0, 0.0), cos_brewster)), 1e-15);
+}
+
+TEST(Fresnel, NormalIncidenceModesAreOpposite) {
+  EXPECT_LT(std::abs(fresnel_te(kEpsilon, 1.0) + fresnel_tm(kEpsilon, 1.0)), 1e-15);
+}
+
+TEST(Fresnel, GrazingIncidenceTendsToMinusOne) {
+  EXPECT_LT(std::abs(fresnel_te(kEpsilon, 1e-9) + 1.0), 1e-8);
+  EXPECT_LT(std::abs(fresnel_tm(kEpsilon, 1e-9) + 1.0), 1e-7);
+}
+
+TEST(Fresnel, GoodConductorTendsToPerfectConductor) {
+  EXPECT_LT(std::abs(fresnel_te(Complex(1.0, -1e12), 0.5) + 1.0), 1e-5);
+  EXPECT_LT(std::abs(fresnel_tm(Complex(1.0, -1e12), 0.5) - 1.0), 1e-5);
+}
+
+// Power factors at normal incidence and 80 degrees, 77 GHz.
+TEST(Roughness, AmentPowerFactorMatchesReference) {
+  const double wavenumber = kTwoPi * 77e9 / kSpeedOfLight;
+  const auto power = [&](double height, double angle_deg) { return std::pow(ament_factor(wavenumber, height, cos_deg(angle_deg)), 2); };
+  EXPECT_NEAR(power(0.1e-3, 0), 0.901, 5e-4);
+  EXPECT_NEAR(power(0.3e-3, 0), 0.392, 5e-4);
+  EXPECT_NEAR(power(0.5e-3, 0), 0.074, 5e-4);
+  EXPECT_NEAR(power(1e-3, 80), 0.730, 5e-4);
+}
+
+TEST(SurfaceResponse, CoherentAndDiffusePowerAddUp) {
+  Material rough;
+  rough.permittivity = kEpsilon;
+  rough.roughness_height = 0.4e-3;
+  Material scattering;
+  scattering.reflectivity = 0.34;
+  scattering.scattering = 0.6;
+  for (const Material& material : {rough, scattering, Material::metal()}) {
+    material.validate();
+    const SurfaceResponse response = respond(material, 77e9, 0.3, PolarizationMode::kTm);
+    EXPECT_NEAR(response.coherent * response.coherent + response.diffuse * response.diffuse, 1.0, 1e-15);
+  }
+  EXPECT_NEAR(std::norm(respond(scattering, 77e9, 0.3, PolarizationMode::kTe).gamma), 0.34, 1e-15);
+}
+
+TEST(SurfaceResponse, ConductivityIsLossOfThePermittivity) {
+  Material lossy;
+  lossy.permittivity = Complex(4.0, 0.0);
+  lossy.conductivity = 0.2 * kTwoPi * 77e9 * kVacuumPermittivity;
+  EXPECT_LT(std::abs(respond(lossy, 77e9, 0.7, PolarizationMode::kTe).gamma - fresnel_te(kEpsilon, 0.7)), 1e-15);
+}
+
+TEST(Material, BadValuesAreNamed) {
+  const auto message = [](const Material& material) -> std::string {
+    try {
+      material.validate();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Material gain, two = Material::metal(), both, over;
+  gain.permittivity = Complex(4.0, 0.2);
+  two.reflectivity = 0.5;
+  both.reflectivity = 0.5;
+  both.scattering = 0.5;
+  both.roughness_height = 1e-3;
+  over.reflectivity = 1.5;
+  EXPECT_NE(message(gain).find("permittivity"), std::string::npos);
+  EXPECT_NE(message(two).find("exactly one"), std::string::npos);
+  EXPECT_NE(message(both).find("roughness_height"), std::string::npos);
+  EXPECT_NE(message(over).find("1.5"), std::string::npos);
+  EXPECT_NE(message(Material{}).find("exactly one"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -38,7 +38,8 @@ std::shared_ptr<tbb::task_arena> current_arena() {
 void set_num_threads(int num_threads) {
   require(num_threads >= 0, "num_threads", "must be 0 (one per core) or more", num_threads);
   const std::lock_guard lock(arena_mutex);
-  arena = std::make_shared<tbb::task_arena>(num_threads == 0 ? tbb::task_arena::automatic : num_threads);
+  constexpr int one_per_core = tbb::task_arena::automatic;  // a copy: the member itself has no address
+  arena = std::make_shared<tbb::task_arena>(num_threads == 0 ? one_per_core : num_threads);
 }
 
 int num_threads() { return current_arena()->max_concurrency(); }

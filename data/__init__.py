@@ -1,0 +1,1 @@
+"""Scenes, materials, antennas and reference values that come with echopath."""

@@ -1,5 +1,6 @@
 #pragma once
 // Motion of a node: time -> rigid transform relative to the node's placement.
+#include <cstdint>
 #include <memory>
 #include <vector>
 

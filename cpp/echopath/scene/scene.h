@@ -1,9 +1,11 @@
 #pragma once
 // A tree of named nodes with placements, motions and meshes; and its pose at a time.
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "echopath/em/material.h"
@@ -53,12 +55,14 @@ class Scene {
  private:
   std::vector<Node> nodes_;
   std::vector<SceneMesh> meshes_;
+  std::unordered_map<std::string, int> index_;  // full name -> node
 };
 
 // A glob takes a mesh if it takes its full name or that of an ancestor; '*' crosses '/', '?' is one character.
 bool glob_takes(std::string_view glob, std::string_view full_name);
 
-// World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh.
+// World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh. The scene must outlive it.
+// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement): a motion turns a node about its own origin.
 class Pose {
  public:
   Pose(const Scene& scene, double time);

@@ -1,0 +1,106 @@
+#include <cmath>
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/motion/spline.h"
+
+namespace echopath {
+namespace {
+
+// Quaternions typed with four digits pass; they are normalised. Anything farther off is a mistake (another order, degrees).
+constexpr double kUnitTolerance = 1e-3;
+
+void check_translations(const std::vector<Vec3>& translations, size_t num_times) {
+  if (translations.empty()) return;
+  require(translations.size() == num_times, "translations", "must be as many as times", translations.size());
+  for (const Vec3& value : translations) require(value.allFinite(), "translations", "must be finite", value.transpose());
+}
+
+// Unit length, and neighbours in the same half space: q and -q are one rotation, but not to an interpolation.
+std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num_times) {
+  if (rotations.empty()) return rotations;
+  require(rotations.size() == num_times, "rotations", "must be as many as times", rotations.size());
+  for (size_t i = 0; i < rotations.size(); ++i) {
+    const double norm = rotations[i].norm();
+    require(std::abs(norm - 1.0) <= kUnitTolerance, "rotations", "must be unit quaternions (w, x, y, z); norm", norm);
+    rotations[i].coeffs() /= norm;
+    if (i > 0 && rotations[i].dot(rotations[i - 1]) < 0.0) rotations[i].coeffs() *= -1.0;
+  }
+  return rotations;
+}
+
+// Second derivatives of `samples` at the knots, in the same type.
+template <class Value>
+std::vector<Value> curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
+  if (samples.empty() || !knots.has_curvature()) return {};
+  std::vector<Value> result(samples.size());
+  std::vector<const double*> rows;
+  std::vector<double*> out;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    rows.push_back(reinterpret_cast<const double*>(&samples[i]));
+    out.push_back(reinterpret_cast<double*>(&result[i]));
+  }
+  knots.second_derivatives(rows, width, out);
+  return result;
+}
+
+}  // namespace
+
+struct KeyframeMotion::Data {
+  SplineKnots knots;
+  std::vector<Vec3> translations, translation_curvature;
+  std::vector<Quaternion> rotations, rotation_curvature;
+
+  Vec3 translation(const SplineKnots::Weights& w) const {
+    if (translations.empty()) return Vec3::Zero();
+    Vec3 value = w.value[0] * translations[w.k] + w.value[1] * translations[w.k + 1];
+    if (knots.has_curvature()) {
+      value += w.curvature[0] * translation_curvature[w.k] + w.curvature[1] * translation_curvature[w.k + 1];
+    }
+    return value;
+  }
+
+  Quaternion rotation(const SplineKnots::Weights& w) const {
+    if (rotations.empty()) return Quaternion::Identity();
+    const Quaternion &first = rotations[w.k], &second = rotations[w.k + 1];
+    if (knots.interpolation() == Interpolation::kLinear) return first.slerp(w.value[1], second);
+    Quaternion value(first.coeffs() * w.value[0] + second.coeffs() * w.value[1]);
+    if (knots.has_curvature()) {
+      value.coeffs() += w.curvature[0] * rotation_curvature[w.k].coeffs();
+      value.coeffs() += w.curvature[1] * rotation_curvature[w.k + 1].coeffs();
+    }
+    return value.normalized();
+  }
+};
+
+KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations,
+                               std::vector<Quaternion> rotations, Interpolation interpolation) {
+  SplineKnots knots(std::move(times), interpolation);
+  require(!translations.empty() || !rotations.empty(), "translations",
+          "must be given where there are no rotations", "neither");
+  check_translations(translations, knots.times().size());
+  rotations = continuous(std::move(rotations), knots.times().size());
+  std::vector<Vec3> translation_curvature = curvatures(knots, translations, 3);
+  std::vector<Quaternion> rotation_curvature = curvatures(knots, rotations, 4);
+  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(translations), std::move(translation_curvature),
+                                            std::move(rotations), std::move(rotation_curvature)});
+}
+
+KeyframeMotion::~KeyframeMotion() = default;
+
+Transform KeyframeMotion::at(double time) const {
+  const SplineKnots::Weights weights = data_->knots.weights(time);
+  Transform transform = Transform::Identity();
+  transform.translation() = data_->translation(weights);
+  transform.linear() = data_->rotation(weights).toRotationMatrix();
+  return transform;
+}
+
+std::vector<double> KeyframeMotion::breakpoints() const { return data_->knots.breakpoints(); }
+TimeSpan KeyframeMotion::span() const { return data_->knots.span(); }
+const std::vector<double>& KeyframeMotion::times() const { return data_->knots.times(); }
+const std::vector<Vec3>& KeyframeMotion::translations() const { return data_->translations; }
+const std::vector<Quaternion>& KeyframeMotion::rotations() const { return data_->rotations; }
+Interpolation KeyframeMotion::interpolation() const { return data_->knots.interpolation(); }
+
+}  // namespace echopath

@@ -1,0 +1,23 @@
+#include <cmath>
+
+#include "echopath/base/errors.h"
+#include "echopath/motion/motion.h"
+
+namespace echopath {
+
+LinearMotion::LinearMotion(const Vec3& velocity, const Vec3& angular_velocity)
+    : velocity_(velocity), angular_velocity_(angular_velocity) {
+  require(velocity.allFinite(), "velocity", "must be finite", velocity.transpose());
+  require(angular_velocity.allFinite(), "angular_velocity", "must be finite", angular_velocity.transpose());
+}
+
+Transform LinearMotion::at(double time) const {
+  require(std::isfinite(time), "time", "must be finite", time);
+  Transform transform = Transform::Identity();
+  transform.translation() = velocity_ * time;
+  const double rate = angular_velocity_.norm();
+  if (rate > 0.0) transform.linear() = Eigen::AngleAxisd(rate * time, angular_velocity_ / rate).toRotationMatrix();
+  return transform;
+}
+
+}  // namespace echopath

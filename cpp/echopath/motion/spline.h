@@ -1,0 +1,53 @@
+#pragma once
+// Interpolation over knot times, shared by everything that is sampled: positions, quaternions, vertices.
+#include <cstdint>
+#include <vector>
+
+#include "echopath/motion/motion.h"
+
+namespace echopath {
+
+// Knot times with the factors of the spline equations: made once, used for any number of columns. Immutable.
+//
+// kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two and the
+// last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the parabola.
+class SplineKnots {
+ public:
+  // `times` [T] in s. Raises invalid_argument naming `times` unless T >= 2, finite and strictly ascending.
+  SplineKnots(std::vector<double> times, Interpolation interpolation);
+
+  const std::vector<double>& times() const { return times_; }
+  Interpolation interpolation() const { return interpolation_; }
+  TimeSpan span() const { return {times_.front(), times_.back()}; }
+  std::vector<double> breakpoints() const;  // inner knots where the interpolation is linear
+
+  // The value at a time is value[0] y[k] + value[1] y[k+1] + curvature[0] m[k] + curvature[1] m[k+1], with the samples y
+  // and their second derivatives m; the curvature weights are 0 where `has_curvature` is false.
+  struct Weights {
+    size_t k;
+    double value[2];
+    double curvature[2];  // s^2
+  };
+  // Raises invalid_argument outside span(); rounding errors of the time are forgiven.
+  Weights weights(double time) const;
+
+  bool has_curvature() const { return interpolation_ == Interpolation::kCubic && times_.size() > 2; }
+  // Second derivatives (per s^2) of the splines through `width` columns of samples: rows [T] point to `width` numbers
+  // each, and so do `out` [T]. Only where has_curvature().
+  void second_derivatives(const std::vector<const double*>& rows, int64_t width, const std::vector<double*>& out) const;
+
+ private:
+  void factor();
+  void solve_columns(const std::vector<const double*>& rows, const std::vector<double*>& out, int64_t begin,
+                     int64_t end) const;
+
+  std::vector<double> times_;
+  Interpolation interpolation_;
+  std::vector<double> step_;                        // [T-1] s
+  std::vector<double> lower_, inverse_, upper_;     // [T] rows 1..T-2 of the factored tridiagonal matrix
+};
+
+// Raises invalid_argument unless `time` is inside `span` up to rounding; returns it moved into the span.
+double time_inside(double time, const TimeSpan& span);
+
+}  // namespace echopath

@@ -1,0 +1,81 @@
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/motion/spline.h"
+
+namespace echopath {
+namespace {
+
+using Frames = std::vector<std::vector<Vec3>>;  // [T][V]
+
+void check_frames(const Frames& frames, size_t num_times) {
+  require(frames.size() == num_times, "vertices", "must hold as many frames as times", frames.size());
+  require(!frames.front().empty(), "vertices", "must hold at least one vertex", 0);
+  for (const std::vector<Vec3>& frame : frames) {
+    require(frame.size() == frames.front().size(), "vertices", "must have the same number in each frame", frame.size());
+    for (const Vec3& vertex : frame) require(vertex.allFinite(), "vertices", "must be finite", vertex.transpose());
+  }
+}
+
+Frames curvatures(const SplineKnots& knots, const Frames& frames) {
+  if (!knots.has_curvature()) return {};
+  Frames result(frames.size());
+  std::vector<const double*> rows;
+  std::vector<double*> out;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    result[i].resize(frames[i].size());
+    rows.push_back(frames[i].data()->data());
+    out.push_back(result[i].data()->data());
+  }
+  knots.second_derivatives(rows, 3 * static_cast<int64_t>(frames.front().size()), out);
+  return result;
+}
+
+}  // namespace
+
+struct VertexSequence::Data {
+  SplineKnots knots;
+  Frames frames, curvature;  // curvature: second derivatives [T][V] in m/s^2, empty where linear
+
+  Vec3 vertex(const SplineKnots::Weights& w, size_t i) const {
+    Vec3 value = w.value[0] * frames[w.k][i] + w.value[1] * frames[w.k + 1][i];
+    if (!curvature.empty()) value += w.curvature[0] * curvature[w.k][i] + w.curvature[1] * curvature[w.k + 1][i];
+    return value;
+  }
+};
+
+VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Interpolation interpolation) {
+  SplineKnots knots(std::move(times), interpolation);
+  check_frames(vertices, knots.times().size());
+  Frames curvature = curvatures(knots, vertices);
+  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(curvature)});
+}
+
+VertexSequence::~VertexSequence() = default;
+
+int64_t VertexSequence::num_vertices() const { return static_cast<int64_t>(data_->frames.front().size()); }
+
+std::vector<Vec3> VertexSequence::at(double time) const {
+  const SplineKnots::Weights weights = data_->knots.weights(time);
+  std::vector<Vec3> out(data_->frames.front().size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = data_->vertex(weights, i);
+  return out;
+}
+
+void VertexSequence::at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const {
+  const SplineKnots::Weights weights = data_->knots.weights(time);
+  const size_t num_vertices = data_->frames.front().size();
+  out.resize(indices.size());
+  for (size_t i = 0; i < indices.size(); ++i) {
+    require(indices[i] < num_vertices, "indices", "must be below the number of vertices", indices[i]);
+    out[i] = data_->vertex(weights, indices[i]);
+  }
+}
+
+std::vector<double> VertexSequence::breakpoints() const { return data_->knots.breakpoints(); }
+TimeSpan VertexSequence::span() const { return data_->knots.span(); }
+const std::vector<double>& VertexSequence::times() const { return data_->knots.times(); }
+const Frames& VertexSequence::vertices() const { return data_->frames; }
+Interpolation VertexSequence::interpolation() const { return data_->knots.interpolation(); }
+
+}  // namespace echopath

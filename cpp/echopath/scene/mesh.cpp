@@ -1,0 +1,111 @@
+#include "echopath/scene/mesh.h"
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/scene/manifold.h"
+
+namespace echopath {
+namespace {
+
+// Triangles flatter than this have no normal that survives rounding.
+constexpr double kMinHeightPerEdge = 1e-12;
+
+struct DoubleTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+  VertexAttributes(0);
+  HalfedgeAttributes(0);
+  FaceAttributes(0);
+};
+using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
+
+bool is_degenerate(const std::vector<Vec3>& vertices, const Triangle& triangle) {
+  const Vec3 &a = vertices[triangle[0]], &b = vertices[triangle[1]], &c = vertices[triangle[2]];
+  const Vec3 ab = b - a, ac = c - a, bc = c - b;
+  const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
+  const double height_times_edge = ab.cross(ac).norm();
+  return !(height_times_edge > kMinHeightPerEdge * longest2);  // also takes what is not finite
+}
+
+// Renumbers the corners to the vertices in use, which keep their order; returns the old number of each.
+std::vector<uint32_t> drop_unused_vertices(std::vector<Triangle>& triangles, size_t num_vertices) {
+  std::vector<uint32_t> renumbered(num_vertices, 0), used;
+  for (const Triangle& triangle : triangles) {
+    for (const uint32_t vertex : triangle) renumbered[vertex] = 1;
+  }
+  for (uint32_t vertex = 0; vertex < num_vertices; ++vertex) {
+    if (renumbered[vertex] == 0) continue;
+    renumbered[vertex] = static_cast<uint32_t>(used.size());
+    used.push_back(vertex);
+  }
+  for (Triangle& triangle : triangles) {
+    for (uint32_t& vertex : triangle) vertex = renumbered[vertex];
+  }
+  return used;
+}
+
+HalfedgeMesh connect(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  HalfedgeMesh mesh;
+  mesh.reserve(vertices.size(), vertices.size() + triangles.size(), triangles.size());
+  for (const Vec3& p : vertices) mesh.add_vertex({p.x(), p.y(), p.z()});
+  for (const Triangle& t : triangles) {
+    const auto handle = [&](int k) { return OpenMesh::VertexHandle(static_cast<int>(t[static_cast<size_t>(k)])); };
+    if (!mesh.add_face(handle(0), handle(1), handle(2)).is_valid()) {
+      throw std::logic_error("Mesh: a face is still non-manifold after cutting");
+    }
+  }
+  return mesh;
+}
+
+bool has_boundary(const HalfedgeMesh& mesh) {
+  for (const auto edge : mesh.edges()) {
+    if (mesh.is_boundary(edge)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle)
+    : num_input_vertices_(static_cast<int64_t>(vertices.size())) {
+  constexpr size_t kMaxCount = 0x7fffffff / 3;  // OpenMesh counts half-edges in an int
+  require(triangles.size() < kMaxCount, "triangles", "must be fewer than 715 million", triangles.size());
+  require(source_triangle.empty() || source_triangle.size() == triangles.size(), "source_triangle",
+          "must be empty or as long as triangles", source_triangle.size());
+  for (uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const uint32_t vertex : triangles[t]) {
+      require(vertex < vertices.size(), "triangles",
+              "must hold indices below the number of vertices, " + std::to_string(vertices.size()), vertex);
+    }
+    if (is_degenerate(vertices, triangles[t])) continue;
+    triangles_.push_back(triangles[t]);
+    original_triangle_.push_back(source_triangle.empty() ? t : source_triangle[t]);
+  }
+  num_removed_triangles_ = static_cast<int64_t>(triangles.size() - triangles_.size());
+  require(!triangles_.empty(), "triangles", "must hold one with an area at least, all without of", triangles.size());
+
+  original_vertex_ = drop_unused_vertices(triangles_, vertices.size());
+  const size_t num_used = original_vertex_.size();
+  cut_to_manifold(triangles_, original_vertex_);
+  num_duplicated_vertices_ = static_cast<int64_t>(original_vertex_.size() - num_used);
+  vertices_.reserve(original_vertex_.size());
+  for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
+  is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
+}
+
+Mesh::~Mesh() = default;
+
+double Mesh::area() const {
+  double twice = 0.0;
+  for (const Triangle& t : triangles_) {
+    twice += (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]).norm();
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace echopath

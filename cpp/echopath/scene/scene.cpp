@@ -1,0 +1,109 @@
+#include "echopath/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+void check_name(const std::string& name) {
+  require(!name.empty(), "name", "must not be empty", "''");
+  require(name.find_first_of("/*?'\"") == std::string::npos, "name", "must be free of / * ? and quotes", name);
+  const std::string blanks = " \t\r\n\v\f";
+  const bool bare = blanks.find(name.front()) == std::string::npos && blanks.find(name.back()) == std::string::npos;
+  require(bare, "name", "must not begin or end with white space", "'" + name + "'");
+}
+
+void check_content(const Node& node) {
+  require(node.placement.matrix().allFinite(), "placement", "must be finite in node", node.name);
+  require(node.placement.linear().determinant() != 0.0, "placement", "must not flatten space in node", node.name);
+  require(!node.mesh || node.material, "material", "must be given with a mesh in node", node.name);
+  require(node.mesh || !node.material, "material", "must not be given without a mesh in node", node.name);
+  if (node.material) node.material->validate();
+  if (!node.sequence) return;
+  require(node.mesh != nullptr, "sequence", "must not be given without a mesh in node", node.name);
+  const int64_t num_input = node.mesh->num_input_vertices();
+  require(node.sequence->num_vertices() == num_input, "sequence",
+          "must have the " + std::to_string(num_input) + " vertices the mesh was made from",
+          std::to_string(node.sequence->num_vertices()) + " in node " + node.name);
+}
+
+void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
+  if (begin >= span.begin && end <= span.end) return;
+  // Ends are sums of intervals: forgive their rounding as the motions do.
+  const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
+  if (begin >= span.begin - slack && end <= span.end + slack) return;
+  std::ostringstream rule, value;
+  rule << "must cover the frame, " << begin << " to " << end << " s; node " << name;
+  value << span.begin << " to " << span.end << " s";
+  require(false, "motion", rule.str(), value.str());
+}
+
+}  // namespace
+
+int Scene::add(Node node) {
+  check_name(node.name);
+  const int num_nodes = static_cast<int>(nodes_.size());
+  require(node.parent >= -1 && node.parent < num_nodes, "parent", "must be -1 or the index of a node", node.parent);
+  check_content(node);
+  if (node.parent >= 0) node.name = nodes_[static_cast<size_t>(node.parent)].name + "/" + node.name;
+  require(!index_.contains(node.name), "name", "must be unique among its siblings", node.name);
+  if (node.mesh) {
+    SceneMesh mesh{num_nodes, num_nodes};
+    for (int above = node.parent; above >= 0; above = nodes_[static_cast<size_t>(above)].parent) mesh.object = above;
+    meshes_.push_back(mesh);
+  }
+  index_.emplace(node.name, num_nodes);
+  nodes_.push_back(std::move(node));
+  return num_nodes;
+}
+
+int64_t Scene::num_triangles() const {
+  int64_t total = 0;
+  for (const Node& node : nodes_) total += node.mesh ? static_cast<int64_t>(node.mesh->triangles().size()) : 0;
+  return total;
+}
+
+std::vector<std::string> Scene::mesh_names() const {
+  std::vector<std::string> names;
+  names.reserve(meshes_.size());
+  for (const SceneMesh& mesh : meshes_) names.push_back(nodes_[static_cast<size_t>(mesh.node)].name);
+  return names;
+}
+
+std::optional<int> Scene::find(std::string_view full_name) const {
+  const auto found = index_.find(std::string(full_name));
+  return found == index_.end() ? std::nullopt : std::optional<int>(found->second);
+}
+
+bool Scene::is_moving(uint32_t mesh_id) const {
+  if (node_of(mesh_id).sequence) return true;
+  for (int i = meshes_[mesh_id].node; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) {
+    if (nodes_[static_cast<size_t>(i)].motion) return true;
+  }
+  return false;
+}
+
+std::vector<double> Scene::breakpoints() const {
+  std::vector<double> all;
+  const auto append = [&](const std::vector<double>& times) { all.insert(all.end(), times.begin(), times.end()); };
+  for (const Node& node : nodes_) {
+    if (node.motion) append(node.motion->breakpoints());
+    if (node.sequence) append(node.sequence->breakpoints());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void Scene::require_times(double begin, double end) const {
+  for (const Node& node : nodes_) {
+    if (node.motion) require_span(node.motion->span(), begin, end, node.name);
+    if (node.sequence) require_span(node.sequence->span(), begin, end, node.name);
+  }
+}
+
+}  // namespace echopath

@@ -1,8 +1,10 @@
 #include "echopath/base/parallel.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
@@ -27,6 +29,14 @@ class FlushDenormals {
 
 std::mutex arena_mutex;
 std::shared_ptr<tbb::task_arena> arena = std::make_shared<tbb::task_arena>();
+std::unique_ptr<tbb::global_control> worker_limit;
+
+// TBB starts one worker per core and no more unless told so; asking for more is useful to test that results do not change.
+void allow_threads(int num_threads) {
+  static const size_t one_per_core = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const size_t allowed = std::max(one_per_core, static_cast<size_t>(num_threads));
+  worker_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, allowed);
+}
 
 std::shared_ptr<tbb::task_arena> current_arena() {
   const std::lock_guard lock(arena_mutex);
@@ -38,6 +48,7 @@ std::shared_ptr<tbb::task_arena> current_arena() {
 void set_num_threads(int num_threads) {
   require(num_threads >= 0, "num_threads", "must be 0 (one per core) or more", num_threads);
   const std::lock_guard lock(arena_mutex);
+  allow_threads(num_threads);
   constexpr int one_per_core = tbb::task_arena::automatic;  // a copy: the member itself has no address
   arena = std::make_shared<tbb::task_arena>(num_threads == 0 ? one_per_core : num_threads);
 }

@@ -1,0 +1,51 @@
+#include "echopath/base/errors.h"
+
+#include <gtest/gtest.h>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(Require, NamesArgumentRuleAndValue) {
+  EXPECT_NO_THROW(require(true, "bandwidth", "must be positive", 1.0));
+  try {
+    require(false, "bandwidth", "must be positive", -0.1);
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "bandwidth: must be positive, got -0.10000000000000001");
+  }
+}
+
+TEST(NearestNames, OrdersByEditDistance) {
+  // Edit distances from "kitten": sitten 1, sitting 3 (the textbook pair), wall 6.
+  EXPECT_EQ(nearest_names("kitten", {"wall", "sitting", "sitten"}), (Names{"sitten", "sitting", "wall"}));
+}
+
+TEST(NearestNames, FindsTransposedMissingAndAddedLetters) {
+  const Names names{"bandwidth", "num_chirps", "start_frequency"};
+  EXPECT_EQ(nearest_names("bandwitdh", names, 1), Names{"bandwidth"});
+  EXPECT_EQ(nearest_names("num_chirp", names, 1), Names{"num_chirps"});
+  EXPECT_EQ(nearest_names("start__frequency", names, 1), Names{"start_frequency"});
+}
+
+TEST(NearestNames, KeepsTheGivenOrderAmongEquals) {
+  EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"}));
+}
+
+TEST(NearestNames, GivesAtMostTheCountAskedFor) {
+  EXPECT_EQ(nearest_names("a", {"a", "b", "c"}, 2).size(), 2u);
+  EXPECT_EQ(nearest_names("a", {"a"}, 5), Names{"a"});
+  EXPECT_TRUE(nearest_names("a", {}).empty());
+}
+
+TEST(Constants, VacuumImpedanceFollowsFromThem) {
+  // CODATA 2018: 376.730313668 ohm; eps0 is given with eleven digits.
+  constexpr double kTolerance = 1e-7;
+  EXPECT_NEAR(1.0 / (kVacuumPermittivity * kSpeedOfLight), 376.730313668, kTolerance);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -31,6 +31,10 @@ TEST(NearestNames, FindsTransposedMissingAndAddedLetters) {
   EXPECT_EQ(nearest_names("start__frequency", names, 1), Names{"start_frequency"});
 }
 
+TEST(NearestNames, OneInsertionDeletionOrReplacementComesBeforeTwo) {
+  EXPECT_EQ(nearest_names("abc", {"xyc", "abcd", "ab", "abx"}), (Names{"abcd", "ab", "abx"}));
+}
+
 TEST(NearestNames, KeepsTheGivenOrderAmongEquals) {
   EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"}));
 }

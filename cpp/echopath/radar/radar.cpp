@@ -1,0 +1,114 @@
+#include "echopath/radar/radar.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+// Unit vectors and quaternions may be off by what single precision or six written digits leave.
+constexpr double kUnitTolerance = 1e-6;
+// A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
+constexpr double kSlotTolerance = 1e-9;
+
+void require_positive(double value, const std::string& argument) {
+  require(std::isfinite(value) && value > 0.0, argument, "must be finite and positive", value);
+}
+
+void validate_antenna(const Antenna& antenna, const std::string& name) {
+  require(antenna.position.allFinite(), name + ".position", "must be finite", antenna.position.transpose());
+  const double quaternion_norm = antenna.orientation.norm();
+  require(std::abs(quaternion_norm - 1.0) <= kUnitTolerance, name + ".orientation", "must have norm 1 within 1e-6",
+          quaternion_norm);
+  const double polarization_norm = antenna.polarization.norm();
+  require(std::abs(polarization_norm - 1.0) <= kUnitTolerance, name + ".polarization",
+          "must have norm 1 within 1e-6", polarization_norm);
+  require_positive(antenna.pattern.peak_gain, name + ".pattern.peak_gain");
+  const double exponent = antenna.pattern.exponent;
+  require(std::isfinite(exponent) && exponent >= 0.0, name + ".pattern.exponent", "must be finite and not negative",
+          exponent);
+}
+
+void validate_antennas(const std::vector<Antenna>& antennas, const std::string& name) {
+  require(!antennas.empty(), name, "must hold at least one antenna", antennas.size());
+  for (size_t i = 0; i < antennas.size(); ++i) validate_antenna(antennas[i], name + "[" + std::to_string(i) + "]");
+}
+
+void require_index(int index, int count, const char* name) {
+  if (index >= 0 && index < count) return;
+  throw std::out_of_range(std::string(name) + ": must be in [0, " + std::to_string(count) + "), got " +
+                          std::to_string(index));
+}
+
+}  // namespace
+
+void ChirpSequence::validate() const {
+  require_positive(start_frequency, "start_frequency");
+  require_positive(bandwidth, "bandwidth");
+  require(num_samples >= 1, "num_samples", "must be at least 1", num_samples);
+  require_positive(sampling_rate, "sampling_rate");
+  require(num_chirps >= 1, "num_chirps", "must be at least 1", num_chirps);
+  require_positive(chirp_interval, "chirp_interval");
+  require(chirp_interval >= chirp_duration() * (1.0 - kSlotTolerance), "chirp_interval",
+          "must be at least num_samples / sampling_rate = " + std::to_string(chirp_duration() * 1e6) + " us",
+          chirp_interval);
+}
+
+double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }
+
+double ChirpSequence::range_resolution() const { return kSpeedOfLight / (2.0 * bandwidth); }
+
+double ChirpSequence::max_range() const { return (real ? 0.5 : 1.0) * num_samples * range_resolution(); }
+
+double ChirpSequence::velocity_resolution(int num_slots) const {
+  require(num_slots >= 1, "num_slots", "must be at least 1", num_slots);
+  return wavelength() / (2.0 * num_chirps * num_slots * chirp_interval);
+}
+
+double ChirpSequence::max_velocity(int num_slots) const { return 0.5 * num_chirps * velocity_resolution(num_slots); }
+
+AntennaPattern AntennaPattern::isotropic(double gain) {
+  require_positive(gain, "gain");
+  return {Kind::kIsotropic, gain, 0.0};
+}
+
+AntennaPattern AntennaPattern::cosine_power(double exponent, double peak_gain) {
+  require(std::isfinite(exponent) && exponent >= 0.0, "exponent", "must be finite and not negative", exponent);
+  require(std::isfinite(peak_gain), "peak_gain", "must be finite", peak_gain);
+  return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : 2.0 * (exponent + 1.0), exponent};
+}
+
+double AntennaPattern::gain(double cos_boresight) const {
+  if (kind == Kind::kIsotropic) return peak_gain;
+  return cos_boresight > 0.0 ? peak_gain * std::pow(cos_boresight, exponent) : 0.0;
+}
+
+void Radar::validate() const {
+  waveform.validate();
+  validate_antennas(transmitters, "transmitters");
+  validate_antennas(receivers, "receivers");
+  require_positive(transmit_power, "transmit_power");
+  require(std::isfinite(noise_figure_db) && noise_figure_db >= 0.0, "noise_figure_db",
+          "must be finite and not negative", noise_figure_db);
+}
+
+Transform Radar::world_from_radar(double time) const { return motion ? motion->at(time) : Transform::Identity(); }
+
+double Radar::chirp_time(int tx, int chirp) const {
+  require_index(tx, num_slots(), "tx");
+  require_index(chirp, waveform.num_chirps, "chirp");
+  // One product of an exact integer: equal spacing up to one rounding, however long the frame.
+  const double slot = static_cast<double>(chirp) * num_slots() + tx;
+  return slot * waveform.chirp_interval + waveform.window_centre();
+}
+
+double Radar::frame_duration() const {
+  const double last_slot = static_cast<double>(waveform.num_chirps) * num_slots() - 1.0;
+  return last_slot * waveform.chirp_interval + (waveform.num_samples - 1) / waveform.sampling_rate;
+}
+
+}  // namespace echopath

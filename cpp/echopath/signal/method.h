@@ -1,0 +1,45 @@
+#pragma once
+// The ways to add many complex tones, behind one interface. A row holds the signal of one chirp, channel and group in
+// whatever form the method adds up quickest; `samples` turns it into time samples. All are linear: rows may be added.
+#include <complex>
+#include <cstdint>
+#include <memory>
+
+#include "echopath/signal/carrier.h"
+
+namespace echopath {
+
+// The rows of all groups at one chirp and channel: real parts of group g at first + g * stride, imaginary parts
+// `stride / 2` doubles later. Zero before the first echo.
+struct Rows {
+  double* first;
+  int64_t stride;
+};
+
+class ToneMethod {
+ public:
+  virtual ~ToneMethod() = default;
+  int64_t row_length() const { return row_length_; }             // doubles of the real part of a row
+  int reference_sample() const { return reference_sample_; }     // where carriers have their phase
+  // Adds the carriers in their order, each to the row of its group. Safe from several threads on different rows.
+  virtual void add(const Carriers& carriers, Rows rows) const = 0;
+  // Time samples [num_samples] of one row (2 * row_length() doubles), written to `out`.
+  virtual void samples(const double* row, std::complex<double>* out) const = 0;
+
+ protected:
+  ToneMethod(int64_t row_length, int reference_sample)
+      : row_length_(row_length), reference_sample_(reference_sample) {}
+
+ private:
+  int64_t row_length_;
+  int reference_sample_;
+};
+
+// Sine and cosine of every sample: the reference. Error 1e-13 of the sum of |a|.
+std::unique_ptr<const ToneMethod> make_direct(int num_samples);
+// Powers of e^{j 2 pi f} by multiplication, in blocks. Error 1e-13 of the sum of |a| at 512 samples, growing with their number.
+std::unique_ptr<const ToneMethod> make_recurrence(int num_samples);
+// Type-1 non-uniform FFT. Error below `tolerance` of the sum of |a|, for 1e-13 <= tolerance <= 0.1.
+std::unique_ptr<const ToneMethod> make_nufft(int num_samples, double tolerance);
+
+}  // namespace echopath

@@ -1,0 +1,65 @@
+#pragma once
+// IF synthesis: delays and amplitudes of echoes -> samples of every chirp, channel and group.
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/radar/radar.h"
+#include "echopath/signal/echoes.h"
+
+namespace echopath {
+
+class ToneMethod;
+struct CarrierModel;
+
+enum class Method { kAuto, kDirect, kRecurrence, kNufft };
+
+struct SynthesisOptions {
+  double tolerance = 1e-7;        // largest error of a sample, relative to the sum of |amplitude|; 1e-13 to 0.1
+  Method method = Method::kAuto;  // kAuto: recurrence for few echoes, else NUFFT; kDirect is the reference
+};
+
+// Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at the
+// sampling rate, or half of it for real samples).
+// Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once from the
+// number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same bits for any
+// number of threads. Echoes that do not move are added once, so a static scene gives bit-identical chirps.
+// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for channels with moving echoes.
+class Synthesizer {
+ public:
+  // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or tolerance.
+  Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
+              const SynthesisOptions& options = {});
+  ~Synthesizer();
+  Synthesizer(Synthesizer&&) noexcept;
+
+  Method method() const { return method_; }  // the one chosen, never kAuto
+
+  // Adds a block to a channel; parallel over chirps. Raises invalid_argument on wrong shapes, groups out of range, or values
+  // that are not finite; nothing is added then. The job's progress advances by the number of echoes; when it is cancelled,
+  // Cancelled is raised and the cubes are void.
+  void add(int channel, const Echoes& block, Job* job = nullptr);
+
+  // Samples [channel, chirp, sample] of one group so far, in sqrt(W).
+  std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
+
+ private:
+  struct ChannelRows {
+    std::vector<double> moving;  // [chirp, group, re/im, row_length]; empty until a moving echo comes
+    std::vector<double> still;   // [group, re/im, row_length], added to every chirp; empty likewise
+  };
+  void validate(int channel, const Echoes& block) const;
+  void add_rows(const Echoes& block, int first_chirp, int num_chirps, double* rows, Job* job) const;
+  void write_row(const double* row, std::complex<double>* out) const;
+
+  ChirpSequence waveform_;
+  int num_groups_;
+  Method method_;
+  std::unique_ptr<const ToneMethod> tones_;
+  std::unique_ptr<const CarrierModel> model_;
+  std::vector<ChannelRows> channels_;
+};
+
+}  // namespace echopath

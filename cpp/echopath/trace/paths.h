@@ -21,7 +21,7 @@ static_assert(sizeof(Hit) == 16);
 // One launch stratum: uniform directions in a cone.
 struct Stratum {
   Vec3 axis = Vec3::UnitX();   // unit, world axes
-  double cos_half_angle = -1;  // -1: whole sphere
+  double versine = 2.0;        // 1 - cos(half angle), exact for narrow cones; 2: whole sphere
   int64_t num_rays = 0;
   std::string name;            // what it aims at
 

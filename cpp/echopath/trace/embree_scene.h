@@ -1,0 +1,51 @@
+#pragma once
+// The posed triangles of a scene behind Embree; the only file pair that knows Embree and its versions.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/scene/scene.h"
+#include "echopath/trace/paths.h"
+
+namespace echopath {
+
+struct RayHit {
+  Hit hit;
+  Vec3 position;  // rebuilt in double from (u, v), relative to the origin
+  Vec3 normal;    // unit geometric normal, flipped against the ray
+  double distance = 0.0;  // m, along the ray
+};
+
+// Coordinates are relative to `origin` (world), so that single precision resolves the surroundings of the radar.
+// Thread-safe for queries.
+class EmbreeScene {
+ public:
+  // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build.
+  EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  enum class Verdict { kMiss, kHit, kFalseHit };
+  // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
+  // does not find on the ray (slivers near grazing); treated as lost.
+  Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
+  bool occluded(const Vec3& from, const Vec3& to) const;
+  // The point moved off its surface by a few units of single precision, so that it does not meet it again.
+  Vec3 lifted(const Vec3& point, const Vec3& normal) const;
+
+  std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const;
+  const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return vertices_[mesh_id]; }
+
+ private:
+  struct Device;
+  std::unique_ptr<Device> device_;
+  const Scene* scene_;
+  std::vector<std::vector<Vec3>> vertices_;  // by mesh ID, relative to the origin
+};
+
+}  // namespace echopath

@@ -1,0 +1,155 @@
+#include "echopath/trace/launch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/random.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kDefensiveShare = 0.15;
+constexpr size_t kMaxCones = 254;
+constexpr double kGoldenFraction = 0.61803398874989484820;
+
+struct Sphere {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;
+};
+
+Sphere bounding_sphere(const EmbreeScene& geometry, const std::vector<uint32_t>& mesh_ids) {
+  Eigen::AlignedBox3d box;
+  for (const uint32_t id : mesh_ids) {
+    for (const Vec3& vertex : geometry.vertices(id)) box.extend(vertex);
+  }
+  Sphere sphere{box.center(), 0.0};
+  for (const uint32_t id : mesh_ids) {
+    for (const Vec3& vertex : geometry.vertices(id)) sphere.radius = std::max(sphere.radius, (vertex - sphere.centre).norm());
+  }
+  return sphere;
+}
+
+Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name) {
+  const Vec3 line = sphere.centre - apex;
+  const double distance = line.norm();
+  const double sine = std::min(1.0, sphere.radius / distance);
+  Stratum stratum;
+  stratum.axis = line / distance;
+  // Without cancellation, and widened a little so that single precision loses no edge.
+  stratum.versine = std::min(2.0, sine * sine / (1.0 + std::sqrt(1.0 - sine * sine)) * (1.0 + 1e-4));
+  stratum.name = std::move(name);
+  return stratum;
+}
+
+bool image_is_in_reach(const Mirror& mirror, const Sphere& sphere, const Vec3& transmitter) {
+  const double antenna_side = mirror.signed_distance(transmitter);
+  const double object_side = mirror.signed_distance(sphere.centre);
+  return antenna_side != 0 && object_side * antenna_side > -std::abs(antenna_side) * sphere.radius;
+}
+
+// Meshes that are not mirrors, by child of the root.
+std::vector<std::pair<int, std::vector<uint32_t>>> objects_of(const Scene& scene) {
+  std::vector<std::pair<int, std::vector<uint32_t>>> objects;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (scene.node_of(id).material->mirror) continue;
+    const int object = scene.meshes()[id].object;
+    const auto found = std::find_if(objects.begin(), objects.end(), [&](const auto& entry) { return entry.first == object; });
+    if (found == objects.end()) {
+      objects.emplace_back(object, std::vector<uint32_t>{id});
+    } else {
+      found->second.push_back(id);
+    }
+  }
+  return objects;
+}
+
+struct Cones {
+  std::vector<Stratum> objects, images;
+};
+
+Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchSettings& settings) {
+  Cones cones;
+  for (const auto& [object, mesh_ids] : objects_of(scene)) {
+    const Sphere sphere = bounding_sphere(geometry, mesh_ids);
+    if ((sphere.centre - settings.transmitter).norm() <= sphere.radius) continue;
+    const std::string& name = scene.nodes()[static_cast<size_t>(object)].name;
+    cones.objects.push_back(cone_around(sphere, settings.transmitter, name));
+    if (!settings.with_images) continue;
+    for (const Mirror& mirror : mirrors) {
+      if (!image_is_in_reach(mirror, sphere, settings.transmitter)) continue;
+      const Sphere image{mirror.image(sphere.centre), sphere.radius};
+      cones.images.push_back(cone_around(image, settings.transmitter, name + " over " + scene.node_of(mirror.mesh_id).name));
+    }
+  }
+  return cones;
+}
+
+std::vector<Stratum> limited(Cones cones) {
+  const auto wider = [](const Stratum& a, const Stratum& b) { return a.versine > b.versine; };
+  if (cones.objects.size() > kMaxCones) {
+    std::stable_sort(cones.objects.begin(), cones.objects.end(), wider);
+    cones.objects.resize(kMaxCones);
+  }
+  std::vector<Stratum> strata = std::move(cones.objects);
+  if (strata.size() + cones.images.size() <= kMaxCones) {
+    strata.insert(strata.end(), cones.images.begin(), cones.images.end());
+  }
+  return strata;
+}
+
+void share_rays(LaunchPlan& plan, int64_t num_rays) {
+  const auto num_cones = static_cast<int64_t>(plan.strata.size()) - 1;
+  const auto aimed = num_cones > 0 ? static_cast<int64_t>(std::llround((1.0 - kDefensiveShare) * static_cast<double>(num_rays))) : 0;
+  plan.first_ray.assign(1, 0);
+  for (int64_t k = 0; k <= num_cones; ++k) {
+    const int64_t share = k < num_cones ? aimed * (k + 1) / num_cones - aimed * k / num_cones : num_rays - aimed;
+    plan.strata[static_cast<size_t>(k)].num_rays = share;
+    plan.first_ray.push_back(plan.first_ray.back() + share);
+  }
+}
+
+}  // namespace
+
+LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                       const LaunchSettings& settings) {
+  LaunchPlan plan;
+  plan.seed = settings.seed;
+  plan.strata = limited(aim(scene, geometry, mirrors, settings));
+  Stratum& defensive = plan.strata.emplace_back();
+  defensive.axis = settings.boresight;
+  defensive.versine = settings.field_versine;
+  defensive.name = "field of view";
+  share_rays(plan, settings.num_rays);
+  return plan;
+}
+
+int LaunchPlan::stratum_of(int64_t ray) const {
+  return static_cast<int>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) - first_ray.begin()) - 1;
+}
+
+Vec3 LaunchPlan::direction(int index, int64_t ray) const {
+  const Stratum& stratum = strata[static_cast<size_t>(index)];
+  const auto shift = uniform2(seed, Stream::kLaunchShift, static_cast<uint64_t>(index), 0);
+  const auto i = static_cast<double>(ray - first_ray[static_cast<size_t>(index)]);
+  const double height = std::fmod((i + 0.5) / static_cast<double>(stratum.num_rays) + shift[0], 1.0);
+  const double turn = std::fmod(i * kGoldenFraction + shift[1], 1.0);
+  const double versine = height * stratum.versine;  // the versine is what is uniform
+  const double sine = std::sqrt(versine * (2.0 - versine));
+  const Vec3 first = stratum.axis.unitOrthogonal();
+  const Vec3 second = stratum.axis.cross(first);
+  const Vec3 direction = (1.0 - versine) * stratum.axis +
+                         sine * (std::cos(kTwoPi * turn) * first + std::sin(kTwoPi * turn) * second);
+  return direction.normalized();
+}
+
+double LaunchPlan::ray_density(const Vec3& direction, int own) const {
+  double density = 0.0;
+  for (int k = 0; k < static_cast<int>(strata.size()); ++k) {
+    const Stratum& stratum = strata[static_cast<size_t>(k)];
+    if (stratum.num_rays > 0 && (k == own || stratum.contains(direction))) density += stratum.ray_density();
+  }
+  return density;
+}
+
+}  // namespace echopath

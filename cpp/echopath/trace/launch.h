@@ -1,0 +1,40 @@
+#pragma once
+// Where rays start: strata of directions and the low-discrepancy set inside each.
+#include <vector>
+
+#include "echopath/trace/mirrors.h"
+
+namespace echopath {
+
+// One cone around the bounding sphere of each object as seen from `transmitter`, one around its image in each mirror, and a
+// defensive stratum over the antenna's field of view. Objects are the children of the scene's root, without their mirrors,
+// whose bounding sphere does not hold the antenna. Objects and images share 85 % of the rays equally, the defensive stratum
+// has the rest (all, where there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
+// At most 255 strata: images are left out first, then the objects of the smallest solid angle.
+struct LaunchPlan {
+  std::vector<Stratum> strata;
+  std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
+  uint64_t seed = 0;
+
+  int stratum_of(int64_t ray) const;
+  // Unit direction of a ray: spherical Fibonacci points in the stratum's cone under one random shift per stratum
+  // (Cranley-Patterson).
+  Vec3 direction(int stratum, int64_t ray) const;
+  // Expected rays per sr toward `direction`, of all strata together (balance heuristic). `own`: a stratum that is counted
+  // in any case, -1 for none: a ray at the rim of its cone must not fall out of it by rounding.
+  double ray_density(const Vec3& direction, int own = -1) const;
+};
+
+struct LaunchSettings {
+  int64_t num_rays = 0;
+  uint64_t seed = 0;
+  bool with_images = true;
+  Vec3 transmitter = Vec3::Zero();
+  Vec3 boresight = Vec3::UnitX();
+  double field_versine = 2.0;
+};
+
+LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                       const LaunchSettings& settings);
+
+}  // namespace echopath

@@ -1,0 +1,82 @@
+#include "echopath/trace/path_block.h"
+
+#include <algorithm>
+
+namespace echopath {
+
+void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
+                           int path_stratum) {
+  offsets.push_back(offset);
+  num_bounces.push_back(static_cast<uint8_t>(count));
+  diffuse.push_back(diffuse_bits);
+  weight.emplace_back(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
+  stratum.push_back(static_cast<uint8_t>(path_stratum));
+}
+
+void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
+  add_record(static_cast<int64_t>(hits.size()), count, diffuse_bits, path_weight, path_stratum);
+  hits.insert(hits.end(), first, first + count);
+}
+
+void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
+                           int path_stratum) {
+  pending_.push_back(offsets.size());
+  used_depth_ = std::max(used_depth_, skipped + count);
+  add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
+}
+
+void PathBlock::end_ray(const Hit* ray_hits) {
+  const auto base = static_cast<int64_t>(hits.size());
+  hits.insert(hits.end(), ray_hits, ray_hits + used_depth_);
+  for (const size_t path : pending_) offsets[path] += base;
+  pending_.clear();
+  used_depth_ = 0;
+}
+
+namespace {
+
+void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
+  total.num_queries += part.num_queries;
+  total.num_hits += part.num_hits;
+  total.num_near_antenna += part.num_near_antenna;
+  total.num_grazing += part.num_grazing;
+  total.num_false_hits += part.num_false_hits;
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& part) {
+  all.insert(all.end(), part.begin(), part.end());
+}
+
+}  // namespace
+
+void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
+  size_t num_hits = 0, num_paths = 0;
+  for (const PathBlock& block : blocks) {
+    num_hits += block.hits.size();
+    num_paths += block.offsets.size();
+  }
+  auto hits = std::make_shared<std::vector<Hit>>();
+  hits->reserve(num_hits);
+  paths.offsets.reserve(num_paths);
+  paths.num_bounces.reserve(num_paths);
+  paths.diffuse.reserve(num_paths);
+  paths.weight.reserve(num_paths);
+  paths.stratum.reserve(num_paths);
+  for (PathBlock& block : blocks) {
+    const auto base = static_cast<int64_t>(hits->size());
+    append(*hits, block.hits);
+    for (const int64_t offset : block.offsets) paths.offsets.push_back(base + offset);
+    append(paths.num_bounces, block.num_bounces);
+    append(paths.diffuse, block.diffuse);
+    append(paths.weight, block.weight);
+    append(paths.stratum, block.stratum);
+    add_statistics(paths.frame.statistics, block.statistics);
+    block = PathBlock();  // frees it: the peak stays near one copy of the record
+  }
+  paths.batch.assign(num_paths, 0);
+  paths.flags.assign(num_paths, 0);
+  paths.hits = std::move(hits);
+}
+
+}  // namespace echopath

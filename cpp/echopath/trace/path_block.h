@@ -1,0 +1,36 @@
+#pragma once
+// What one chunk of rays records; chunks are joined in their order.
+#include <vector>
+
+#include "echopath/trace/paths.h"
+
+namespace echopath {
+
+class PathBlock {
+ public:
+  std::vector<Hit> hits;
+  std::vector<int64_t> offsets;  // relative to this block
+  std::vector<uint8_t> num_bounces;
+  std::vector<uint64_t> diffuse;
+  std::vector<std::complex<float>> weight;
+  std::vector<uint8_t> stratum;
+  TraceStatistics statistics;
+
+  // A path with hits of its own.
+  void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+  // A path over hits [skipped, skipped + count) of the current ray, which all such paths share.
+  void add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+  // Stores the hits of the current ray as far as its paths use them.
+  void end_ray(const Hit* ray_hits);
+
+ private:
+  void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+
+  std::vector<size_t> pending_;  // paths of the current ray whose offset is still relative to the ray
+  int used_depth_ = 0;
+};
+
+// Joins blocks in order into `paths` (hits and path arrays only), freeing each block.
+void join_blocks(std::vector<PathBlock>& blocks, Paths& paths);
+
+}  // namespace echopath

@@ -1,0 +1,251 @@
+#include "echopath/trace/sbr.h"
+
+#include <array>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/random.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kGrazing = 1e-3;      // cosine below which a hit is dropped
+constexpr double kNearAntenna = 1e-3;  // m
+constexpr int kDirect = -1;            // transmit chains, besides the index of a mirror
+constexpr int kOther = -2;
+
+Vec3 cosine_lobe(const Vec3& normal, const std::array<double, 2>& random) {
+  const double sine = std::sqrt(random[0]);
+  const Vec3 first = normal.unitOrthogonal();
+  const Vec3 second = normal.cross(first);
+  return (std::sqrt(1.0 - random[0]) * normal + sine * std::cos(kTwoPi * random[1]) * first +
+          sine * std::sin(kTwoPi * random[1]) * second)
+      .normalized();
+}
+
+}  // namespace
+
+struct RayShooter::Ray {
+  int64_t index = 0;
+  int stratum = 0;
+  Vec3 from, direction, launch_direction;
+  std::array<Hit, 64> hits;
+  int depth = 0;              // hits so far
+  uint64_t diffuse = 0;       // bit per hit
+  bool coherent = true;       // regime C
+  int chain = kDirect;        // how the transmitter was left: directly, over one mirror, otherwise
+  double chain_share = 1.0;   // s_m^2 of that mirror
+  // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
+  // probabilities included.
+  double leg_length = 0.0, leg_density = 0.0;
+  std::complex<double> field = 1.0;        // product of Gamma s / q; regime C
+  std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
+  double area = 1.0;                       // product of the material areas of the diffuse anchors
+};
+
+struct RayShooter::Surface {
+  RayHit point;
+  const Material* material = nullptr;
+  double cos_incidence = 0.0;
+  SurfaceResponse response;
+  double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+};
+
+struct RayShooter::Scratch {
+  std::vector<Leg> transmit, receive;
+};
+
+RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                       const LaunchPlan& plan, const SbrSettings& settings)
+    : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), settings_(settings),
+      legs_(geometry, mirrors, settings.frequency, settings.polarization), mirror_of_mesh_(scene.meshes().size(), -1) {
+  for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
+}
+
+void RayShooter::shoot(int64_t index, PathBlock& block) const {
+  Ray ray;
+  ray.index = index;
+  ray.stratum = plan_.stratum_of(index);
+  ray.from = settings_.transmitter;
+  ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
+  ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
+  thread_local Scratch scratch;
+  Surface surface;
+  while (ray.depth < settings_.max_bounces && advance(ray, surface, block)) {
+    connect(ray, surface, scratch, block);
+    if (!bounce(ray, surface)) break;
+  }
+  block.end_ray(ray.hits.data());
+}
+
+bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
+  ++block.statistics.num_queries;
+  const EmbreeScene::Verdict verdict = geometry_.intersect(ray.from, ray.direction, surface.point);
+  if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
+  if (verdict != EmbreeScene::Verdict::kHit) return false;
+  surface.cos_incidence = -surface.point.normal.dot(ray.direction);
+  if (surface.cos_incidence < kGrazing) {
+    ++block.statistics.num_grazing;
+    return false;
+  }
+  ++block.statistics.num_hits;
+  ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
+  ray.leg_length += surface.point.distance;
+  surface.material = scene_.node_of(surface.point.hit.mesh_id).material.get();
+  surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence,
+                             polarization_mode(settings_.polarization, ray.direction, surface.point.normal));
+  surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
+  return true;
+}
+
+void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
+  const Vec3& point = surface.point.position;
+  if ((point - settings_.receiver).norm() < kNearAntenna || (point - settings_.transmitter).norm() < kNearAntenna) {
+    ++block.statistics.num_near_antenna;
+    return;
+  }
+  const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
+  const bool radiates_power = surface.response.diffuse > 0;
+  if (!radiates_field && !radiates_power) return;
+  legs_.find(point, surface.point.normal, settings_.receiver, ray.depth < settings_.max_bounces, kOther, scratch.receive,
+             block.statistics.num_queries);
+  if (scratch.receive.empty()) return;
+  if (radiates_field) connect_coherent(ray, surface, scratch, block);
+  if (!radiates_power) return;
+  if (ray.coherent && ray.chain != kOther) {
+    connect_all_pairs(ray, surface, scratch, block);
+  } else {
+    connect_diffuse(ray, surface, scratch, block);
+  }
+}
+
+void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
+  // `field` holds 1/q for each bounce, the area of the launch alone must not: hence field and not coefficient, and the
+  // density without the probabilities.
+  const double launch_area = ray.leg_length * ray.leg_length /
+                             (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
+  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field * surface.response.gamma *
+                                      surface.response.coherent * launch_area;
+  std::array<Hit, 65> hits;
+  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
+  for (const Leg& leg : scratch.receive) {
+    if (leg.mirror < 0) {
+      block.add_prefix(0, ray.depth, 0, weight, ray.stratum);
+    } else {
+      hits[static_cast<size_t>(ray.depth)] = leg.mirror_hit;
+      block.add(hits.data(), ray.depth + 1, 0, weight * leg.gain, ray.stratum);
+    }
+  }
+}
+
+void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
+  const double magnitude = std::sqrt(ray.area * surface.area) * std::abs(surface.response.gamma) * surface.response.diffuse;
+  const std::complex<double> weight = ray.coefficient * magnitude * phase_factor(ray);
+  const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
+  std::array<Hit, 65> hits;
+  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
+  for (const Leg& leg : scratch.receive) {
+    if (leg.mirror < 0) {
+      block.add_prefix(0, ray.depth, bits, weight, ray.stratum);
+    } else {
+      hits[static_cast<size_t>(ray.depth)] = leg.mirror_hit;
+      block.add(hits.data(), ray.depth + 1, bits, weight * leg.gain, ray.stratum);
+    }
+  }
+}
+
+Leg RayShooter::own_leg(const Ray& ray) const {
+  Leg leg;
+  leg.mirror = ray.chain;
+  leg.length = ray.leg_length;
+  leg.to_antenna = -ray.direction;
+  leg.at_antenna = ray.launch_direction;
+  leg.gain = ray.coefficient;
+  leg.specular_share = ray.chain_share;
+  leg.mirror_hit = ray.hits[0];
+  return leg;
+}
+
+// The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here.
+double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const {
+  double hits_per_area = 0.0;
+  for (const Leg& leg : legs) {
+    const int own_stratum = leg.mirror == ray.chain ? ray.stratum : -1;
+    hits_per_area += plan_.ray_density(leg.at_antenna, own_stratum) * leg.specular_share *
+                     surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
+  }
+  return 1.0 / hits_per_area;
+}
+
+void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
+  legs_.find(surface.point.position, surface.point.normal, settings_.transmitter, settings_.max_bounces > 1, ray.chain,
+             scratch.transmit, block.statistics.num_queries);
+  std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
+  scratch.transmit.push_back(own_leg(ray));
+  const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
+  const std::complex<double> phase = phase_factor(ray);
+
+  for (const Leg& in : scratch.transmit) {
+    const Vec3 arrival = -in.to_antenna;
+    const SurfaceResponse response =
+        respond(*surface.material, settings_.frequency, surface.point.normal.dot(in.to_antenna),
+                polarization_mode(settings_.polarization, arrival, surface.point.normal));
+    const std::complex<double> weight = root_area * std::abs(response.gamma) * response.diffuse * in.gain * phase;
+    const int first = in.mirror >= 0 ? 1 : 0;
+    const uint64_t bits = uint64_t{1} << first;
+    for (const Leg& out : scratch.receive) {
+      const int count = first + 1 + (out.mirror >= 0 ? 1 : 0);
+      if (count > settings_.max_bounces) continue;
+      if (out.mirror < 0 && in.mirror == ray.chain) {
+        block.add_prefix(0, count, bits, weight, ray.stratum);
+      } else if (out.mirror < 0 && in.mirror < 0) {
+        block.add_prefix(ray.depth - 1, count, bits, weight, ray.stratum);
+      } else {
+        std::array<Hit, 3> hits{in.mirror_hit};
+        hits[static_cast<size_t>(first)] = surface.point.hit;
+        if (out.mirror >= 0) hits[static_cast<size_t>(first + 1)] = out.mirror_hit;
+        block.add(hits.data(), count, bits, weight * out.gain, ray.stratum);
+      }
+    }
+  }
+}
+
+bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
+  const SurfaceResponse& response = surface.response;
+  const double specular_share = response.coherent * response.coherent, diffuse_share = response.diffuse * response.diffuse;
+  const auto dimension = static_cast<uint32_t>(2 * ray.depth);
+  bool specular = diffuse_share == 0;
+  if (specular_share > 0 && diffuse_share > 0) {
+    specular = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension)[0] < specular_share;
+  }
+  const Vec3& normal = surface.point.normal;
+  ray.from = geometry_.lifted(surface.point.position, normal);
+  if (specular) {
+    ray.direction = (ray.direction + 2.0 * surface.cos_incidence * normal).normalized();
+    ray.field *= response.gamma * response.coherent / specular_share;
+    ray.coefficient *= response.gamma * response.coherent;
+    ray.leg_density *= specular_share;
+    const int mirror = mirror_of_mesh_[surface.point.hit.mesh_id];
+    ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
+    ray.chain_share = specular_share;
+  } else {
+    ray.coefficient *= std::abs(response.gamma) * response.diffuse;
+    ray.area *= surface.area;
+    ray.diffuse |= uint64_t{1} << (ray.depth - 1);
+    ray.coherent = false;
+    ray.chain = kOther;
+    const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension + 1);
+    ray.direction = cosine_lobe(normal, random);
+    ray.leg_length = 0.0;
+    ray.leg_density = diffuse_share * std::max(normal.dot(ray.direction), 1e-9) / kPi;
+  }
+  return std::norm(ray.coefficient) > 0;
+}
+
+std::complex<double> RayShooter::phase_factor(const Ray& ray) const {
+  const double turn = uniform2(settings_.seed, Stream::kPhase, static_cast<uint64_t>(ray.index),
+                               static_cast<uint32_t>(ray.depth))[0];
+  return std::polar(1.0, kTwoPi * turn);
+}
+
+}  // namespace echopath

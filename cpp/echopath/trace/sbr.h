@@ -1,0 +1,55 @@
+#pragma once
+// Shooting and bouncing one ray: both transport regimes, a connection to the receiver at every hit.
+//
+// Regime C (coherent): the ray carries a field, and each unflagged hit radiates by physical optics over every visible
+// receive leg. Regime D (diffuse): the ray carries power with one random phase per diffuse hit. A diffuse hit that the ray
+// reached directly or over one flagged mirror is paired with all its visible transmit and receive legs, under the balance
+// weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only; paths over mirrors alone
+// come from mirror_paths.h.
+// Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
+#include "echopath/trace/launch.h"
+#include "echopath/trace/path_block.h"
+
+namespace echopath {
+
+struct SbrSettings {
+  int max_bounces = 4;
+  uint64_t seed = 0;
+  double frequency = 77e9;                   // Hz
+  Vec3 transmitter = Vec3::Zero();           // relative to the trace origin, as the receiver
+  Vec3 receiver = Vec3::Zero();
+  Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
+};
+
+class RayShooter {
+ public:
+  RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchPlan& plan,
+             const SbrSettings& settings);
+  // Traces ray number `ray` of the plan and appends its paths. Thread-safe for different blocks.
+  void shoot(int64_t ray, PathBlock& block) const;
+
+ private:
+  struct Ray;      // what the ray carries
+  struct Surface;  // where it is
+  struct Scratch;
+
+  bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
+  void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
+  void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
+  void connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  Leg own_leg(const Ray& ray) const;
+  double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
+  bool bounce(Ray& ray, const Surface& surface) const;
+  std::complex<double> phase_factor(const Ray& ray) const;
+
+  const Scene& scene_;
+  const EmbreeScene& geometry_;
+  const std::vector<Mirror>& mirrors_;
+  const LaunchPlan& plan_;
+  SbrSettings settings_;
+  LegFinder legs_;
+  std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
+};
+
+}  // namespace echopath

@@ -1,0 +1,23 @@
+#pragma once
+// The trace: scene and radar at mid-frame -> paths.
+#include "echopath/base/job.h"
+#include "echopath/trace/paths.h"
+
+namespace echopath {
+
+struct TraceSettings {
+  int64_t num_rays = 1000000;
+  int max_bounces = 4;          // 1 to 64; hits on mirrors count
+  uint64_t seed = 1;
+  double start_time = 0.0;      // s, first sample of the frame
+  bool footprint_filter = true; // F of the ray tube on coherent contributions, applied in replay
+
+  void validate() const;  // raises invalid_argument naming the field, the rule and the value
+};
+
+// Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
+// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings,
+// a radar without antennas, a mirror that is not flat, or a motion that does not cover the frame; DeviceError; Cancelled.
+Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
+
+}  // namespace echopath

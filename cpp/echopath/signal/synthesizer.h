@@ -17,7 +17,7 @@ struct CarrierModel;
 enum class Method { kAuto, kDirect, kRecurrence, kNufft };
 
 struct SynthesisOptions {
-  double tolerance = 1e-7;        // largest error of a sample, relative to the sum of |amplitude|; 1e-13 to 0.1
+  double tolerance = 1e-7;        // rms error over the samples, relative to the sum of |amplitude|; 1e-13 to 0.1
   Method method = Method::kAuto;  // kAuto: recurrence for few echoes, else NUFFT; kDirect is the reference
 };
 

@@ -1,0 +1,30 @@
+#pragma once
+// The spreading kernel of the NUFFT: "exponential of semicircle" (Barnett, Magland, af Klinteberg 2019),
+//   phi(u) = exp(beta (sqrt(1 - (2 u / width)^2) - 1)) for |u| <= width / 2 grid cells,
+// each of its unit pieces as a polynomial.
+#include <vector>
+
+namespace echopath {
+
+struct NufftKernel {
+  static constexpr int kMinWidth = 3;
+  static constexpr int kMaxWidth = 16;
+  static constexpr int degree(int width) { return width + 3; }
+  // Values per coefficient row: whole vectors; the values beyond the width are zero.
+  static constexpr int padded(int width) { return width <= 8 ? 8 : 16; }
+
+  // The narrowest kernel on a grid of twice the samples whose rms error over the samples of any tone stays below `tolerance`
+  // of its amplitude.
+  static int width_for(double tolerance);
+
+  explicit NufftKernel(int kernel_width);
+  // Fourier transform at `cycles` per grid cell.
+  double transform(double cycles) const;
+
+  int width;
+  double beta;
+  // [degree + 1, padded], highest power first: value i at t in [-1, 1] is phi(i - width / 2 + (t + 1) / 2).
+  std::vector<double> coefficients;
+};
+
+}  // namespace echopath

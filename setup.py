@@ -35,10 +35,8 @@ class BuildWithCMake(build_ext):
         subprocess.run(["cmake", "--build", str(build_dir), "--target", "_core", "--parallel", str(os.cpu_count())],
                        check=True)
         target.parent.mkdir(parents=True, exist_ok=True)
-        # A running program may have the old file mapped: put the new one in its place instead of writing into it.
-        fresh = target.with_suffix(".new")
-        shutil.copy2(build_dir / "python" / "bindings" / target.name, fresh)
-        os.replace(fresh, target)
+        target.unlink(missing_ok=True)  # a running program may have the old file mapped: never write into it
+        shutil.copy2(build_dir / "python" / "bindings" / target.name, target)
 
 
 setup(

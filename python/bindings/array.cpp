@@ -35,7 +35,9 @@ bool fits(const py::array& array, const Shape& shape) {
   return true;
 }
 
-std::string description(const py::array& array) {
+// What came: "float64 [5, 2]", or the type of what is no array at all.
+std::string description(py::handle value, const py::array& array) {
+  if (!array || array.ndim() == 0) return Py_TYPE(value.ptr())->tp_name;
   std::ostringstream text;
   text << std::string(py::str(array.dtype())) << " [";
   for (py::ssize_t k = 0; k < array.ndim(); ++k) text << (k ? ", " : "") << array.shape(k);
@@ -45,9 +47,11 @@ std::string description(const py::array& array) {
 
 std::string rule(std::string_view argument, std::string_view shape, std::string_view what) {
   std::ostringstream text;
-  text << argument << ": must be " << (shape == "[]" ? "a single value" : "an array ");
-  if (shape != "[]") text << shape;
-  text << " of " << what << ", got ";
+  if (shape == "[]") {
+    text << argument << ": must be a single value (" << what << "), got ";
+  } else {
+    text << argument << ": must be an array " << shape << " of " << what << ", got ";
+  }
   return text.str();
 }
 
@@ -84,12 +88,12 @@ py::array array_of_kind(py::handle value, std::string_view argument, std::string
   const py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(rule(argument, shape, what) + Py_TYPE(value.ptr())->tp_name);
+    throw py::type_error(rule(argument, shape, what) + description(value, array));
   }
   // An empty list has no kind of its own.
   if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string_view::npos)
-    throw py::type_error(rule(argument, shape, what) + description(array));
-  if (!fits(array, parse_shape(shape))) throw py::value_error(rule(argument, shape, what) + description(array));
+    throw py::type_error(rule(argument, shape, what) + description(value, array));
+  if (!fits(array, parse_shape(shape))) throw py::value_error(rule(argument, shape, what) + description(value, array));
   return array;
 }
 

@@ -1,0 +1,128 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 machine (as root, or with sudo) to a running echopath. Safe to call again: only what is missing or has
+# changed is done.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libembree-dev libopenmesh-dev libtinyobjloader-dev
+  libeigen3-dev libfftw3-dev libtbb-dev libgtest-dev)
+# A Qt window with OpenGL on a virtual screen, for the tests of the viewer.
+viewer_packages=(xvfb xauth libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
+  libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
+build_dir=$PWD/build/default
+python=.venv/bin/python
+
+usage() {
+  cat <<'TEXT'
+usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> out/demo/ (OPTIONS go to `echopath demo`)
+       ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest)
+TEXT
+}
+
+say() { printf '\n== %s\n' "$*"; }
+fail() { printf 'bootstrap.sh: %s\n' "$*" >&2; exit 1; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then env DEBIAN_FRONTEND=noninteractive "$@"
+  elif command -v sudo >/dev/null; then sudo DEBIAN_FRONTEND=noninteractive "$@"
+  else fail "please run this as root, or install sudo: $*"
+  fi
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+install_packages() {
+  local missing=() package
+  if ! command -v dpkg-query >/dev/null; then
+    echo "This is not Debian: going on, in the hope that these are there under other names: $*"
+    return
+  fi
+  for package in "$@"; do is_installed "$package" || missing+=("$package"); done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  say "installing ${#missing[@]} Debian packages: ${missing[*]}"
+  as_root apt-get update -qq
+  as_root apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+make_environment() {
+  [ -x "$python" ] && "$python" -m pip --version >/dev/null 2>&1 && return
+  local candidate
+  for candidate in "${PYTHON:-python3}" /usr/bin/python3; do
+    "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || continue
+    say "making the virtual environment .venv"
+    "$candidate" -m venv --clear .venv
+    return
+  done
+  fail "no Python 3.11 or later was found; name one with PYTHON=..."
+}
+
+# Installs the project editable, so that changes of its Python code are seen at once; later calls only rebuild the extension.
+# CMake's folder is shared with the C++ tests: the core is compiled once.
+install_project() {
+  local extras=$1 hash
+  export ECHOPATH_BUILD_DIR=$build_dir CMAKE_ARGS="--preset default -DECHOPATH_BUILD_TESTS=ON ${CMAKE_ARGS:-}"
+  hash=$(cat setup.py pyproject.toml | sha256sum | cut -c1-12)
+  if compgen -G ".venv/installed-$hash-$extras*" >/dev/null; then
+    say "building what has changed"
+    "$python" setup.py -q build_ext --inplace
+    return
+  fi
+  say "installing echopath into .venv and building it (some minutes the first time)"
+  "$python" -m pip install -q --disable-pip-version-check 'setuptools>=77' 'pybind11>=2.11'
+  "$python" -m pip install -q --disable-pip-version-check --no-build-isolation -e ".${extras:+[$extras]}"
+  touch ".venv/installed-$hash-$extras"
+}
+
+prepare() {
+  local extras=$1
+  shift
+  install_packages "$@"
+  make_environment
+  install_project "$extras"
+}
+
+has_viewer_tests() { compgen -G 'tests/viewer/test_*.py' >/dev/null; }
+
+run_pytest() {
+  if has_viewer_tests; then
+    QT_API=pyside6 xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/python tests/viewer "$@"
+  else
+    "$python" -m pytest tests/python "$@"
+  fi
+}
+
+run_tests() {
+  local cpp_status=0 python_status=0
+  say "building the C++ tests"
+  cmake --build "$build_dir" --parallel "$(nproc)"
+  say "C++ tests"
+  ctest --test-dir "$build_dir" --output-on-failure 2>&1 | tee "$build_dir/ctest.log" || cpp_status=$?
+  say "Python tests"
+  run_pytest "$@" 2>&1 | tee "$build_dir/pytest.log" || python_status=$?
+  say "results"
+  printf 'ctest:  %s\n' "$(grep 'tests passed' "$build_dir/ctest.log" || echo "ended with $cpp_status")"
+  printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log")"
+  [ "$cpp_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
+}
+
+verb=${1:-}
+[ $# -eq 0 ] || shift
+case $verb in
+  demo)
+    prepare "" "${packages[@]}"
+    say "the demo"
+    exec .venv/bin/echopath demo "$@"
+    ;;
+  test)
+    if has_viewer_tests; then prepare test,viewer "${packages[@]}" "${viewer_packages[@]}"
+    else prepare test "${packages[@]}"
+    fi
+    run_tests "$@"
+    ;;
+  -h | --help | help) usage ;;
+  *)
+    [ -z "$verb" ] || printf "bootstrap.sh: there is no verb '%s'\n" "$verb" >&2
+    usage >&2
+    exit 2
+    ;;
+esac

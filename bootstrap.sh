@@ -56,28 +56,32 @@ make_environment() {
   fail "no Python 3.11 or later was found; name one with PYTHON=..."
 }
 
-# Installs the project editable, so that changes of its Python code are seen at once; later calls only rebuild the extension.
 # CMake's folder is shared with the C++ tests: the core is compiled once.
+build_extension() {
+  export ECHOPATH_BUILD_DIR=$build_dir CMAKE_ARGS="--preset default -DECHOPATH_BUILD_TESTS=ON ${CMAKE_ARGS:-}"
+  "$python" -c 'import setuptools, pybind11' 2>/dev/null || pip_install 'setuptools>=77' 'pybind11>=2.11'
+  say "building the core (minutes the first time, seconds later)"
+  "$python" setup.py -q build_ext --inplace
+}
+
+# Installs the project editable, so that changes of its Python code are seen at once.
 install_project() {
   local extras=$1 hash
-  export ECHOPATH_BUILD_DIR=$build_dir CMAKE_ARGS="--preset default -DECHOPATH_BUILD_TESTS=ON ${CMAKE_ARGS:-}"
   hash=$(cat setup.py pyproject.toml | sha256sum | cut -c1-12)
-  if compgen -G ".venv/installed-$hash-$extras*" >/dev/null; then
-    say "building what has changed"
-    "$python" setup.py -q build_ext --inplace
-    return
-  fi
-  say "installing echopath into .venv and building it (some minutes the first time)"
-  "$python" -m pip install -q --disable-pip-version-check 'setuptools>=77' 'pybind11>=2.11'
-  "$python" -m pip install -q --disable-pip-version-check --no-build-isolation -e ".${extras:+[$extras]}"
+  compgen -G ".venv/installed-$hash-$extras*" >/dev/null && return
+  say "installing echopath into .venv"
+  pip_install --no-build-isolation -e ".${extras:+[$extras]}"
   touch ".venv/installed-$hash-$extras"
 }
+
+pip_install() { "$python" -m pip install -q --disable-pip-version-check "$@"; }
 
 prepare() {
   local extras=$1
   shift
   install_packages "$@"
   make_environment
+  build_extension
   install_project "$extras"
 }
 

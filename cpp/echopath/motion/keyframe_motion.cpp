@@ -7,8 +7,10 @@
 namespace echopath {
 namespace {
 
-// Quaternions typed with four digits pass; they are normalised. Anything farther off is a mistake (another order, degrees).
-constexpr double kUnitTolerance = 1e-3;
+// Anything farther from length 1 is a mistake: another convention, or angles.
+constexpr double kUnitTolerance = 1e-6;
+// Nearer to length 1 than this a quaternion is left alone, so that saved ones keep their bits.
+constexpr double kUnitRounding = 1e-14;
 
 void check_translations(const std::vector<Vec3>& translations, size_t num_times) {
   if (translations.empty()) return;
@@ -23,7 +25,7 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
   for (size_t i = 0; i < rotations.size(); ++i) {
     const double norm = rotations[i].norm();
     require(std::abs(norm - 1.0) <= kUnitTolerance, "rotations", "must be unit quaternions (w, x, y, z); norm", norm);
-    rotations[i].coeffs() /= norm;
+    if (std::abs(norm - 1.0) > kUnitRounding) rotations[i].coeffs() /= norm;
     if (i > 0 && rotations[i].dot(rotations[i - 1]) < 0.0) rotations[i].coeffs() *= -1.0;
   }
   return rotations;

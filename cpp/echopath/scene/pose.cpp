@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "echopath/scene/scene.h"
 
 namespace echopath {
@@ -23,7 +25,24 @@ std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
   return result;
 }
 
+std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> points) {
+  for (Vec3& point : points) point = transform * point;
+  return points;
+}
+
 }  // namespace
+
+std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time) {
+  const Node& node = scene.node_of(mesh_id);
+  Transform world_from_mesh = Transform::Identity();
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
+    world_from_mesh = parent_from_node(scene.nodes()[static_cast<size_t>(i)], time) * world_from_mesh;
+  }
+  if (!node.sequence) return transformed(world_from_mesh, node.mesh->vertices());
+  std::vector<Vec3> vertices;
+  node.sequence->at(time, node.mesh->original_vertex(), vertices);
+  return transformed(world_from_mesh, std::move(vertices));
+}
 
 Pose::Pose(const Scene& scene, double time) : scene_(&scene), time_(time) {
   const std::vector<Transform> world_from_node = world_from_nodes(scene, time);
@@ -43,10 +62,7 @@ const std::vector<Vec3>& Pose::local_vertices(uint32_t mesh_id) const {
 }
 
 std::vector<Vec3> Pose::world_vertices(uint32_t mesh_id) const {
-  const Transform& world_from_mesh = world_from_mesh_[mesh_id];
-  std::vector<Vec3> vertices = local_vertices(mesh_id);
-  for (Vec3& vertex : vertices) vertex = world_from_mesh * vertex;
-  return vertices;
+  return transformed(world_from_mesh_[mesh_id], local_vertices(mesh_id));
 }
 
 std::array<Vec3, 3> Pose::world_triangle(uint32_t mesh_id, uint32_t triangle_id) const {

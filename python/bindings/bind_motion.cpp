@@ -1,0 +1,149 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "array.h"
+#include "echopath/base/errors.h"
+#include "echopath/motion/motion.h"
+#include "keywords.h"
+
+namespace echopath::bindings {
+namespace {
+
+Interpolation as_interpolation(const std::string& name) {
+  require(name == "cubic" || name == "linear", "interpolation", "must be 'cubic' or 'linear'", "'" + name + "'");
+  return name == "cubic" ? Interpolation::kCubic : Interpolation::kLinear;
+}
+
+const char* name_of(Interpolation interpolation) { return interpolation == Interpolation::kCubic ? "cubic" : "linear"; }
+
+py::tuple as_tuple(const TimeSpan& span) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TimeSpan whole;
+  return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin, span.end >= whole.end ? kInfinity : span.end);
+}
+
+std::string description(const char* kind, const TimeSpan& span, size_t num_times, Interpolation interpolation) {
+  std::ostringstream text;
+  text << kind << "(" << num_times << " times, " << span.begin << " to " << span.end << " s, " << name_of(interpolation)
+       << ")";
+  return text.str();
+}
+
+std::shared_ptr<LinearMotion> linear_motion(const py::object& velocity, const py::object& angular_velocity,
+                                            const py::kwargs& unknown) {
+  refuse_unknown(unknown, "LinearMotion", {"velocity", "angular_velocity"});
+  return std::make_shared<LinearMotion>(as_vec3(velocity, "velocity"), as_vec3(angular_velocity, "angular_velocity"));
+}
+
+std::shared_ptr<KeyframeMotion> keyframe_motion(const py::object& times, const py::object& translations,
+                                                const py::object& rotations, const std::string& interpolation,
+                                                const py::kwargs& unknown) {
+  refuse_unknown(unknown, "KeyframeMotion", {"times", "translations", "rotations", "interpolation"});
+  return std::make_shared<KeyframeMotion>(
+      as_vector<double>(times, "times"),
+      translations.is_none() ? std::vector<Vec3>{} : as_points(translations, "translations"),
+      rotations.is_none() ? std::vector<Quaternion>{} : as_quaternions(rotations, "rotations"),
+      as_interpolation(interpolation));
+}
+
+std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const py::object& vertices,
+                                                const std::string& interpolation, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "VertexSequence", {"times", "vertices", "interpolation"});
+  std::vector<double> seconds = as_vector<double>(times, "times");
+  std::vector<std::vector<Vec3>> frames = as_frames(vertices, "vertices");
+  const Interpolation kind = as_interpolation(interpolation);
+  const py::gil_scoped_release release;
+  return std::make_shared<VertexSequence>(std::move(seconds), std::move(frames), kind);
+}
+
+void bind_motions(py::module_& m) {
+  py::class_<Motion, std::shared_ptr<Motion>>(
+      m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.")
+      .def("at", [](const Motion& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
+           "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.")
+      .def_property_readonly("breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
+                             "Times [N] in s, ascending, where the motion is not smooth.")
+      .def_property_readonly("span", [](const Motion& self) { return as_tuple(self.span()); },
+                             "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+
+  py::class_<LinearMotion, Motion, std::shared_ptr<LinearMotion>>(m, "LinearMotion", R"(Constant velocity and rotation.
+
+velocity: [3] in m/s
+angular_velocity: [3] in rad/s, right-handed about its own direction
+Raises ValueError for values that are not finite.)")
+      .def(py::init(&linear_motion), py::arg("velocity") = py::make_tuple(0.0, 0.0, 0.0),
+           py::arg("angular_velocity") = py::make_tuple(0.0, 0.0, 0.0))
+      .def_property_readonly("velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
+      .def_property_readonly("angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); },
+                             "[3] in rad/s")
+      .def("__repr__", [](const LinearMotion& self) {
+        std::ostringstream text;
+        const Vec3 &v = self.velocity(), &w = self.angular_velocity();
+        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=(" << w.x()
+             << ", " << w.y() << ", " << w.z() << ") rad/s)";
+        return text.str();
+      });
+}
+
+void bind_keyframes(py::module_& m) {
+  py::class_<KeyframeMotion, Motion, std::shared_ptr<KeyframeMotion>>(m, "KeyframeMotion", R"(Motion through keys.
+
+times: [T] in s, ascending, T >= 2
+translations: [T, 3] in m, or None for none
+rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
+interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; each inner time is a breakpoint)
+Between two keys a rotation goes the shorter way. Raises ValueError naming the argument.)")
+      .def(py::init(&keyframe_motion), py::arg("times"), py::arg("translations") = py::none(),
+           py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
+      .def_property_readonly("times", [](const KeyframeMotion& self) { return to_numpy(self.times()); }, "[T] in s")
+      .def_property_readonly("translations", [](const KeyframeMotion& self) { return to_numpy(self.translations()); },
+                             "[T, 3] in m, [0, 3] where none were given")
+      .def_property_readonly("rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
+                             "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
+      .def_property_readonly("interpolation", [](const KeyframeMotion& self) { return name_of(self.interpolation()); },
+                             "\"cubic\" or \"linear\"")
+      .def("__repr__", [](const KeyframeMotion& self) {
+        return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
+      });
+}
+
+void bind_sequence(py::module_& m) {
+  py::class_<VertexSequence, std::shared_ptr<VertexSequence>>(m, "VertexSequence", R"(Deforming mesh: time -> vertices.
+
+times: [T] in s, ascending, T >= 2
+vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
+interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+Raises ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)")
+      .def(py::init(&vertex_sequence), py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
+      .def("at", [](const VertexSequence& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
+           "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
+      .def_property_readonly("times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
+      .def_property_readonly("vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); },
+                             "[T, V, 3] in m, a copy")
+      .def_property_readonly("num_vertices", &VertexSequence::num_vertices)
+      .def_property_readonly("breakpoints", [](const VertexSequence& self) { return to_numpy(self.breakpoints()); },
+                             "Times [N] in s, ascending, where the motion is not smooth.")
+      .def_property_readonly("span", [](const VertexSequence& self) { return as_tuple(self.span()); },
+                             "(begin, end) in s of the times it is defined on.")
+      .def_property_readonly("interpolation", [](const VertexSequence& self) { return name_of(self.interpolation()); },
+                             "\"cubic\" or \"linear\"")
+      .def("__repr__", [](const VertexSequence& self) {
+        const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";
+        return kind + description("", self.span(), self.times().size(), self.interpolation()).substr(1);
+      });
+}
+
+}  // namespace
+
+void bind_motion(py::module_& m) {
+  bind_motions(m);
+  bind_keyframes(m);
+  bind_sequence(m);
+}
+
+}  // namespace echopath::bindings

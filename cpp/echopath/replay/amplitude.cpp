@@ -1,0 +1,136 @@
+#include "echopath/replay/amplitude.h"
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kFourPi = 4.0 * kPi;
+constexpr double kLambert = 1.0 / kPi;
+constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
+
+// What lies between the first and the last material point; the same for all antennas.
+struct InnerPart {
+  double length = 0.0;            // m
+  double to_first_diffuse = 0.0;  // m, from the first material point
+  double power_factor = 1.0;      // product of f cos_out cos_in / r^2 of the legs between diffuse hits
+  Vec3 last_arrival;              // at the last material point, if it is not the first
+  int first_diffuse = -1;
+  double cos_in_first = 0.0;      // signed, at the first diffuse hit, if it is not the first material point
+  double cos_out_first = 0.0;     // signed, if it is not the last
+  double cos_in_last = 0.0;       // signed, at the last diffuse hit, if it is not the first one
+  bool lit = true;                // every diffuse hit between is seen from one side
+};
+
+InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
+  InnerPart inner;
+  inner.first_diffuse = path.is_diffuse(path.first_material) ? path.first_material : -1;
+  double since_diffuse = 0.0, cos_out = 0.0;
+  int previous = path.first_material;
+  for (int k = previous + 1; k <= path.last_material; ++k) {
+    if (path.is_image(k)) continue;
+    const InnerLeg leg = inner_leg(hits, previous, k);
+    inner.length += leg.length;
+    since_diffuse += leg.length;
+    if (path.is_diffuse(previous)) {
+      cos_out = hits[previous].normal.dot(leg.departure);
+      if (previous == inner.first_diffuse) inner.cos_out_first = cos_out;
+      else if (cos_out * inner.cos_in_last <= 0) inner.lit = false;
+    }
+    if (path.is_diffuse(k)) {
+      const double cos_in = -hits[k].normal.dot(leg.arrival);
+      if (inner.first_diffuse < 0) {
+        inner.first_diffuse = k;
+        inner.to_first_diffuse = since_diffuse;
+        inner.cos_in_first = cos_in;
+      } else {
+        inner.power_factor *= kLambert * std::abs(cos_out * cos_in) / (since_diffuse * since_diffuse);
+        inner.cos_in_last = cos_in;
+      }
+      since_diffuse = 0.0;
+    }
+    inner.last_arrival = leg.arrival;
+    previous = k;
+  }
+  return inner;
+}
+
+double footprint_filter(const LocalPath& path, const PosedHit& hit, const Vec3& mismatch, double wavenumber) {
+  double sum = 0.0;
+  for (const Eigen::Vector2d& tangent : path.footprint) {
+    const double gradient = wavenumber * mismatch.dot(tangent[0] * hit.edge_u + tangent[1] * hit.edge_v);
+    sum += gradient * gradient;
+  }
+  return std::exp(-sum / 24.0);
+}
+
+double coherent_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
+                       const AntennaLeg& out, const RadioConstants& radio) {
+  const PosedHit& hit = hits[path.last_material];
+  const Vec3& arrival = path.first_material == path.last_material ? in.travel : inner.last_arrival;
+  const double cos_in = -hit.normal.dot(arrival), cos_out = hit.normal.dot(out.travel);
+  if (cos_in * cos_out <= 0) return 0.0;
+  const double filter = path.has_footprint ? footprint_filter(path, hit, arrival - out.travel, radio.wavenumber) : 1.0;
+  return std::sqrt(radio.transmit_power * in.gain * out.gain) / kFourPi * std::abs(cos_in) * filter /
+         ((in.length + inner.length) * out.length);
+}
+
+double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
+                      const AntennaLeg& out, const RadioConstants& radio) {
+  const int first = inner.first_diffuse, last = path.last_material;
+  const double cos_in = first == path.first_material ? -hits[first].normal.dot(in.travel) : inner.cos_in_first;
+  const double cos_out = hits[last].normal.dot(out.travel);
+  const bool lit = first == last ? cos_in * cos_out > 0
+                                 : inner.lit && cos_in * inner.cos_out_first > 0 && inner.cos_in_last * cos_out > 0;
+  if (!lit) return 0.0;
+  const double first_leg = in.length + inner.to_first_diffuse;
+  const double spreading = std::abs(cos_in * cos_out) * kLambert / (first_leg * first_leg * out.length * out.length);
+  const double antennas = radio.transmit_power * in.gain * out.gain * radio.wavelength * radio.wavelength / (kFourPi * kFourPi);
+  return std::sqrt(antennas * spreading * inner.power_factor);
+}
+
+void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const Instant& instant, const RadioConstants& radio,
+                           const ChannelValues& out) {
+  int64_t channel = 0;
+  for (const PosedAntenna& transmitter : instant.transmitters) {
+    for (const PosedAntenna& receiver : instant.receivers) {
+      const MirrorOnlyLeg leg = mirror_only_leg(path, hits, transmitter, receiver);
+      const int64_t at = out.stride * channel++;
+      out.length[at] = leg.length;
+      out.amplitude[at] = path.weight * radio.wavelength *
+                          std::sqrt(radio.transmit_power * leg.transmit_gain * leg.receive_gain) / (kFourPi * leg.length);
+    }
+  }
+}
+
+}  // namespace
+
+void evaluate_path(const LocalPath& path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch,
+                   const ChannelValues& out) {
+  PosedHit* hits = scratch.hits.data();
+  pose_hits(path, instant, hits);
+  if (path.first_material < 0) {
+    evaluate_mirrors_only(path, hits, instant, radio, out);
+    return;
+  }
+  const InnerPart inner = inner_part(path, hits);
+  scratch.receive.clear();
+  for (const PosedAntenna& receiver : instant.receivers) scratch.receive.push_back(receive_leg(path, hits, receiver));
+  int64_t channel = 0;
+  for (const PosedAntenna& transmitter : instant.transmitters) {
+    const AntennaLeg in = transmit_leg(path, hits, transmitter);
+    for (const AntennaLeg& back : scratch.receive) {
+      const int64_t at = out.stride * channel++;
+      out.length[at] = in.length + inner.length + back.length;
+      const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
+      const double factor = near                ? 0.0
+                            : path.diffuse == 0 ? coherent_factor(path, hits, inner, in, back, radio)
+                                                : diffuse_factor(path, hits, inner, in, back, radio);
+      out.amplitude[at] = path.weight * factor;
+    }
+  }
+}
+
+}  // namespace echopath

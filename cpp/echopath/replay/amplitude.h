@@ -1,0 +1,41 @@
+#pragma once
+// From a record's weight and the geometry of an instant to the length and amplitude of a path: the only home of the formula.
+//
+// Coherent path (regime C), physical optics at its last material point:
+//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
+//   sqrt(D) = unfolded length TX -> point (flat chain), r = unfolded length point -> RX, obliquity K = cos_i.
+// Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:
+//   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in / r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
+//   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert).
+// Mirrors only: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
+// Footprint filter: F = exp(-(g1^2 + g2^2)/24), g_a = k T_a.(u - s), T_a the tangents of the launch cell on the surface,
+// carried along with the triangle (Gaussian fit of the tube's shape factor of Ling, Chou, Lee 1989).
+// A path whose surface is seen from opposite sides has amplitude 0. The phase of the length is not part of the amplitude.
+#include "echopath/replay/path_geometry.h"
+
+namespace echopath {
+
+struct RadioConstants {
+  double transmit_power;  // W
+  double wavelength;      // m, at the start frequency
+  double wavenumber;      // rad/m
+};
+
+// Work space of one thread.
+struct EvaluationScratch {
+  std::vector<PosedHit> hits;        // at least as many as the path's hits
+  std::vector<AntennaLeg> receive;
+};
+
+struct ChannelValues {
+  double* length;                    // m
+  std::complex<double>* amplitude;   // sqrt(W)
+  int64_t stride;                    // distance between channels in both
+};
+
+// Lengths and amplitudes of one path at one instant for all channels [tx * num_rx + rx]; N + M antenna legs are computed for
+// N x M channels.
+void evaluate_path(const LocalPath& path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch,
+                   const ChannelValues& out);
+
+}  // namespace echopath

@@ -1,0 +1,30 @@
+#pragma once
+// At which times of a frame paths are evaluated, and how values at each chirp follow from them.
+#include <vector>
+
+#include "echopath/radar/radar.h"
+#include "echopath/signal/echoes.h"
+
+namespace echopath {
+
+struct FrameNodes {
+  std::vector<double> times;            // [num_nodes] s
+  std::vector<TimeSampling> sampling;   // by transmitter
+  int order = 1;                        // nodes per piece; 1: one node for all
+  bool is_exact = false;                // one node per chirp
+
+  // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: what the polynomial
+  // has left. Empty for order 1 and exact nodes.
+  std::vector<double> tail;
+  int num_pieces() const { return order > 1 && !is_exact ? static_cast<int>(times.size()) / order : 0; }
+};
+
+// One node, at `time`.
+FrameNodes static_nodes(const Radar& radar, double time);
+// `order` Chebyshev-Lobatto nodes in each piece between the breakpoints (s, ascending) that lie inside the frame that starts
+// at start_time. Polynomial interpolation in barycentric form; slopes from the derivative of the same polynomial.
+FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
+// A node at the window centre of each chirp of each transmitter; slopes by central differences.
+FrameNodes exact_nodes(const Radar& radar, double start_time);
+
+}  // namespace echopath

@@ -1,0 +1,28 @@
+#include "echopath/replay/instant.h"
+
+namespace echopath {
+namespace {
+
+std::vector<PosedAntenna> posed(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin) {
+  std::vector<PosedAntenna> out;
+  for (const Antenna& antenna : antennas) {
+    out.push_back({world_from_radar * antenna.position - origin,
+                   (world_from_radar.linear() * (antenna.orientation * Vec3::UnitX())).normalized(), &antenna.pattern});
+  }
+  return out;
+}
+
+}  // namespace
+
+Instant::Instant(const Scene& scene, const Radar& radar, const Vec3& origin, double time) : pose_(scene, time) {
+  const Transform world_from_radar = radar.world_from_radar(time);
+  transmitters = posed(radar.transmitters, world_from_radar, origin);
+  receivers = posed(radar.receivers, world_from_radar, origin);
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    const Transform& world_from_mesh = pose_.world_from_mesh(id);
+    rotation_.push_back(world_from_mesh.linear());
+    translation_.push_back(world_from_mesh.translation() - origin);
+  }
+}
+
+}  // namespace echopath

@@ -1,0 +1,36 @@
+#pragma once
+// Scene and antennas at one time, relative to the origin of the trace.
+#include <vector>
+
+#include "echopath/trace/paths.h"
+
+namespace echopath {
+
+struct PosedAntenna {
+  Vec3 position;    // m, relative to the origin
+  Vec3 boresight;   // unit, world axes
+  const AntennaPattern* pattern = nullptr;
+
+  double gain(const Vec3& direction) const { return pattern->gain(boresight.dot(direction)); }  // unit direction, outward
+};
+
+class Instant {
+ public:
+  // The radar must outlive the instant. Raises invalid_argument when a motion is not defined at `time` (s).
+  Instant(const Scene& scene, const Radar& radar, const Vec3& origin, double time);
+
+  std::vector<PosedAntenna> transmitters, receivers;
+
+  // Mesh frame -> world relative to the origin.
+  const Mat3& rotation(uint32_t mesh_id) const { return rotation_[mesh_id]; }
+  const Vec3& translation(uint32_t mesh_id) const { return translation_[mesh_id]; }
+  // Vertices in the mesh's frame, deformed at this time.
+  const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const { return pose_.local_vertices(mesh_id); }
+
+ private:
+  Pose pose_;
+  std::vector<Mat3> rotation_;
+  std::vector<Vec3> translation_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,90 @@
+#include "echopath/replay/path_geometry.h"
+
+namespace echopath {
+namespace {
+
+Vec3 image(const Vec3& point, const PosedHit& mirror) {
+  return point - 2.0 * mirror.normal.dot(point - mirror.point) * mirror.normal;
+}
+
+Vec3 reflect(const Vec3& direction, const PosedHit& mirror) {
+  return direction - 2.0 * mirror.normal.dot(direction) * mirror.normal;
+}
+
+// Image of a point over the mirrors [first, last) in order of travel.
+Vec3 forward_image(Vec3 point, const PosedHit* hits, int first, int last) {
+  for (int k = first; k < last; ++k) point = image(point, hits[k]);
+  return point;
+}
+
+// Direction before the mirrors [first, last) of a wave that travels along `direction` behind them.
+Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last) {
+  for (int k = last; k-- > first;) direction = reflect(direction, hits[k]);
+  return direction;
+}
+
+Vec3 direction_behind(Vec3 direction, const PosedHit* hits, int first, int last) {
+  for (int k = first; k < last; ++k) direction = reflect(direction, hits[k]);
+  return direction;
+}
+
+}  // namespace
+
+void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
+  for (int k = 0; k < path.count; ++k) {
+    const LocalHit& hit = path.hits[k];
+    const Mat3& rotation = instant.rotation(hit.mesh_id);
+    Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
+    if (hit.deformed) {
+      const std::vector<Vec3>& vertices = instant.local_vertices(hit.mesh_id);
+      corner = vertices[hit.triangle[0]];
+      edge_u = vertices[hit.triangle[1]] - corner;
+      edge_v = vertices[hit.triangle[2]] - corner;
+    }
+    out[k].edge_u = rotation * edge_u;
+    out[k].edge_v = rotation * edge_v;
+    out[k].point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * out[k].edge_u + hit.v * out[k].edge_v;
+    out[k].normal = out[k].edge_u.cross(out[k].edge_v).normalized();
+  }
+}
+
+AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna) {
+  const int last = path.first_material;
+  const Vec3 line = hits[last].point - forward_image(antenna.position, hits, 0, last);
+  AntennaLeg leg;
+  leg.length = line.norm();
+  leg.travel = line / leg.length;
+  leg.gain = antenna.gain(direction_before(leg.travel, hits, 0, last));
+  return leg;
+}
+
+AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna) {
+  const int first = path.last_material + 1;
+  Vec3 target = antenna.position;
+  for (int k = path.count; k-- > first;) target = image(target, hits[k]);
+  const Vec3 line = target - hits[path.last_material].point;
+  AntennaLeg leg;
+  leg.length = line.norm();
+  leg.travel = line / leg.length;
+  leg.gain = antenna.gain(-direction_behind(leg.travel, hits, first, path.count));
+  return leg;
+}
+
+MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
+                              const PosedAntenna& receiver) {
+  const Vec3 line = receiver.position - forward_image(transmitter.position, hits, 0, path.count);
+  const double length = line.norm();
+  const Vec3 arrival = line / length;
+  return {length, transmitter.gain(direction_before(arrival, hits, 0, path.count)), receiver.gain(-arrival)};
+}
+
+InnerLeg inner_leg(const PosedHit* hits, int from, int to) {
+  const Vec3 line = hits[to].point - forward_image(hits[from].point, hits, from + 1, to);
+  InnerLeg leg;
+  leg.length = line.norm();
+  leg.arrival = line / leg.length;
+  leg.departure = direction_before(leg.arrival, hits, from + 1, to);
+  return leg;
+}
+
+}  // namespace echopath

@@ -1,0 +1,68 @@
+#pragma once
+// Hits of paths, posed: points, normals and the legs between them, with images for flagged mirrors.
+#include <vector>
+
+#include "echopath/replay/instant.h"
+
+namespace echopath {
+
+// A hit in the frame of its mesh.
+struct LocalHit {
+  uint32_t mesh_id = 0;
+  bool deformed = false;        // the corners are those of the instant
+  Triangle triangle{};
+  double u = 0.0, v = 0.0;
+  Vec3 corner, edge_u, edge_v;  // of its triangle at rest
+};
+
+struct PosedHit {
+  Vec3 point, normal;    // relative to the origin; unit normal of the triangle's winding
+  Vec3 edge_u, edge_v;
+};
+
+// What of a path does not depend on time.
+struct LocalPath {
+  const LocalHit* hits = nullptr;
+  int count = 0;
+  uint64_t diffuse = 0;
+  uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
+  std::complex<double> weight;
+  // Coherent paths with a footprint: the launch cell on the triangle of the physical-optics hit, as two tangents in units of
+  // its edges, (du, dv) each.
+  bool has_footprint = false;
+  Eigen::Vector2d footprint[2];
+
+  bool is_image(int hit) const { return image >> hit & 1; }
+  bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
+  // First and last hit that are material points; -1 where the path has mirrors only.
+  int first_material = -1, last_material = -1;
+};
+
+void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
+
+// A leg between a material point and an antenna, unfolded over the mirrors between.
+struct AntennaLeg {
+  double length = 0.0;  // m
+  Vec3 travel;          // unit direction of travel at the material point
+  double gain = 1.0;    // power gain of the antenna toward the leg
+};
+
+// TX -> first material point, and last material point -> RX.
+AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna);
+AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna);
+
+// TX -> RX over mirrors alone: unfolded length and both gains.
+struct MirrorOnlyLeg {
+  double length, transmit_gain, receive_gain;
+};
+MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
+                              const PosedAntenna& receiver);
+
+// Between neighbouring material points `from` < `to` of a path, over the mirrors between.
+struct InnerLeg {
+  double length;
+  Vec3 departure, arrival;  // unit directions of travel at `from` and at `to`
+};
+InnerLeg inner_leg(const PosedHit* hits, int from, int to);
+
+}  // namespace echopath

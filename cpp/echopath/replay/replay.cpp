@@ -1,0 +1,225 @@
+#include "echopath/replay/replay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+constexpr std::array<int, 5> kOrders = {6, 10, 16, 24, 32};
+constexpr int kStaticLevel = 0;
+constexpr int kExactLevel = static_cast<int>(kOrders.size()) + 1;
+
+}  // namespace
+
+// Instants of one choice of nodes; made once, used by all blocks.
+struct Replayer::Level {
+  FrameNodes nodes;
+  std::vector<Instant> instants;
+};
+
+struct Replayer::Block {
+  std::vector<LocalHit> hits;
+  std::vector<LocalPath> paths;
+  int longest = 0;
+};
+
+Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
+    : paths_(paths), radar_(radar), settings_(settings), levels_(kExactLevel + 1) {
+  radar.validate();
+  require(settings.phase_tolerance > 0, "phase_tolerance", "must be positive", settings.phase_tolerance);
+  paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
+  radio_.transmit_power = radar.transmit_power;
+  radio_.wavelength = kSpeedOfLight / radar.waveform.start_frequency;
+  radio_.wavenumber = kTwoPi / radio_.wavelength;
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    mesh_moves_.push_back(paths.scene->is_moving(id));
+    mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
+  }
+  trace_instant_ = std::make_unique<Instant>(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time);
+}
+
+Replayer::~Replayer() = default;
+
+int Replayer::num_channels() const { return static_cast<int>(radar_.transmitters.size() * radar_.receivers.size()); }
+
+bool Replayer::is_static(int64_t path) const {
+  if (radar_.motion) return false;
+  const Hit* hits = paths_.hits_of(path);
+  const int count = paths_.num_bounces[static_cast<size_t>(path)];
+  return std::none_of(hits, hits + count, [&](const Hit& hit) { return mesh_moves_[hit.mesh_id] != 0; });
+}
+
+const Replayer::Level& Replayer::level(int index) const {
+  const std::lock_guard lock(levels_mutex_);
+  std::unique_ptr<const Level>& slot = levels_[static_cast<size_t>(index)];
+  if (slot) return *slot;
+  auto made = std::make_unique<Level>();
+  const double start = paths_.frame.start_time;
+  if (index == kStaticLevel) made->nodes = static_nodes(radar_, paths_.frame.trace_time);
+  else if (index == kExactLevel) made->nodes = exact_nodes(radar_, start);
+  else {
+    std::vector<double> breakpoints = paths_.scene->breakpoints();
+    if (radar_.motion) {
+      const std::vector<double> own = radar_.motion->breakpoints();
+      breakpoints.insert(breakpoints.end(), own.begin(), own.end());
+      std::sort(breakpoints.begin(), breakpoints.end());
+    }
+    made->nodes = chebyshev_nodes(radar_, start, breakpoints, kOrders[static_cast<size_t>(index - 1)]);
+  }
+  for (const double time : made->nodes.times) made->instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
+  slot = std::move(made);
+  return *slot;
+}
+
+Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
+  Block block;
+  size_t num_hits = 0;
+  for (const int64_t index : indices) num_hits += paths_.num_bounces[static_cast<size_t>(index)];
+  block.hits.reserve(num_hits);  // paths point into it
+  block.paths.reserve(indices.size());
+  for (const int64_t index : indices) {
+    const auto p = static_cast<size_t>(index);
+    LocalPath& path = block.paths.emplace_back();
+    path.hits = block.hits.data() + block.hits.size();
+    path.count = paths_.num_bounces[p];
+    path.diffuse = paths_.diffuse[p];
+    path.weight = std::complex<double>(paths_.weight[p]);
+    block.longest = std::max(block.longest, path.count);
+    for (int k = 0; k < path.count; ++k) {
+      const Hit& hit = paths_.hits_of(index)[k];
+      const Node& node = paths_.scene->node_of(hit.mesh_id);
+      LocalHit& local = block.hits.emplace_back();
+      local.mesh_id = hit.mesh_id;
+      local.deformed = node.sequence != nullptr;
+      local.triangle = node.mesh->triangles()[hit.triangle_id];
+      local.u = hit.u;
+      local.v = hit.v;
+      const std::vector<Vec3>& vertices = node.mesh->vertices();
+      local.corner = vertices[local.triangle[0]];
+      local.edge_u = vertices[local.triangle[1]] - local.corner;
+      local.edge_v = vertices[local.triangle[2]] - local.corner;
+      if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
+        path.image |= uint64_t{1} << k;
+      } else {
+        if (path.first_material < 0) path.first_material = k;
+        path.last_material = k;
+      }
+    }
+  }
+  if (paths_.frame.footprint_filter) {
+    EvaluationScratch scratch;
+    scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
+    for (size_t i = 0; i < indices.size(); ++i) add_footprint(block.paths[i], indices[i], scratch);
+  }
+  return block;
+}
+
+// The launch cell of the path's own stratum, projected onto the triangle of the physical-optics hit at the trace time.
+void Replayer::add_footprint(LocalPath& path, int64_t index, EvaluationScratch& scratch) const {
+  const size_t stratum = paths_.stratum[static_cast<size_t>(index)];
+  if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
+  PosedHit* hits = scratch.hits.data();
+  pose_hits(path, *trace_instant_, hits);
+  static const AntennaPattern isotropic;
+  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), &isotropic};
+  const AntennaLeg in = transmit_leg(path, hits, centre);
+  double length = in.length;
+  Vec3 arrival = in.travel;
+  int previous = path.first_material;
+  for (int k = previous + 1; k <= path.last_material; ++k) {
+    if (path.is_image(k)) continue;
+    const InnerLeg leg = inner_leg(hits, previous, k);
+    length += leg.length;
+    arrival = leg.arrival;
+    previous = k;
+  }
+  const PosedHit& hit = hits[path.last_material];
+  const double cos_in = std::abs(hit.normal.dot(arrival));
+  const double side = length / std::sqrt(paths_.frame.strata[stratum].ray_density());  // of the tube, m
+  Vec3 along = arrival - hit.normal.dot(arrival) * hit.normal;
+  along = along.norm() > 1e-9 ? along.normalized() : hit.normal.unitOrthogonal();
+  const Vec3 across = hit.normal.cross(along);
+
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << hit.edge_u, hit.edge_v;
+  const Eigen::Matrix2d gram_inverse = (edges.transpose() * edges).inverse();
+  path.footprint[0] = gram_inverse * (edges.transpose() * (along * (side / std::max(cos_in, 1e-3))));
+  path.footprint[1] = gram_inverse * (edges.transpose() * (across * side));
+  path.has_footprint = path.footprint[0].allFinite() && path.footprint[1].allFinite();
+}
+
+// Values [node, channel, path]; false when `check` finds a tail above the tolerance.
+bool Replayer::evaluate_level(const Block& block, const Level& level, bool check, std::vector<double>& lengths,
+                              std::vector<std::complex<double>>& amplitudes) const {
+  const size_t num_paths = block.paths.size(), channels = static_cast<size_t>(num_channels());
+  const size_t num_nodes = level.instants.size(), node_stride = channels * num_paths;
+  lengths.resize(num_nodes * node_stride);
+  amplitudes.resize(num_nodes * node_stride);
+  EvaluationScratch scratch;
+  scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
+  for (size_t node = 0; node < num_nodes; ++node) {
+    for (size_t p = 0; p < num_paths; ++p) {
+      const ChannelValues out{lengths.data() + node * node_stride + p, amplitudes.data() + node * node_stride + p,
+                              static_cast<int64_t>(num_paths)};
+      evaluate_path(block.paths[p], level.instants[node], radio_, scratch, out);
+    }
+  }
+  if (!check) return true;
+  const int order = level.nodes.order;
+  for (int piece = 0; piece < level.nodes.num_pieces(); ++piece) {
+    const double* values = lengths.data() + static_cast<size_t>(piece * order) * node_stride;
+    for (size_t i = 0; i < node_stride; ++i) {
+      double before_last = 0.0, last = 0.0;
+      for (int k = 0; k < order; ++k) {
+        // Relative to the first node: the sums must not drown in the rounding of the whole length.
+        const double value = values[static_cast<size_t>(k) * node_stride + i] - values[i];
+        before_last += level.nodes.tail[static_cast<size_t>(k)] * value;
+        last += level.nodes.tail[static_cast<size_t>(order + k)] * value;
+      }
+      if (radio_.wavenumber * (std::abs(last) + 0.25 * std::abs(before_last)) > settings_.phase_tolerance) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Echoes> Replayer::echoes(std::span<const int64_t> indices, bool moving) const {
+  const Block block = localise(indices);
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  int index = moving ? (settings_.exact ? kExactLevel : 1) : kStaticLevel;
+  while (!evaluate_level(block, level(index), index != kStaticLevel && index != kExactLevel, lengths, amplitudes)) ++index;
+
+  const FrameNodes& nodes = level(index).nodes;
+  const size_t num_paths = indices.size(), num_nodes = nodes.times.size();
+  const auto channels = static_cast<size_t>(num_channels());
+  std::vector<Echoes> out(channels);
+  for (size_t channel = 0; channel < channels; ++channel) {
+    Echoes& echoes = out[channel];
+    echoes.sampling = nodes.sampling[channel / radar_.receivers.size()];
+    echoes.num_echoes = static_cast<int64_t>(num_paths);
+    echoes.delay.resize(num_nodes * num_paths);
+    echoes.amplitude.resize(num_nodes * num_paths);
+    for (size_t node = 0; node < num_nodes; ++node) {
+      const size_t from = (node * channels + channel) * num_paths, to = node * num_paths;
+      for (size_t p = 0; p < num_paths; ++p) {
+        echoes.delay[to + p] = lengths[from + p] / kSpeedOfLight;
+        echoes.amplitude[to + p] = amplitudes[from + p];
+      }
+    }
+  }
+  return out;
+}
+
+void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
+                        std::vector<std::complex<double>>& amplitudes) const {
+  Level single;
+  single.instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
+  evaluate_level(localise(indices), single, false, lengths, amplitudes);
+}
+
+}  // namespace echopath

@@ -1,0 +1,50 @@
+#include "echopath/signal/noise.h"
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/base/random.h"
+
+namespace echopath {
+namespace {
+
+// Box and Muller: circular complex Gaussian with E|n|^2 = 2.
+std::complex<double> gaussian_pair(uint64_t seed, int64_t index) {
+  const auto [u, v] = uniform2(seed, Stream::kNoise, static_cast<uint64_t>(index), 0);
+  return std::polar(std::sqrt(-2.0 * std::log1p(-u)), kTwoPi * v);
+}
+
+}  // namespace
+
+double noise_power(const Radar& radar) {
+  const double noise_factor = std::pow(10.0, radar.noise_figure_db / 10.0);
+  const double complex_power = kBoltzmann * kReferenceTemperature * noise_factor * radar.waveform.sampling_rate;
+  return radar.waveform.real ? 0.5 * complex_power : complex_power;
+}
+
+int64_t cube_size(const Radar& radar) {
+  return static_cast<int64_t>(radar.transmitters.size()) * static_cast<int64_t>(radar.receivers.size()) *
+         radar.waveform.num_chirps * radar.waveform.num_samples;
+}
+
+void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed) {
+  radar.validate();
+  require(size == cube_size(radar), "cube", "must have transmitters x receivers x chirps x samples values", size);
+  const bool real = radar.waveform.real;
+  const double deviation = std::sqrt(real ? noise_power(radar) : 0.5 * noise_power(radar));
+  const int64_t num_samples = radar.waveform.num_samples;
+  parallel_for(size / num_samples, [&](int64_t chirp) {
+    for (int64_t i = chirp * num_samples; i < (chirp + 1) * num_samples; ++i) {
+      const std::complex<double> noise = deviation * gaussian_pair(seed, i);
+      cube[i] += real ? noise.real() : noise;
+    }
+  });
+}
+
+void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed) {
+  add_noise(cube.data(), static_cast<int64_t>(cube.size()), radar, seed);
+}
+
+}  // namespace echopath

@@ -1,0 +1,120 @@
+#include "echopath/spectrum/range_doppler.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/fft/fft.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kMaxZeroPad = 64;
+constexpr int kColumnsPerTask = 8;  // neighbouring range bins share cache lines
+
+struct Taper {
+  std::vector<double> weight;  // already divided by their sum
+
+  Taper(const Window& window, int n, double scale = 1.0) : weight(window_samples(window, n)) {
+    const double sum = std::accumulate(weight.begin(), weight.end(), 0.0);
+    for (double& w : weight) w *= scale / sum;
+  }
+};
+
+// One windowed, padded transform: in[i * stride] -> buffer [fft.size()].
+void transform(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t stride, FftBuffer& buffer) {
+  const int64_t n = static_cast<int64_t>(taper.weight.size());
+  for (int64_t i = 0; i < n; ++i) buffer[i] = taper.weight[i] * in[i * stride];
+  std::fill(buffer.data() + n, buffer.data() + buffer.size(), std::complex<double>{});
+  fft.transform(buffer);
+}
+
+// [rows, samples] -> [rows, range]
+std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
+                                                  int fft_size, int64_t num_ranges, Job* job) {
+  const Fft fft(fft_size, FftDirection::kForward);
+  const int64_t num_samples = static_cast<int64_t>(taper.weight.size());
+  std::vector<std::complex<double>> profiles(num_rows * num_ranges);
+  parallel_for(num_rows, [&](int64_t row) {
+    if (job) job->throw_if_cancelled();
+    FftBuffer buffer(fft_size);
+    transform(fft, taper, cube + row * num_samples, 1, buffer);
+    std::copy_n(buffer.data(), num_ranges, profiles.data() + row * num_ranges);
+  });
+  return profiles;
+}
+
+// [maps, chirps, range] -> [maps, velocity, range], zero velocity in the middle
+std::vector<std::complex<double>> doppler_transform(const std::vector<std::complex<double>>& profiles, int64_t num_maps,
+                                                    const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
+  const Fft fft(fft_size, FftDirection::kForward);
+  const int64_t num_chirps = static_cast<int64_t>(taper.weight.size());
+  const int64_t num_strips = (num_ranges + kColumnsPerTask - 1) / kColumnsPerTask;
+  std::vector<std::complex<double>> values(num_maps * fft_size * num_ranges);
+  parallel_for(num_maps * num_strips, [&](int64_t task) {
+    if (job) job->throw_if_cancelled();
+    const int64_t map = task / num_strips, first = task % num_strips * kColumnsPerTask;
+    FftBuffer buffer(fft_size);
+    for (int64_t r = first; r < std::min(first + kColumnsPerTask, num_ranges); ++r) {
+      transform(fft, taper, profiles.data() + map * num_chirps * num_ranges + r, num_ranges, buffer);
+      std::complex<double>* out = values.data() + map * fft_size * num_ranges + r;
+      // Row v holds frequency v - fft_size / 2.
+      for (int64_t v = 0; v < fft_size; ++v) out[v * num_ranges] = buffer[(v + fft_size - fft_size / 2) % fft_size];
+    }
+  });
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins) {
+  require(num_bins >= 1, "num_bins", "must be at least 1", num_bins);
+  const double step = kSpeedOfLight * waveform.sampling_rate / (2.0 * waveform.slope() * num_bins);
+  std::vector<double> range(waveform.real ? (num_bins + 1) / 2 : num_bins);
+  for (size_t i = 0; i < range.size(); ++i) range[i] = static_cast<double>(i) * step;
+  return range;
+}
+
+std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, int num_bins) {
+  require(num_bins >= 1, "num_bins", "must be at least 1", num_bins);
+  const double step = 2.0 * waveform.max_velocity(num_slots) / num_bins;
+  std::vector<double> velocity(num_bins);
+  for (int i = 0; i < num_bins; ++i) velocity[i] = (i - num_bins / 2) * step;
+  return velocity;
+}
+
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window,
+                           int zero_pad, Job* job) {
+  radar.validate();
+  require(zero_pad >= 1 && zero_pad <= kMaxZeroPad, "zero_pad", "must be in [1, 64]", zero_pad);
+  const ChirpSequence& waveform = radar.waveform;
+  const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
+  const int64_t num_rows = num_maps * waveform.num_chirps;
+  require(size == num_rows * waveform.num_samples, "cube", "must have transmitters x receivers x chirps x samples values",
+          size);
+
+  RangeDoppler map;
+  map.num_transmitters = static_cast<int>(radar.transmitters.size());
+  map.num_receivers = static_cast<int>(radar.receivers.size());
+  const int range_size = waveform.num_samples * zero_pad, doppler_size = waveform.num_chirps * zero_pad;
+  map.range = range_axis(waveform, range_size);
+  map.velocity = velocity_axis(waveform, radar.num_slots(), doppler_size);
+
+  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  // A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
+  const Taper range_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
+  const Taper doppler_taper(window, waveform.num_chirps);
+  const auto profiles = range_transform(cube, num_rows, range_taper, range_size, num_ranges, job);
+  map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
+  return map;
+}
+
+RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window,
+                           int zero_pad, Job* job) {
+  return range_doppler(cube.data(), static_cast<int64_t>(cube.size()), radar, window, zero_pad, job);
+}
+
+}  // namespace echopath

@@ -1,0 +1,98 @@
+#include "echopath/spectrum/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numeric>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+// sum_k (-1)^k coefficients[k] cos(2 pi k i / n)
+std::vector<double> cosine_window(int n, const std::vector<double>& coefficients) {
+  std::vector<double> samples(n);
+  for (int i = 0; i < n; ++i) {
+    for (size_t k = 0; k < coefficients.size(); ++k) {
+      const double sign = k % 2 == 0 ? 1.0 : -1.0;
+      samples[i] += sign * coefficients[k] * std::cos(kTwoPi * static_cast<double>(k) * i / n);
+    }
+  }
+  return samples;
+}
+
+double chebyshev_polynomial(int order, double x) {
+  if (std::abs(x) <= 1.0) return std::cos(order * std::acos(x));
+  const double magnitude = std::cosh(order * std::acosh(std::abs(x)));
+  return x < 0.0 && order % 2 != 0 ? -magnitude : magnitude;
+}
+
+// Dolph 1946: the spectrum at bin k is T_{n-1}(x0 cos(pi k / n)); the samples are its inverse transform about the centre.
+std::vector<double> chebyshev_window(int n, double sidelobe_db) {
+  const double x0 = std::cosh(std::acosh(std::pow(10.0, sidelobe_db / 20.0)) / (n - 1));
+  std::vector<double> spectrum((n - 1) / 2 + 1), samples(n), cosine(2 * n);
+  for (size_t k = 0; k < spectrum.size(); ++k) {
+    spectrum[k] = chebyshev_polynomial(n - 1, x0 * std::cos(kPi * static_cast<double>(k) / n));
+  }
+  for (int i = 0; i < 2 * n; ++i) cosine[i] = std::cos(kPi * i / n);
+  // For even n the spectrum is zero at k = n / 2 and odd about it, so bins below n / 2 are enough.
+  for (int i = 0; i < n; ++i) {
+    double sum = spectrum[0];
+    for (size_t k = 1; k < spectrum.size(); ++k) {
+      const int64_t turns = (int64_t{2} * i - (n - 1)) * static_cast<int64_t>(k) % (2 * n);
+      sum += 2.0 * spectrum[k] * cosine[turns < 0 ? turns + 2 * n : turns];
+    }
+    samples[i] = sum;
+  }
+  const double largest = *std::max_element(samples.begin(), samples.end());
+  for (double& sample : samples) sample /= largest;
+  return samples;
+}
+
+double sum_of(const std::vector<double>& samples) { return std::accumulate(samples.begin(), samples.end(), 0.0); }
+
+}  // namespace
+
+Window Window::named(const std::string& name, double sidelobe_db) {
+  const std::vector<std::string> names = {"rect", "hann", "hamming", "blackman_harris", "chebyshev"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris or chebyshev, got '" + name +
+                                "'; nearest: " + nearest_names(name, names, 1).front());
+  }
+  return {static_cast<WindowKind>(found - names.begin()), sidelobe_db};
+}
+
+std::vector<double> window_samples(const Window& window, int n) {
+  require(n >= 1, "n", "must be at least 1", n);
+  if (n == 1) return {1.0};
+  switch (window.kind) {
+    case WindowKind::kRect: return std::vector<double>(n, 1.0);
+    case WindowKind::kHann: return cosine_window(n, {0.5, 0.5});
+    case WindowKind::kHamming: return cosine_window(n, {0.54, 0.46});
+    case WindowKind::kBlackmanHarris: return cosine_window(n, {0.35875, 0.48829, 0.14128, 0.01168});
+    case WindowKind::kChebyshev: break;
+  }
+  require(window.sidelobe_db >= 20.0 && window.sidelobe_db <= 300.0, "sidelobe_db", "must be in [20, 300]",
+          window.sidelobe_db);
+  return chebyshev_window(n, window.sidelobe_db);
+}
+
+double coherent_gain(const std::vector<double>& samples) { return sum_of(samples) / static_cast<double>(samples.size()); }
+
+double equivalent_noise_bandwidth(const std::vector<double>& samples) {
+  const double power = std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
+  return static_cast<double>(samples.size()) * power / (sum_of(samples) * sum_of(samples));
+}
+
+double scalloping_loss_db(const std::vector<double>& samples) {
+  std::complex<double> sum;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    sum += std::polar(1.0, -kPi * static_cast<double>(i) / static_cast<double>(samples.size())) * samples[i];
+  }
+  return -20.0 * std::log10(std::abs(sum) / sum_of(samples));
+}
+
+}  // namespace echopath

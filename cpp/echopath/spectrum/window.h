@@ -1,0 +1,28 @@
+#pragma once
+// Tapering windows and their figures of merit (Harris, "On the use of windows for harmonic analysis with the discrete
+// Fourier transform", 1978).
+#include <string>
+#include <vector>
+
+namespace echopath {
+
+enum class WindowKind { kRect, kHann, kHamming, kBlackmanHarris, kChebyshev };
+
+struct Window {
+  WindowKind kind = WindowKind::kHann;
+  double sidelobe_db = 80.0;  // kChebyshev only: level of all sidelobes below the main lobe, dB, positive
+
+  // "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
+  static Window named(const std::string& name, double sidelobe_db = 80.0);
+};
+
+// Samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin grid sees exact gains
+// such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal sidelobes require.
+// Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
+std::vector<double> window_samples(const Window& window, int n);
+
+double coherent_gain(const std::vector<double>& samples);               // sum w / n
+double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
+double scalloping_loss_db(const std::vector<double>& samples);          // loss of a tone half-way between bins, dB
+
+}  // namespace echopath

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "echopath/radar/radar.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kRounding = 1e-12;  // relative, a handful of double operations
+
+ChirpSequence reference() {
+  return {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = 512, .sampling_rate = 20e6, .num_chirps = 128,
+          .chirp_interval = 30e-6, .real = false};
+}
+
+Radar one_by_one() {
+  Radar radar;
+  radar.waveform = reference();
+  radar.transmitters.resize(1);
+  radar.receivers.resize(1);
+  return radar;
+}
+
+// Published axes of the reference radar, to their printed digits.
+TEST(ChirpSequence, DerivedAxesOfTheReferenceRadar) {
+  const ChirpSequence w = reference();
+  EXPECT_NEAR(w.range_resolution(), 0.14990, 1e-5);
+  EXPECT_NEAR(w.max_range(), 76.747, 1e-3);
+  EXPECT_NEAR(w.velocity_resolution(1), 0.5037, 1e-4);
+  EXPECT_NEAR(w.max_velocity(1), 32.236, 1e-3);
+  EXPECT_NEAR(w.max_velocity(3), 32.236 / 3, 1e-3);
+  EXPECT_NEAR(w.slope(), 1e9 / 25.6e-6, 1e9 / 25.6e-6 * kRounding);
+  EXPECT_NEAR(w.wavelength(), 299792458.0 / 77.5e9, 1e-15);
+  EXPECT_NEAR(w.window_centre(), 511 / 40e6, 1e-18);
+}
+
+TEST(ChirpSequence, RealSamplesHalveTheRange) {
+  ChirpSequence w = reference();
+  w.real = true;
+  EXPECT_NEAR(w.max_range(), 0.5 * reference().max_range(), kRounding);
+}
+
+TEST(ChirpSequence, AChirpMayFillItsSlot) {
+  ChirpSequence w = reference();
+  w.chirp_interval = w.chirp_duration();
+  EXPECT_NO_THROW(w.validate());
+}
+
+TEST(ChirpSequence, EachBadFieldIsNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<std::string, std::function<void(ChirpSequence&)>>> cases = {
+      {"start_frequency", [](auto& w) { w.start_frequency = 0.0; }},
+      {"start_frequency", [=](auto& w) { w.start_frequency = nan; }},
+      {"bandwidth", [](auto& w) { w.bandwidth = -1e9; }},
+      {"bandwidth", [=](auto& w) { w.bandwidth = inf; }},
+      {"num_samples", [](auto& w) { w.num_samples = 0; }},
+      {"sampling_rate", [](auto& w) { w.sampling_rate = 0.0; }},
+      {"num_chirps", [](auto& w) { w.num_chirps = 0; }},
+      {"chirp_interval", [=](auto& w) { w.chirp_interval = nan; }},
+      {"chirp_interval", [](auto& w) { w.chirp_interval = 25e-6; }},  // shorter than 512 samples at 20 MHz
+  };
+  for (const auto& [field, spoil] : cases) {
+    ChirpSequence w = reference();
+    spoil(w);
+    try {
+      w.validate();
+      ADD_FAILURE() << field << " was accepted";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
+    }
+  }
+}
+
+TEST(AntennaPattern, CosinePowerIsLossless) {
+  for (const double exponent : {0.0, 1.0, 2.5, 12.0}) {
+    const AntennaPattern pattern = AntennaPattern::cosine_power(exponent);
+    constexpr int kSteps = 20000;
+    double sum = 0.0;  // integral of the gain over the sphere, midpoint rule in cos theta
+    for (int i = 0; i < kSteps; ++i) sum += pattern.gain(-1.0 + 2.0 * (i + 0.5) / kSteps) * 2.0 / kSteps;
+    EXPECT_NEAR(sum, 2.0, 1e-4) << exponent;  // 4 pi / 2 pi; midpoint error (2 / kSteps)^2 and the edge
+  }
+}
+
+TEST(AntennaPattern, CosinePowerIsDarkBehindAndPeaksAhead) {
+  const AntennaPattern pattern = AntennaPattern::cosine_power(2.0, 10.0);
+  EXPECT_EQ(pattern.gain(1.0), 10.0);
+  EXPECT_NEAR(pattern.gain(std::cos(1.0)), 10.0 * std::pow(std::cos(1.0), 2), kRounding);
+  EXPECT_EQ(pattern.gain(0.0), 0.0);
+  EXPECT_EQ(pattern.gain(-0.5), 0.0);
+  EXPECT_EQ(AntennaPattern::isotropic(3.0).gain(-1.0), 3.0);
+}
+
+TEST(AntennaPattern, BadValuesAreErrors) {
+  EXPECT_THROW(AntennaPattern::isotropic(0.0), std::invalid_argument);
+  EXPECT_THROW(AntennaPattern::cosine_power(-1.0), std::invalid_argument);
+  EXPECT_THROW(AntennaPattern::cosine_power(1.0, std::nan("")), std::invalid_argument);
+}
+
+TEST(Radar, EachBadFieldIsNamed) {
+  const std::vector<std::pair<std::string, std::function<void(Radar&)>>> cases = {
+      {"bandwidth", [](Radar& r) { r.waveform.bandwidth = 0.0; }},
+      {"transmitters", [](Radar& r) { r.transmitters.clear(); }},
+      {"receivers", [](Radar& r) { r.receivers.clear(); }},
+      {"transmit_power", [](Radar& r) { r.transmit_power = 0.0; }},
+      {"noise_figure_db", [](Radar& r) { r.noise_figure_db = -1.0; }},
+      {"transmitters[0].position", [](Radar& r) { r.transmitters[0].position.x() = std::nan(""); }},
+      {"receivers[1].polarization",
+       [](Radar& r) {
+         r.receivers.resize(2);
+         r.receivers[1].polarization = Vec3(0, 0, 2);
+       }},
+      {"receivers[0].orientation", [](Radar& r) { r.receivers[0].orientation.coeffs() *= 1.01; }},
+  };
+  EXPECT_NO_THROW(one_by_one().validate());
+  for (const auto& [field, spoil] : cases) {
+    Radar radar = one_by_one();
+    spoil(radar);
+    try {
+      radar.validate();
+      ADD_FAILURE() << field << " was accepted";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
+    }
+  }
+}
+
+TEST(Radar, SlotsOfTransmittersAlternate) {
+  Radar radar = one_by_one();
+  radar.transmitters.resize(3);
+  const double centre = 511 / 40e6;
+  EXPECT_NEAR(radar.chirp_time(0, 0), centre, 1e-18);
+  EXPECT_NEAR(radar.chirp_time(2, 0), 60e-6 + centre, 1e-18);
+  EXPECT_NEAR(radar.chirp_time(1, 5), 16 * 30e-6 + centre, 1e-17);
+  EXPECT_NEAR(radar.frame_duration(), (3 * 128 - 1) * 30e-6 + 511 / 20e6, 1e-15);
+  EXPECT_THROW(radar.chirp_time(3, 0), std::out_of_range);
+  EXPECT_THROW(radar.chirp_time(0, 128), std::out_of_range);
+}
+
+TEST(Radar, MotionCarriesTheRadar) {
+  Radar radar = one_by_one();
+  EXPECT_TRUE(radar.world_from_radar(0.5).isApprox(Transform::Identity()));
+  radar.motion = std::make_shared<LinearMotion>(Vec3(2, 0, 0));
+  EXPECT_NEAR((radar.world_from_radar(0.5) * Vec3(0, 1, 0) - Vec3(1, 1, 0)).norm(), 0.0, kRounding);
+}
+
+}  // namespace
+}  // namespace echopath

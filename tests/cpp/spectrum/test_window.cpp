@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "echopath/spectrum/window.h"
+
+namespace echopath {
+namespace {
+
+double level_db(const std::vector<double>& w, double bin) {
+  std::complex<double> sum;
+  double total = 0.0;
+  for (size_t i = 0; i < w.size(); ++i) {
+    const double angle = -2.0 * std::numbers::pi * bin * static_cast<double>(i) / static_cast<double>(w.size());
+    sum += w[i] * std::polar(1.0, angle);
+    total += w[i];
+  }
+  return 20.0 * std::log10(std::abs(sum) / total);
+}
+
+// Harris' figures for 512 points, to their printed digits.
+TEST(Window, FiguresOfMeritAreThePublishedOnes) {
+  struct Row {
+    Window window;
+    double gain, bandwidth, scalloping;
+  };
+  const Row rows[] = {{{WindowKind::kRect}, 1, 1, 3.92},
+                      {{WindowKind::kHann}, .5, 1.5, 1.42},
+                      {{WindowKind::kHamming}, .54, 1.3628, 1.75},
+                      {{WindowKind::kChebyshev, 80}, .4137, 1.7446, 1.09},
+                      {{WindowKind::kChebyshev, 100}, .3697, 1.9441, .88},
+                      {{WindowKind::kBlackmanHarris}, .3588, 2.0044, .83}};
+  for (const Row& row : rows) {
+    const auto w = window_samples(row.window, 512);
+    const int kind = static_cast<int>(row.window.kind);
+    EXPECT_NEAR(coherent_gain(w), row.gain, 1e-4) << kind;
+    EXPECT_NEAR(equivalent_noise_bandwidth(w), row.bandwidth, 1e-4) << kind;
+    EXPECT_NEAR(scalloping_loss_db(w), row.scalloping, 1e-2) << kind;
+  }
+}
+
+TEST(Window, ChebyshevSidelobesAreEqualAndAsAskedFor) {
+  for (const int n : {64, 129}) {
+    for (const double level : {40.0, 80.0, 120.0}) {
+      const auto w = window_samples({WindowKind::kChebyshev, level}, n);
+      double worst = -1e9;
+      for (double bin = 0.15 * level; bin < 0.5 * n; bin += 0.01) worst = std::max(worst, level_db(w, bin));
+      EXPECT_NEAR(worst, -level, 0.05) << n;  // the grid of 0.01 bins meets a lobe's top within 0.01 dB
+    }
+  }
+}
+
+TEST(Window, CosineWindowsArePeriodicAndChebyshevIsSymmetric) {
+  for (const int n : {16, 17}) {
+    for (const auto kind : {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris}) {
+      const auto w = window_samples({kind}, n);
+      for (int i = 1; i < n; ++i) EXPECT_NEAR(w[i], w[n - i], 1e-15);
+    }
+    const auto w = window_samples({WindowKind::kChebyshev, 60.0}, n);
+    for (int i = 0; i < n; ++i) EXPECT_NEAR(w[i], w[n - 1 - i], 1e-14);
+  }
+}
+
+TEST(Window, ShortWindowsHaveAPositiveSum) {
+  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
+                          WindowKind::kChebyshev}) {
+    for (const int n : {1, 2, 3}) EXPECT_GT(coherent_gain(window_samples({kind}, n)), 0.0) << static_cast<int>(kind) << n;
+  }
+}
+
+TEST(Window, BadValuesAreErrorsThatNameTheNearest) {
+  EXPECT_THROW(window_samples({}, 0), std::invalid_argument);
+  EXPECT_THROW(window_samples({WindowKind::kChebyshev, 5.0}, 8), std::invalid_argument);
+  EXPECT_THROW(window_samples({WindowKind::kChebyshev, std::nan("")}, 8), std::invalid_argument);
+  EXPECT_EQ(Window::named("hamming").kind, WindowKind::kHamming);
+  try {
+    Window::named("chebychev");
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("nearest: chebyshev"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,103 @@
+"""The command line: echopath demo | run | info."""
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+
+EXIT_BAD_INPUT, EXIT_INTERRUPTED = 2, 130
+
+
+def main(arguments=None) -> int:
+    """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    try:
+        options.command(options)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("\nechopath: stopped; no file was left half written", file=sys.stderr)
+        return EXIT_INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (ValueError, OSError) as error:
+        print(f"echopath: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    import echopath as ep
+
+    parser = argparse.ArgumentParser(prog="echopath", description="FMCW radar simulation by ray tracing.")
+    parser.add_argument("--version", action="version", version=f"echopath {ep.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
+    demo.add_argument("--out", default="out/demo", metavar="DIR", help="folder of the results (default: %(default)s)")
+    _add_trace_options(demo, default_rays=200_000)
+    demo.set_defaults(command=_demo)
+
+    run = commands.add_parser("run", help="simulate a scene file")
+    run.add_argument("scene", metavar="SCENE.toml", help="scene file (keys: data/README.md)")
+    run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
+    _add_trace_options(run, default_rays=None)
+    run.set_defaults(command=_run)
+
+    info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
+    info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
+    info.set_defaults(command=_info)
+    return parser
+
+
+def _add_trace_options(parser, default_rays) -> None:
+    default = "%(default)s" if default_rays else "that of the scene file"
+    parser.add_argument("--rays", type=_positive, default=default_rays, metavar="N",
+                        help=f"number of rays (default: {default})")
+    parser.add_argument("--seed", type=_natural, default=None, metavar="N",
+                        help="of the rays (default: that of the scene file)")
+
+
+def _positive(text: str) -> int:
+    """A number of rays; 2e6 and 2_000_000 will do too."""
+    value = float(text)
+    if value < 1 or value != int(value):
+        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, got '{text}'")
+    return int(value)
+
+
+def _natural(text: str) -> int:
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be a whole number of at least 0, got '{text}'")
+    return value
+
+
+def _demo(options) -> None:
+    from .demo import run_demo
+    from .progress import progress_bars
+
+    with progress_bars() as progress:
+        run_demo(options.out, num_rays=options.rays, seed=options.seed, progress=progress)
+
+
+def _run(options) -> None:
+    from . import report
+    from .progress import progress_bars
+    from .run import simulate_file, write_outputs
+    from .scene_file import load_scene
+
+    scene_file = load_scene(options.scene)
+    with progress_bars() as progress:
+        frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed, progress=progress)
+        written = write_outputs(frame, options.out, partitions=scene_file.partitions())
+    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.stages(frame.stages),
+                 *report.part_powers(frame.parts), f"written to {written.frame_path.parent}",
+                 report.omissions(written.left_out, written.frame_path)]:
+        print(text)
+
+
+def _info(options) -> None:
+    from .info import describe_file
+
+    print("\n".join(describe_file(options.file)))

@@ -1,0 +1,50 @@
+"""Files that are written whole or not at all."""
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+import echopath as ep
+
+
+@contextmanager
+def written_whole(path):
+    """Yields the path of a temporary file beside `path` that takes its place when the block ends well.
+
+    Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Both have the
+    same suffix. Raises ep.FileError when the folder or the file cannot be written.
+    """
+    path = Path(path)
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+        os.chmod(temporary, 0o666 & ~_umask())
+        yield Path(temporary)
+        _flush(temporary)
+        os.replace(temporary, path)
+        temporary = None
+        _flush(path.parent)
+    except OSError as error:
+        raise ep.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+    finally:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _flush(path) -> None:
+    """Down to the disk, so that a power cut after the replacement cannot leave an empty file."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

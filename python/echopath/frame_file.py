@@ -1,0 +1,180 @@
+"""Frame files: HDF5 with scene, radar, paths and what was computed from them (layout: data/README.md)."""
+from __future__ import annotations
+
+import dataclasses
+import json
+from contextlib import contextmanager
+
+import h5py
+import numpy as np
+
+import echopath as ep
+
+from .files import written_whole
+from .frame_paths import read_paths, write_paths
+from .frame_radar import read_radar, write_radar
+from .frame_scene import read_scene, write_scene
+from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts
+from .simulate import Frame, with_spectra
+
+FORMAT = "echopath frame"
+SCHEMA_VERSION = 1  # grows when a reader of the old layout would misread the new one
+
+
+@dataclasses.dataclass(frozen=True)
+class LeftOut:
+    """Paths that a file does not hold: min_power (W) of those it does, num_paths and summed power (W) of the others."""
+
+    min_power: float
+    num_paths: int
+    power: float
+
+
+def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
+    """Writes paths with their scene and radar to an HDF5 file.
+
+    path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
+    below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
+    """
+    with _new_file(path) as file:
+        return _write_record(file, paths, min_power)[0]
+
+
+def load_paths(path):
+    """Reads the paths of a frame file: the same bits that were written. Raises ep.FileError."""
+    with _our_file(path) as file:
+        return _read_record(file)
+
+
+def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
+    """Writes a frame to an HDF5 file; otherwise as `save_paths`.
+
+    The cubes hold all paths, also those that the record leaves out.
+    """
+    with _new_file(path) as file:
+        missing, is_kept = _write_record(file, frame.paths, min_power)
+        _write_signal(file, frame)
+        _write_spectra(file, frame)
+        _write_partitions(file, frame, is_kept)
+    return missing
+
+
+def load_frame(path) -> Frame:
+    """Reads a frame file: the same bits that were written. Raises ep.FileError.
+
+    A file of `save_paths` gives a frame whose cube and spectrum are None.
+    """
+    with _our_file(path) as file:
+        paths = _read_record(file)
+        frame = Frame(scene=paths.scene, radar=paths.radar, paths=paths, cube=None, parts={}, selections={},
+                      part_of_path={}, noise_seed=None, spectrum_settings={})
+        if "signal" not in file:
+            return frame
+        _read_signal(file, frame)
+        _read_partitions(file, frame)
+    return with_spectra(frame)
+
+
+def left_out(path) -> LeftOut:
+    """What a frame file does not hold. Raises ep.FileError."""
+    with _our_file(path) as file:
+        return _left_out(read_group(file, "record"))
+
+
+@contextmanager
+def _new_file(path):
+    """A new HDF5 file of ours that takes its place when the block ends well."""
+    with written_whole(path) as temporary, h5py.File(temporary, "w") as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["schema_version"] = SCHEMA_VERSION
+        file.attrs["software_version"] = ep.__version__
+        yield file
+
+
+@contextmanager
+def _our_file(path):
+    """A frame file open for reading, its format and version checked."""
+    with reading(path) as file:
+        if file.attrs.get("format") != FORMAT:
+            raise ep.FileError("is an HDF5 file, but no frame file of echopath")
+        version = read_attribute(file, "schema_version", int)
+        if version != SCHEMA_VERSION:
+            raise ep.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}")
+        yield file
+
+
+def _write_record(file, paths, min_power: float):
+    if not min_power >= 0.0:
+        raise ValueError(f"min_power: must be at least 0 W, got {min_power}")
+    write_scene(file.create_group("scene"), paths.scene)
+    write_radar(file.create_group("radar"), paths.radar)
+    group = file.create_group("record")
+    is_kept = write_paths(group, paths, min_power)
+    return _left_out(group), is_kept
+
+
+def _read_record(file):
+    scene, radar = read_scene(read_group(file, "scene")), read_radar(read_group(file, "radar"))
+    return read_paths(read_group(file, "record"), scene, radar)
+
+
+def _left_out(group) -> LeftOut:
+    return LeftOut(min_power=read_attribute(group, "min_power", float),
+                   num_paths=read_attribute(group, "num_left_out", int),
+                   power=read_attribute(group, "power_left_out", float))
+
+
+def _write_signal(file, frame: Frame) -> None:
+    group = file.create_group("signal")
+    write_array(group, "cube", frame.cube, unit="sqrt(W)")
+    write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
+    if frame.noise_seed is not None:
+        group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
+
+
+def _write_spectra(file, frame: Frame) -> None:
+    group = file.create_group("spectra")
+    group.attrs["settings"] = json.dumps(frame.spectrum_settings)
+    write_array(group, "velocity", frame.spectrum.velocity, unit="m/s")
+    write_array(group, "range", frame.spectrum.range, unit="m")
+    write_array(group, "values", frame.spectrum.values, unit="sqrt(W)")
+
+
+def _write_partitions(file, frame: Frame, is_kept) -> None:
+    """One group per partition: names, expressions, cubes, spectra and the part of each path that was written."""
+    folder = file.create_group("partitions")
+    for index, (partition, cubes) in enumerate(frame.parts.items()):
+        group = folder.create_group(str(index))
+        group.attrs["name"] = partition
+        selections = frame.selections[partition]
+        write_texts(group, "part", list(cubes))
+        write_texts(group, "expression", [selections.get(part, "") for part in cubes])
+        write_stack(group, "cubes", list(cubes.values()), unit="sqrt(W)")
+        spectra = frame.part_spectra[partition].values()
+        write_stack(group, "spectra", [spectrum.values.astype(np.complex64) for spectrum in spectra], unit="sqrt(W)")
+        write_array(group, "part_of_path", frame.part_of_path[partition][is_kept], compress=True)
+
+
+def _read_signal(file, frame: Frame) -> None:
+    group = read_group(file, "signal")
+    frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
+    frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
+    settings = json.loads(read_attribute(read_group(file, "spectra"), "settings", str))
+    window = settings["window"]
+    frame.spectrum_settings = settings | {"window": tuple(window) if isinstance(window, list) else window}
+
+
+def _read_partitions(file, frame: Frame) -> None:
+    folder = read_group(file, "partitions")
+    for index in range(len(folder)):
+        group = read_group(folder, str(index))
+        partition, names = read_attribute(group, "name", str), read_texts(group, "part")
+        cubes = read_array(group, "cubes", np.complex128, (len(names), *_cube_shape(frame.radar)))
+        frame.parts[partition] = dict(zip(names, cubes))
+        expressions = read_texts(group, "expression", len(names))
+        frame.selections[partition] = {name: text for name, text in zip(names, expressions) if name != "other"}
+        frame.part_of_path[partition] = read_array(group, "part_of_path", np.uint16, (frame.paths.num_paths,))
+
+
+def _cube_shape(radar) -> tuple:
+    return len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples

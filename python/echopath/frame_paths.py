@@ -1,0 +1,93 @@
+"""Paths in HDF5 groups (layout: data/README.md)."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .path_subset import path_power, subset
+
+HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
+PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
+               "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
+_NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
+HIT = np.dtype(list(HIT_FIELDS.items()))
+STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_false_hits")
+
+
+def write_paths(group, paths, min_power: float = 0.0):
+    """Writes the paths of at least `min_power` (W, at the trace time for the first antennas) and how many it left out.
+
+    Returns which paths were written: bool [P].
+    """
+    power = path_power(paths)
+    keep = power >= min_power
+    group.attrs["min_power"] = min_power
+    group.attrs["num_left_out"] = int(np.count_nonzero(~keep))
+    group.attrs["power_left_out"] = float(power[~keep].sum())
+    written = paths if min_power <= 0.0 else subset(paths, keep)
+    _write_frame(group.create_group("frame"), written.frame)
+    for fields, folder in ((HIT_FIELDS, "hits"), (PATH_FIELDS, "paths")):
+        target = group.create_group(folder)
+        for name in fields:
+            write_array(target, name, getattr(written, name), compress=name not in _NOISE_LIKE)
+    return keep
+
+
+def read_paths(group, scene, radar):
+    """The paths of a group; the same bits that were written."""
+    source = read_group(group, "hits")
+    num_hits = len(source["mesh_id"])
+    hits = np.empty(num_hits, HIT)
+    for name, dtype in HIT_FIELDS.items():
+        hits[name] = read_array(source, name, dtype, (num_hits,))
+    source = read_group(group, "paths")
+    num_paths = len(source["offsets"])
+    columns = {name: read_array(source, name, dtype, (num_paths,)) for name, dtype in PATH_FIELDS.items()}
+    _check_indices(group, hits, columns, scene)
+    frame = _read_frame(read_group(group, "frame"))
+    return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
+
+
+def _check_indices(group, hits, columns: dict, scene) -> None:
+    """Whatever indexes something else must stay inside it."""
+    offsets, ends = columns["offsets"], columns["offsets"] + columns["num_bounces"]
+    if len(offsets) and (offsets.min() < 0 or ends.max() > len(hits)):
+        raise ep.FileError(f"{group.name}/paths/offsets: must lie within the {len(hits)} hits")
+    meshes = list(scene.meshes)
+    if len(hits) and hits["mesh_id"].max() >= len(meshes):
+        raise ep.FileError(f"{group.name}/hits/mesh_id: must be below {len(meshes)}, the number of meshes")
+    num_triangles = np.array([len(mesh.triangles) for mesh in meshes] or [0])
+    if len(hits) and np.any(hits["triangle_id"] >= num_triangles[hits["mesh_id"]]):
+        raise ep.FileError(f"{group.name}/hits/triangle_id: must be below the number of triangles of its mesh")
+
+
+def _write_frame(group, frame) -> None:
+    for name in ("start_time", "trace_time", "seed", "max_bounces", "footprint_filter"):
+        group.attrs[name] = np.uint64(frame.seed) if name == "seed" else getattr(frame, name)
+    write_array(group, "transmitter", frame.transmitter, unit="m")
+    write_array(group, "receiver", frame.receiver, unit="m")
+    for name in STATISTICS:
+        group.attrs[name] = getattr(frame.statistics, name)
+    strata = list(frame.strata)
+    write_texts(group, "stratum_name", [stratum.name for stratum in strata])
+    write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
+    write_array(group, "stratum_cos_half_angle", np.array([stratum.cos_half_angle for stratum in strata], np.float64))
+    write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
+
+
+def _read_frame(group):
+    names = read_texts(group, "stratum_name")
+    axis = read_array(group, "stratum_axis", np.float64, (len(names), 3))
+    cos_half_angle = read_array(group, "stratum_cos_half_angle", np.float64, (len(names),))
+    num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
+    strata = [ep.Stratum(axis=axis[i], cos_half_angle=float(cos_half_angle[i]), num_rays=int(num_rays[i]),
+                         name=names[i]) for i in range(len(names))]
+    statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
+    return ep.TraceFrame(
+        start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
+        transmitter=read_array(group, "transmitter", np.float64, (3,)),
+        receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
+        seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
+        footprint_filter=read_attribute(group, "footprint_filter", bool), statistics=statistics)

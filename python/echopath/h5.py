@@ -1,0 +1,120 @@
+"""Datasets of HDF5 files: written in blocks with check sums, read with their type and shape checked."""
+from __future__ import annotations
+
+import math
+from contextlib import contextmanager
+
+import h5py
+import numpy as np
+
+import echopath as ep
+
+BLOCK_BYTES = 1 << 24   # written at a time: between two blocks Ctrl-C is answered
+CHUNK_BYTES = 1 << 20   # of compression and of check sums
+SMALL_BYTES = 1 << 12   # below it a dataset is one piece without compression
+
+_TEXT = h5py.string_dtype("utf-8")
+
+
+def write_array(group, name: str, values, *, unit: str = "", compress: bool = False) -> None:
+    """Writes an array with a check sum.
+
+    compress: shuffle and gzip level 1, for data with repetition (noise-like data grow no smaller and take longer).
+    """
+    values = np.ascontiguousarray(values)
+    options = {}
+    if values.nbytes > SMALL_BYTES:
+        options = {"chunks": _chunks(values.shape, values.itemsize), "fletcher32": True}
+        if compress:
+            options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
+    dataset.attrs["unit"] = unit
+    rows = max(1, BLOCK_BYTES // max(1, values[:1].nbytes))
+    for begin in range(0, len(values), rows):
+        dataset[begin:begin + rows] = values[begin:begin + rows]
+
+
+def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
+    """Writes arrays of one shape as one array [N, ...], one after the other."""
+    shape = (len(arrays), *arrays[0].shape)
+    dtype = arrays[0].dtype
+    dataset = group.create_dataset(name, shape=shape, dtype=dtype, fletcher32=True,
+                                   chunks=_chunks(shape, dtype.itemsize))
+    dataset.attrs["unit"] = unit
+    for index, values in enumerate(arrays):
+        dataset[index] = values
+
+
+def _chunks(shape: tuple, itemsize: int) -> tuple:
+    """The longest runs of rows of at most CHUNK_BYTES."""
+    row_bytes = itemsize * math.prod(shape[1:])
+    if row_bytes <= CHUNK_BYTES:
+        return (min(shape[0], max(1, CHUNK_BYTES // max(1, row_bytes))), *shape[1:])
+    return (1, *_chunks(shape[1:], itemsize))
+
+
+def write_texts(group, name: str, texts) -> None:
+    """Writes a list of texts as a [N] array of UTF-8."""
+    group.create_dataset(name, data=np.array(list(texts), dtype=object), dtype=_TEXT, shape=(len(texts),))
+
+
+def read_array(group, name: str, dtype, shape: tuple):
+    """The array `name` of a group; raises ep.FileError when its type or shape is another one.
+
+    shape: numbers, or None where any length will do.
+    """
+    dataset = _item(group, name, h5py.Dataset)
+    if dataset.dtype != np.dtype(dtype):
+        raise ep.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
+    if len(dataset.shape) != len(shape) or any(want not in (None, got) for want, got in zip(shape, dataset.shape)):
+        wanted = ", ".join("any" if want is None else str(want) for want in shape)
+        raise ep.FileError(f"{dataset.name} must have the shape [{wanted}], has {list(dataset.shape)}")
+    return dataset[...]
+
+
+def read_texts(group, name: str, length: int | None = None) -> list[str]:
+    """The [N] texts `name` of a group."""
+    dataset = _item(group, name, h5py.Dataset)
+    if len(dataset.shape) != 1 or (length is not None and len(dataset) != length):
+        raise ep.FileError(f"{dataset.name} must have {length} texts, has the shape {list(dataset.shape)}")
+    return [text.decode("utf-8") for text in dataset[...]]
+
+
+def read_attribute(group, name: str, kind):
+    """The attribute `name` as a `kind` (int, float, bool, str)."""
+    if name not in group.attrs:
+        raise ep.FileError(f"{group.name} has no attribute '{name}'")
+    try:
+        return kind(group.attrs[name])
+    except (TypeError, ValueError):
+        raise ep.FileError(f"{group.name}: attribute '{name}' must be a {kind.__name__}") from None
+
+
+def read_group(group, name: str):
+    """The group `name` of a group."""
+    return _item(group, name, h5py.Group)
+
+
+def _item(group, name: str, kind):
+    item = group.get(name)
+    if not isinstance(item, kind):
+        raise ep.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind.__name__.lower()}")
+    return item
+
+
+@contextmanager
+def reading(path):
+    """Opens an HDF5 file; whatever is wrong with it becomes an ep.FileError that names the file and the reason."""
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except ep.FileError as error:
+        raise ep.FileError(f"{path}: {error}") from None
+    except FileNotFoundError:
+        raise ep.FileError(f"{path}: no such file") from None
+    except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
+        raise ep.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
+
+
+def _first_line(error) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]

@@ -1,0 +1,99 @@
+"""What is in a file: scene, frame or mesh."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+import echopath as ep
+
+from . import report
+from .frame_file import left_out, load_frame
+from .scene_file import load_scene
+
+MESH_SUFFIXES = (".obj", ".ply")
+MAX_LISTED = 40  # nodes or meshes named one by one
+
+
+def describe_file(path) -> list[str]:
+    """Lines that say what is in a scene file (TOML), a frame file (HDF5) or a mesh file (OBJ, PLY).
+
+    Raises ValueError for another kind of file, ep.FileError when it cannot be read.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix == ".toml":
+        return _describe_scene_file(load_scene(path))
+    if suffix in (".h5", ".hdf5"):
+        return _describe_frame(path)
+    if suffix in MESH_SUFFIXES:
+        return _describe_meshes(ep.load_meshes(str(path)))
+    raise ValueError(f"{path}: must be a .toml, .h5, .obj or .ply file")
+
+
+def _describe_scene_file(scene_file) -> list[str]:
+    trace = scene_file.trace
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene),
+             *_describe_radar(scene_file.radar), "trace", report.line("rays", f"{trace.num_rays:,}"),
+             report.line("bounces at most", str(trace.max_bounces))]
+    for partition, group in scene_file.partitions().items():
+        lines.append(f"parts, {partition}")
+        lines += [report.line(name, expression) for name, expression in group.items()]
+    return lines
+
+
+def _describe_scene(scene) -> list[str]:
+    meshes = list(scene.meshes)
+    lines = ["scene", report.line("meshes", str(len(meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
+    lines += [report.line(f"  {mesh.name}", f"{len(mesh.triangles):,} triangles{_material(mesh)}")
+              for mesh in meshes[:MAX_LISTED]]
+    return lines + ([f"    and {len(meshes) - MAX_LISTED} more"] if len(meshes) > MAX_LISTED else [])
+
+
+def _material(mesh) -> str:
+    name = f", {mesh.material_name}" if mesh.material_name else ""
+    return name + (", mirror" if mesh.material.mirror else "")
+
+
+def _describe_radar(radar) -> list[str]:
+    waveform = radar.waveform
+    slots = len(radar.transmitters)
+    cell = 0.5 * ep.speed_of_light / waveform.bandwidth
+    wavelength = ep.speed_of_light / (waveform.start_frequency + 0.5 * waveform.bandwidth)
+    max_range = cell * waveform.num_samples * (0.5 if waveform.real else 1.0)
+    return ["radar",
+            report.line("antennas", f"{slots} transmitting, {len(radar.receivers)} receiving"),
+            report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
+            report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
+                        f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
+            report.line("range", f"to {max_range:.2f} m, resolution {cell:.3f} m"),
+            report.line("velocity", f"+-{wavelength / (4.0 * slots * waveform.chirp_interval):.2f} m/s, resolution "
+                        f"{wavelength / (2.0 * slots * waveform.chirp_interval * waveform.num_chirps):.3f} m/s")]
+
+
+def _describe_frame(path: Path) -> list[str]:
+    missing = left_out(path)
+    frame = load_frame(path)
+    lines = [str(path), *_describe_scene(frame.scene), *_describe_radar(frame.radar), "record",
+             *report.counts(frame.paths), report.omissions(missing, path)]
+    if frame.cube is None:
+        return lines
+    lines += ["cube", report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape))),
+              report.line("power without noise", f"{report.power_dbm(frame.cube):.2f} dBm")]
+    return lines + report.part_powers(frame.parts)
+
+
+def _describe_meshes(meshes) -> list[str]:
+    lines = [f"{len(meshes)} mesh" + ("es" if len(meshes) != 1 else "")]
+    for name, mesh in meshes:
+        low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)
+        lines += [name, report.line("triangles, vertices", f"{len(mesh.triangles):,}, {len(mesh.vertices):,}"),
+                  report.line("area", f"{mesh.area:.6g} m^2, {'closed' if mesh.is_closed else 'open'}"),
+                  report.line("from, to", f"{_point(low)}, {_point(high)} m"),
+                  report.line("triangles removed", f"{mesh.num_removed_triangles}"),
+                  report.line("vertices duplicated", f"{mesh.num_duplicated_vertices}")]
+    return lines
+
+
+def _point(point) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in point) + ")"

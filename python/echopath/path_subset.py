@@ -1,0 +1,71 @@
+"""Some paths of a record with only the hits they use."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+
+def path_power(paths):
+    """Power of each path at the trace time for the first antennas, [P] in W."""
+    amplitude = paths.amplitude
+    return amplitude.real**2 + amplitude.imag**2
+
+
+def used_hits(offsets, num_bounces, num_hits: int):
+    """The hits that paths use, and where the paths find them once the others are gone.
+
+    offsets, num_bounces [P]: as in Paths; num_hits: H.
+    Returns used [H'] (ascending indices of hits) and offsets [P] into them. Hits that paths share stay shared.
+    """
+    begins = np.bincount(offsets, minlength=num_hits + 1)
+    ends = np.bincount(offsets + num_bounces, minlength=num_hits + 1)
+    is_used = np.cumsum(begins - ends)[:num_hits] > 0
+    position = np.cumsum(is_used) - 1
+    new_offsets = position[offsets] if num_hits else np.zeros(0, np.int64)
+    return np.flatnonzero(is_used), new_offsets.astype(np.int64)
+
+
+def subset(paths, keep):
+    """The paths where `keep` [P] is true (or of the indices `keep`), in order, with only the hits that they use."""
+    chosen = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.sort(np.asarray(keep, dtype=np.int64))
+    offsets, num_bounces = paths.offsets[chosen], paths.num_bounces[chosen]
+    used, new_offsets = used_hits(offsets, num_bounces, len(paths.hits))
+    return ep.Paths.from_arrays(
+        hits=paths.hits[used], offsets=new_offsets, num_bounces=num_bounces, diffuse=paths.diffuse[chosen],
+        weight=paths.weight[chosen], stratum=paths.stratum[chosen], batch=paths.batch[chosen],
+        flags=paths.flags[chosen], scene=paths.scene, radar=paths.radar, frame=paths.frame)
+
+
+def part_of_path(paths, selections: dict):
+    """The part of each path in a partition {name: selection}: [P] u16, index of a name, or their number for "other"."""
+    part = np.full(paths.num_paths, len(selections), np.uint16)
+    for index, selection in reversed(list(enumerate(selections.values()))):
+        part[np.asarray(ep.Selection(selection).matches(paths), dtype=bool)] = index
+    return part
+
+
+def power_of_strongest(power, max_paths: int) -> float:
+    """The power in W that at most `max_paths` of the paths reach, [P] `power` in W; 0 when all paths are few enough."""
+    if len(power) <= max_paths:
+        return 0.0
+    strongest = np.partition(power, len(power) - max_paths)[len(power) - max_paths:]
+    threshold = strongest.min()
+    if np.count_nonzero(power >= threshold) > max_paths:
+        threshold = np.nextafter(threshold, np.inf)
+    return float(threshold)
+
+
+def strongest_by_bounces(paths, count: int):
+    """Indices of at most `count` paths: the strongest of each number of bounces, in equal shares, strongest first."""
+    power = path_power(paths)
+    bounces = paths.num_bounces
+    present = np.unique(bounces)
+    share = count // max(1, len(present))
+    chosen = [_strongest(np.flatnonzero((bounces == number) & (power > 0)), power, share) for number in present]
+    indices = np.concatenate([np.zeros(0, np.int64), *chosen])
+    return indices[np.argsort(-power[indices], kind="stable")]
+
+
+def _strongest(indices, power, count: int):
+    return indices[np.argsort(-power[indices], kind="stable")[:count]]

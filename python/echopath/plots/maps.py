@@ -1,0 +1,124 @@
+"""Range-Doppler maps."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .style import MAP_COLOURS, new_figure
+
+DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
+MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
+NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
+CROP_MARGIN = 0.08           # of the signal's extent, left free around it
+SMALLEST_POWER = 1e-300      # W, stands for zero on a logarithmic scale
+
+
+def power_dbm(spectrum):
+    """Mean power of the channels, [velocity, range] in dB re 1 mW."""
+    power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+    return 10.0 * np.log10(np.maximum(power, SMALLEST_POWER) * 1e3)
+
+
+def colour_limits(spectrum) -> tuple[float, float]:
+    """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5."""
+    level = power_dbm(spectrum)
+    highest = 5.0 * math.ceil(level.max() / 5.0)
+    above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
+    return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
+
+
+def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None):
+    """One range-Doppler map, cropped to where there is signal.
+
+    spectrum: of `range_doppler`; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`.
+    Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive).
+    """
+    vmin, vmax = _limits(spectrum, vmin, vmax)
+    with new_figure(7.2, 4.4) as figure:
+        axes = figure.subplots()
+        image = _draw(axes, spectrum, vmin, vmax)
+        _crop([axes], _extent([spectrum], vmin))
+        axes.set_title(title)
+        axes.set_xlabel("Range in m")
+        axes.set_ylabel("Radial velocity in m/s")
+        _colour_bar(figure, image, [axes])
+    return figure
+
+
+def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None):
+    """The maps of the parts of a partition side by side, with one crop and one colour scale for all.
+
+    spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
+    the strongest part when there is no `whole`). Returns a matplotlib figure with the axes of `plot_range_doppler`.
+    """
+    strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
+    vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
+    columns = min(len(spectra), 2)
+    rows = -(-len(spectra) // columns)
+    with new_figure(4.4 * columns + 0.8, 3.0 * rows + 0.5) as figure:
+        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        panels = list(grid.flat)
+        for axes, (name, spectrum) in zip(panels, spectra.items()):
+            image = _draw(axes, spectrum, vmin, vmax)
+            axes.set_title(name)
+        for axes in panels[len(spectra):]:
+            axes.remove()
+        _crop(panels[:len(spectra)], _extent(spectra.values(), vmin))
+        figure.supxlabel("Range in m", fontsize=9)
+        figure.supylabel("Radial velocity in m/s", fontsize=9)
+        figure.suptitle(title, fontsize=11)
+        _colour_bar(figure, image, panels[:len(spectra)])
+    return figure
+
+
+def _limits(spectrum, vmin, vmax):
+    lowest, highest = colour_limits(spectrum)
+    return (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+
+
+def _draw(axes, spectrum, vmin: float, vmax: float):
+    """The map as an image whose pixels are centred on their cells."""
+    half_range, half_velocity = _half_step(spectrum.range), _half_step(spectrum.velocity)
+    extent = (spectrum.range[0] - half_range, spectrum.range[-1] + half_range,
+              spectrum.velocity[0] - half_velocity, spectrum.velocity[-1] + half_velocity)
+    return axes.imshow(power_dbm(spectrum), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS, vmin=vmin,
+                       vmax=vmax, interpolation="nearest")
+
+
+def _half_step(axis) -> float:
+    return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
+
+
+def _extent(spectra, floor: float):
+    """Smallest box (range, velocity) with all cells above `floor` in dBm, and a margin; None when there is none."""
+    boxes = []
+    for spectrum in spectra:
+        level = power_dbm(spectrum)
+        velocity, distance = np.nonzero(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB))
+        if len(velocity):
+            boxes.append((spectrum.range[distance.min()], spectrum.range[distance.max()],
+                          spectrum.velocity[velocity.min()], spectrum.velocity[velocity.max()]))
+    if not boxes:
+        return None
+    nearest, _, lowest, _ = np.min(boxes, axis=0)
+    _, farthest, _, highest = np.max(boxes, axis=0)
+    return (*_widened(nearest, farthest, 1.0), *_widened(lowest, highest, 0.5))
+
+
+def _widened(begin: float, end: float, smallest_margin: float):
+    margin = max(CROP_MARGIN * (end - begin), smallest_margin)
+    return begin - margin, end + margin
+
+
+def _crop(panels, extent) -> None:
+    if extent is None:
+        return
+    for axes in panels:
+        left, right, bottom, top = axes.get_images()[0].get_extent()
+        axes.set_xlim(max(left, extent[0]), min(right, extent[1]))
+        axes.set_ylim(max(bottom, extent[2]), min(top, extent[3]))
+
+
+def _colour_bar(figure, image, panels) -> None:
+    figure.colorbar(image, ax=panels, label="Received power in dBm", extend="both", pad=0.02, aspect=30)

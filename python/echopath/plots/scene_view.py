@@ -1,0 +1,172 @@
+"""A scene with the strongest rays: perspective, from above and from the side."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ..path_subset import strongest_by_bounces, subset
+from .clip import clip_triangles, outline
+from .style import BOUNCE_COLOURS, new_figure
+
+BODY_COLOUR = np.array([0.35, 0.38, 0.44])
+MIRROR_COLOUR = (0.55, 0.65, 0.80)
+LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
+MARGIN = 0.6                            # m around the rays
+RADAR_LABEL = "radar"
+
+
+@dataclasses.dataclass
+class _Drawing:
+    """What the views show: polygons [N, 3] with colours [4], edges [2, 3], rays [S, 2, 3] by number of bounces."""
+
+    bodies: list
+    body_colours: list
+    mirrors: list
+    mirror_edges: list
+    segments: dict
+    radar: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and strongest rays"):
+    """A scene with its strongest rays.
+
+    paths: of `trace`; num_rays: drawn at most, in equal shares of each number of bounces, the strongest of each
+    time: of the picture in s, None: the time of the trace. Mirrors are drawn translucent.
+    Returns a matplotlib figure with three views in metres.
+    """
+    time = paths.frame.trace_time if time is None else time
+    drawing = _collect(scene, paths, num_rays, time)
+    with new_figure(10.5, 8.0) as figure:
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
+        perspective = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
+        _draw_perspective(perspective, drawing)
+        _draw_flat(figure.add_subplot(grid[1, 0]), drawing, (0, 1), "From above")
+        _draw_flat(figure.add_subplot(grid[1, 1]), drawing, (0, 2), "From the side")
+        figure.suptitle(title, fontsize=11)
+        _add_legend(figure, drawing)
+    return figure
+
+
+def _collect(scene, paths, num_rays: int, time: float) -> _Drawing:
+    shown = subset(paths, strongest_by_bounces(paths, num_rays))
+    transmitter, receiver = np.asarray(paths.frame.transmitter), np.asarray(paths.frame.receiver)
+    points = np.asarray(shown.points(time)).reshape(-1, 3)
+    segments = {int(count): _segments(shown, points, count, transmitter, receiver)
+                for count in np.unique(shown.num_bounces)}
+    corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
+    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    drawing = _Drawing([], [], [], [], segments, 0.5 * (transmitter + receiver), low, high)
+    for mesh_id, mesh in enumerate(scene.meshes):
+        vertices = np.asarray(scene.world_vertices(mesh_id, time))
+        _add_mesh(drawing, vertices[np.asarray(mesh.triangles)], mesh.material.mirror)
+    return drawing
+
+
+def _segments(paths, points, count: int, transmitter, receiver):
+    """Straight pieces [S, 2, 3] of all paths of `count` bounces, from the transmitter by the hits to the receiver."""
+    offsets = paths.offsets[paths.num_bounces == count]
+    corners = np.empty((len(offsets), count + 2, 3))
+    corners[:, 0], corners[:, -1] = transmitter, receiver
+    corners[:, 1:-1] = points[offsets[:, None] + np.arange(count)]
+    return np.stack([corners[:, :-1], corners[:, 1:]], axis=2).reshape(-1, 2, 3)
+
+
+def _object_vertices(scene, time: float):
+    """World vertices [N, 3] of the meshes that are no mirrors: what the picture must hold, small or not."""
+    vertices = [np.asarray(scene.world_vertices(mesh_id, time)) for mesh_id, mesh in enumerate(scene.meshes)
+                if not mesh.material.mirror]
+    return np.concatenate([np.zeros((0, 3)), *vertices])
+
+
+def _add_mesh(drawing: _Drawing, triangles, is_mirror: bool) -> None:
+    polygons = clip_triangles(triangles, drawing.low, drawing.high)
+    if is_mirror:
+        drawing.mirrors += polygons
+        drawing.mirror_edges += outline(polygons)
+        return
+    drawing.bodies += polygons
+    drawing.body_colours += [_shaded(polygon) for polygon in polygons]
+
+
+def _shaded(polygon):
+    """Colour of a polygon under the lamp, both sides alike."""
+    normal = np.cross(polygon[1] - polygon[0], polygon[2] - polygon[0])
+    length = np.linalg.norm(normal)
+    brightness = abs(normal @ LIGHT) / (length * np.linalg.norm(LIGHT)) if length > 0.0 else 0.0
+    return (*np.clip(BODY_COLOUR * (0.55 + 1.0 * brightness), 0.0, 1.0), 1.0)
+
+
+def _colour(count: int) -> str:
+    return BOUNCE_COLOURS[min(count, len(BOUNCE_COLOURS)) - 1]
+
+
+def _ray_opacity(segments) -> float:
+    return float(np.clip(40.0 / max(1, len(segments)), 0.12, 0.8))
+
+
+def _draw_perspective(axes, drawing: _Drawing) -> None:
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+    axes.add_collection3d(Poly3DCollection(drawing.mirrors, facecolors=(*MIRROR_COLOUR, 0.25), edgecolors="none",
+                                           zorder=1, clip_on=False))
+    axes.add_collection3d(Line3DCollection(drawing.mirror_edges, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7, zorder=1,
+                                           clip_on=False))
+    for count, segments in reversed(drawing.segments.items()):
+        axes.add_collection3d(Line3DCollection(segments, colors=_colour(count), linewidths=0.6,
+                                               alpha=_ray_opacity(segments), zorder=2, clip_on=False))
+    axes.add_collection3d(Poly3DCollection(drawing.bodies, facecolors=drawing.body_colours, edgecolors="none",
+                                           zorder=3, clip_on=False))
+    axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
+    axes.text(*drawing.radar, f"  {RADAR_LABEL}", zorder=5)
+    _frame_box(axes, drawing)
+
+
+def _frame_box(axes, drawing: _Drawing) -> None:
+    axes.set_xlim(drawing.low[0], drawing.high[0])
+    axes.set_ylim(drawing.low[1], drawing.high[1])
+    axes.set_zlim(drawing.low[2], drawing.high[2])
+    axes.set_box_aspect(drawing.high - drawing.low, zoom=1.75)
+    axes.view_init(elev=22.0, azim=-118.0)
+    axes.set_xlabel("x in m")
+    axes.set_ylabel("y in m")
+    axes.set_zlabel("z in m")
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.pane.set_visible(False)
+        axis._axinfo["grid"].update(color=(0.85, 0.85, 0.85), linewidth=0.4)
+
+
+def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
+    """The scene along an axis: mirrors below the rays, bodies above them."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    columns = list(plane)
+    depth = ({0, 1, 2} - set(plane)).pop()
+    mirrors = [polygon[:, columns] for polygon in drawing.mirrors]
+    axes.add_collection(PolyCollection(mirrors, facecolors=(*MIRROR_COLOUR, 0.15), edgecolors="none"))
+    edges = [edge[:, columns] for edge in drawing.mirror_edges]
+    axes.add_collection(LineCollection(edges, colors=MIRROR_COLOUR, linewidths=0.8))
+    for count, segments in reversed(drawing.segments.items()):
+        axes.add_collection(LineCollection(segments[:, :, columns], colors=_colour(count), linewidths=0.5,
+                                           alpha=_ray_opacity(segments)))
+    toward_viewer = 1.0 if depth == 2 else -1.0
+    order = np.argsort([toward_viewer * polygon[:, depth].mean() for polygon in drawing.bodies], kind="stable")
+    axes.add_collection(PolyCollection([drawing.bodies[i][:, columns] for i in order],
+                                       facecolors=[drawing.body_colours[i] for i in order], edgecolors="none"))
+    axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
+    axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
+    axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
+    axes.set_aspect("equal")
+    axes.set_title(title)
+    axes.set_xlabel("xyz"[plane[0]] + " in m")
+    axes.set_ylabel("xyz"[plane[1]] + " in m")
+
+
+def _add_legend(figure, drawing: _Drawing) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], color=_colour(count), linewidth=1.5, label=f"{count} bounce" + ("s" if count > 1 else ""))
+               for count in sorted(drawing.segments)]
+    figure.legend(handles=handles, loc="outside lower center", ncols=max(1, len(handles)), frameon=False)

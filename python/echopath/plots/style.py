@@ -1,0 +1,38 @@
+"""What all pictures have in common."""
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from ..files import written_whole
+
+DPI = 160
+MAP_COLOURS = "inferno"
+# Okabe and Ito: told apart with any colour vision. By number of bounces, the last for all higher numbers.
+BOUNCE_COLOURS = ("#009e73", "#0072b2", "#d55e00", "#cc79a7", "#8c6d1f")
+
+_SETTINGS = {
+    "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
+    "xtick.labelsize": 8, "ytick.labelsize": 8, "axes.spines.top": False, "axes.spines.right": False,
+    "figure.facecolor": "white", "savefig.facecolor": "white",
+}
+
+
+@contextmanager
+def new_figure(width: float, height: float):
+    """Yields an empty figure of that size in inches that needs no window."""
+    import matplotlib
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(_SETTINGS):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(figure)
+        yield figure
+
+
+def save_png(figure, path) -> None:
+    """Writes a figure as PNG, whole or not at all; the same figure gives the same bytes."""
+    import matplotlib
+
+    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary:
+        figure.savefig(temporary, format="png", dpi=DPI, metadata={"Software": "echopath"})

@@ -1,0 +1,75 @@
+"""What a run prints: figures of a frame in plain words."""
+from __future__ import annotations
+
+import numpy as np
+
+STATIC_CELLS = 2.5        # velocity cells on both sides of zero that hold what stands still
+EXTENT_BELOW_PEAK_DB = 30.0
+LABEL_WIDTH = 34
+
+
+def power_dbm(cube) -> float:
+    """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros."""
+    power = float(np.mean(cube.real**2 + cube.imag**2))
+    return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
+
+
+def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
+    """(lowest, highest) radial velocity in m/s of what moves in a map; None when nothing does.
+
+    The power of all ranges and channels must reach `below_peak_db` below that of its strongest moving velocity.
+    """
+    profile = np.sum(np.abs(spectrum.values) ** 2, axis=(0, 1, 3))
+    step = spectrum.velocity[1] - spectrum.velocity[0] if len(spectrum.velocity) > 1 else 0.0
+    profile = np.where(np.abs(spectrum.velocity) > STATIC_CELLS * step, profile, 0.0)
+    if profile.max() == 0.0:
+        return None
+    velocities = spectrum.velocity[profile >= profile.max() * 10.0 ** (-below_peak_db / 10.0)]
+    return float(velocities.min()), float(velocities.max())
+
+
+def residual(whole, parts: dict) -> float:
+    """How far the parts are from adding up: |whole - sum of parts| / |whole|, 0 when both are zero."""
+    difference = float(np.linalg.norm(whole - sum(parts.values())))
+    return difference / float(np.linalg.norm(whole)) if difference > 0.0 else 0.0
+
+
+def line(label: str, value: str) -> str:
+    """One line of a report."""
+    return f"  {label:<{LABEL_WIDTH}}{value}"
+
+
+def counts(paths) -> list[str]:
+    """Rays, hits and paths of a trace."""
+    return [line("rays", f"{paths.frame.statistics.num_rays:,}"), line("hits recorded", f"{len(paths.mesh_id):,}"),
+            line("paths", f"{paths.num_paths:,}")]
+
+
+def stages(all_stages) -> list[str]:
+    """Time and peak memory of each stage."""
+    lines = [line(stage.name, f"{stage.seconds:8.2f} s {stage.peak_memory / 2**20:10,.0f} MiB") for stage in all_stages]
+    return ["time and peak memory", *lines, line("all", f"{sum(stage.seconds for stage in all_stages):8.2f} s")]
+
+
+def part_powers(parts: dict) -> list[str]:
+    """Mean received power of each part of each partition."""
+    lines = []
+    for partition, cubes in parts.items():
+        lines.append(f"received power, {partition}")
+        lines += [line(name, f"{power_dbm(cube):8.2f} dBm") for name, cube in cubes.items()]
+    return lines
+
+
+def extent(label: str, spectrum) -> str:
+    """Radial velocities that a part covers."""
+    found = velocity_extent(spectrum)
+    return line(label, "does not move" if found is None else f"{found[0]:+6.2f} to {found[1]:+6.2f} m/s")
+
+
+def omissions(missing, path) -> str:
+    """Size of a frame file and what it leaves out."""
+    size = f"{path.stat().st_size / 2**20:,.0f} MiB"
+    if missing.num_paths == 0:
+        return line(path.name, f"{size}, all paths")
+    dbm = 10.0 * np.log10(missing.power * 1e3) if missing.power > 0.0 else -np.inf
+    return line(path.name, f"{size}, {missing.num_paths:,} weak paths of {dbm:.2f} dBm together left out")

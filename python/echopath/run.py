@@ -1,0 +1,83 @@
+"""Simulates a scene file and writes the frame and its pictures."""
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+from . import plots
+from .frame_file import LeftOut, save_frame
+from .path_subset import path_power, power_of_strongest
+from .scene_file import SceneFile
+from .simulate import Frame, simulate
+from .stages import StageClock
+
+RECORD_BYTES = 300e6  # of paths and hits in a frame file, at most
+PATH_BYTES, HIT_BYTES = 31, 16
+
+
+@dataclasses.dataclass(frozen=True)
+class Written:
+    """What a run wrote: frame_path, left_out of it, pictures (paths of PNG files)."""
+
+    frame_path: Path
+    left_out: LeftOut
+    pictures: list
+
+
+def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, extra_parts=None, progress=None) -> Frame:
+    """The frame that a scene file describes.
+
+    num_rays, seed: instead of those of the file; extra_parts: {partition: {part: selection}} beside those of the file.
+    """
+    settings = scene_file.trace_settings()
+    if num_rays is not None:
+        settings["num_rays"] = num_rays
+    if seed is not None:
+        settings["seed"] = seed
+    parts = scene_file.partitions() | (extra_parts or {})
+    return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
+                    **scene_file.spectrum_settings(), progress=progress)
+
+
+def write_outputs(frame: Frame, folder, partitions) -> Written:
+    """Writes frame.h5, scene.png, map.png and a PNG for each of `partitions`; adds its stages to those of the frame."""
+    folder = Path(folder)
+    clock = StageClock()
+    with clock("frame file"):
+        frame_path = folder / "frame.h5"
+        left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame.paths))
+    with clock("pictures"):
+        pictures = _write_pictures(frame, folder, partitions)
+    frame.stages += clock.stages
+    return Written(frame_path, left_out, pictures)
+
+
+def min_power_of_budget(paths, record_bytes: float = RECORD_BYTES) -> float:
+    """Power in W that a path must have so that the strongest paths that fit into `record_bytes` are kept."""
+    if paths.num_paths == 0:
+        return 0.0
+    bytes_per_path = PATH_BYTES + HIT_BYTES * float(paths.num_bounces.mean())
+    return power_of_strongest(path_power(paths), int(record_bytes / bytes_per_path))
+
+
+def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
+    written = []
+
+    def write(name: str, figure) -> None:
+        plots.save_png(figure, folder / f"{name}.png")
+        written.append(folder / f"{name}.png")
+
+    write("scene", plots.plot_scene(frame.scene, frame.paths))
+    vmin, vmax = plots.colour_limits(frame.spectrum)
+    write("map", plots.plot_range_doppler(frame.spectrum, vmin=vmin, vmax=vmax))
+    for partition in partitions:
+        title = f"Received power by {partition}" if partition != "parts" else "Received power by part"
+        spectra = shown_parts(frame.part_spectra[partition], vmin)
+        write(partition, plots.plot_partition(spectra, title=title, vmin=vmin, vmax=vmax))
+    return written
+
+
+def shown_parts(spectra: dict, vmin: float) -> dict:
+    """The parts that a picture shows: "other" only when some of it reaches the colour scale."""
+    return {name: spectrum for name, spectrum in spectra.items()
+            if name != "other" or plots.power_dbm(spectrum).max() > vmin}

@@ -1,0 +1,149 @@
+"""Scenes: a tree of named nodes with meshes, materials and motions."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from . import _core
+from .materials import materials
+
+_ADD_KEYWORDS = ["name", "material", "motion", "position", "yaw", "transform", "parent", "smooth"]
+_ORIGIN = (0.0, 0.0, 0.0)
+
+
+class Scene(_core.Scene):
+    """A tree of named nodes.
+
+    nodes: list of Node, parents first; meshes: list of SceneMesh by mesh ID (.id, .name, .triangles [F, 3], .material)
+    world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s
+    """
+
+    def add(self, mesh_or_actor=None, *, name, material=None, motion=None, position=_ORIGIN, yaw=0.0, transform=None,
+            parent=None, smooth=False, **unknown) -> str:
+        """Adds an object and returns its full name, "street/pedestrian".
+
+        mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part (a '/' in
+            a part's name makes nodes in between); or None for an empty node to hang others on
+        name: without '/', '*', '?' and quotes, unique among its siblings
+        material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given here
+            replaces them)
+        motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence; None: at rest
+        position [3] in m, yaw in rad about z (left positive): placement at rest relative to the parent
+        transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
+        parent: full name of a node; None: the root
+        smooth: False; interpolated normals are not modelled
+        Raises ValueError or TypeError naming the argument; then nothing has been added.
+        """
+        _refuse_unknown(unknown)
+        if smooth:
+            raise ValueError("smooth: must be False, interpolated normals are not modelled yet, got True")
+        batch = _Batch(self, self._index_of(parent))
+        batch.add_object(mesh_or_actor, name, material, motion, _placement(position, yaw, transform))
+        self._add_nodes(batch.nodes)
+        return f"{parent}/{name}" if parent else name
+
+    def _index_of(self, parent) -> int:
+        if parent is None:
+            return -1
+        index = self.find(parent)
+        if index is None:
+            names = [node.name for node in self.nodes]
+            nearest = ", ".join(_core.nearest_names(parent, names)) or "none, the scene is empty"
+            raise ValueError(f"parent: must be the full name of a node (nearest: {nearest}), got {parent!r}")
+        return index
+
+
+class _Batch:
+    """The nodes of one `add`, made before any of them is added."""
+
+    def __init__(self, scene, parent: int):
+        self.nodes = []
+        self._first = scene.num_nodes
+        self._parent = parent
+
+    def add_object(self, content, name, material, motion, placement) -> None:
+        if content is None or isinstance(content, _core.Mesh):
+            self._add(name, self._parent, placement, motion, content, material)
+            return
+        parts = _parts_of(content, material)
+        if motion is None:
+            motion = getattr(content, "motion", None)
+        self._add(name, self._parent, placement, motion, None, None)
+        known = {"": self._first}
+        for part_name, mesh, part_material, part_motion, part_placement in parts:
+            known[part_name] = self._add_part(known, part_name, part_placement, part_motion, mesh, part_material)
+
+    def _add_part(self, known: dict, name: str, placement, motion, mesh, material) -> int:
+        *groups, own_name = name.split("/")
+        path = ""
+        for group in groups:
+            outer, path = path, f"{path}/{group}".lstrip("/")
+            if path not in known:
+                known[path] = self._add(group, known[outer], None, None, None, None)
+        return self._add(own_name, known[path], placement, motion, mesh, material)
+
+    def _add(self, name, parent: int, placement, motion, mesh, material) -> int:
+        if not isinstance(name, str):
+            raise TypeError(f"name: must be text, got {name!r}")
+        material, material_name = _material(material, mesh, name)
+        sequence = motion if isinstance(motion, _core.VertexSequence) else None
+        if sequence is not None and mesh is None:
+            raise ValueError(f"motion: a VertexSequence needs a mesh, and '{name}' has none of its own")
+        if not (motion is None or sequence or isinstance(motion, _core.Motion)):
+            raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion or VertexSequence, got {motion!r}")
+        self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if sequence else motion,
+                                     mesh=mesh, sequence=sequence, material=material, material_name=material_name))
+        return self._first + len(self.nodes) - 1
+
+
+def _parts_of(content, material) -> list:
+    """(name, mesh, material, motion, placement) of each part of an actor or of a list of named meshes."""
+    if hasattr(content, "parts"):
+        return [(part.name, part.mesh, part.material if material is None else material, part.motion,
+                 _placement(part.position, 0.0, None)) for part in content.parts]
+    if isinstance(content, (list, tuple)):
+        if not all(isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], _core.Mesh) for item in content):
+            raise TypeError("mesh_or_actor: a list must hold pairs (name, Mesh)")
+        return [(name, mesh, material, None, None) for name, mesh in content]
+    raise TypeError(f"mesh_or_actor: must be a Mesh, an Actor, a list of (name, Mesh) or None, got {type(content).__name__}")
+
+
+def _material(material, mesh, name: str):
+    """(Material or None, its name or "")."""
+    if mesh is None:
+        if material is not None:
+            raise ValueError(f"material: must not be given without a mesh, got {material!r} for '{name}'")
+        return None, ""
+    if material is None:
+        raise ValueError(f"material: the mesh '{name}' needs one, a Material or one of {', '.join(materials)}")
+    if isinstance(material, str):
+        try:
+            return materials[material], material
+        except KeyError as error:
+            raise ValueError(f"material: {error.args[0]}") from None
+    if not isinstance(material, _core.Material):
+        raise TypeError(f"material: must be a Material or a name, got {material!r}")
+    return material, materials.name_of(material)
+
+
+def _placement(position, yaw, transform):
+    """parent_from_node at rest, [4, 4]."""
+    if transform is not None:
+        if tuple(np.ravel(position)) != _ORIGIN or yaw != 0.0:
+            raise ValueError("transform: must not be given together with position or yaw")
+        return transform
+    position = np.asarray(position, dtype=np.float64)
+    if position.shape != (3,) or not np.isfinite(position).all():
+        raise ValueError(f"position: must be three finite numbers in m, got {position.tolist()}")
+    if not math.isfinite(yaw):
+        raise ValueError(f"yaw: must be a finite angle in rad, got {yaw}")
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    x, y, z = position
+    return np.array([[cos, -sin, 0.0, x], [sin, cos, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]])
+
+
+def _refuse_unknown(unknown: dict) -> None:
+    for word in unknown:
+        nearest = _core.nearest_names(word, _ADD_KEYWORDS, 1)[0]
+        raise TypeError(f"add: unknown keyword '{word}', the nearest right one is '{nearest}'")

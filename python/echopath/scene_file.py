@@ -1,0 +1,219 @@
+"""Scene files: TOML -> a scene, a radar and the settings of a simulation."""
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import math
+import tomllib
+import typing
+from contextlib import contextmanager
+from pathlib import Path
+
+from pydantic import create_model
+
+import echopath as ep
+
+from .scene_schema import ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
+from .schema_errors import validated
+from .simulate import as_partitions
+
+
+@dataclasses.dataclass(frozen=True)
+class SceneFile:
+    """What a scene file says.
+
+    path: of the file; title: one line; scene, radar: ready to trace; trace, spectrum: settings, as keywords by
+    `trace_settings()` and `spectrum_settings()`; parts: {name: expression} (one partition), {name: {name: expression}}
+    (several) or {}; noise_seed: of the thermal noise.
+    """
+
+    path: Path
+    title: str
+    scene: object
+    radar: object
+    trace: TraceTable
+    spectrum: SpectrumTable
+    parts: dict
+    noise_seed: int
+
+    def trace_settings(self) -> dict:
+        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint_filter."""
+        return self.trace.model_dump()
+
+    def spectrum_settings(self) -> dict:
+        """Keywords of `ep.range_doppler`: window, zero_pad."""
+        window = self.spectrum.window
+        return {"window": tuple(window) if isinstance(window, list) else window, "zero_pad": self.spectrum.zero_pad}
+
+    def partitions(self) -> dict:
+        """`parts` as {partition: {name: expression}}."""
+        return as_partitions(self.parts)
+
+
+def load_scene(path) -> SceneFile:
+    """Reads a scene file (keys and units: data/README.md).
+
+    path: of the TOML file. Returns a SceneFile.
+    Raises ep.FileError when the file cannot be read; ValueError naming the file, the dotted path of the key, the rule
+    and the value for each fault of its content, or the line of a fault of its syntax.
+    """
+    path = Path(path)
+    table = _parse(path)
+    try:
+        settings = validated(SceneTable, table)
+        return SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
+                         radar=_build_radar(settings.radar), trace=settings.trace, spectrum=settings.spectrum,
+                         parts=dict(settings.parts), noise_seed=settings.noise.seed)
+    except ValueError as error:
+        raise ValueError("\n".join(f"{path}: {line}" for line in str(error).splitlines())) from None
+
+
+def _parse(path: Path) -> dict:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8"))
+    except OSError as error:
+        raise ep.FileError(f"{path}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+@contextmanager
+def _blame(key: str):
+    """Prefixes what the core refuses with the dotted path of the key it came from."""
+    try:
+        yield
+    except (ValueError, KeyError) as error:
+        text = str(error.args[0]) if error.args else str(error)
+        raise ValueError(f"{key}: {text}") from None
+
+
+def _build_radar(table: RadarTable):
+    with _blame("radar.waveform"):
+        waveform = ep.ChirpSequence(**table.waveform.model_dump())
+    antennas = {}
+    for side in ("transmitters", "receivers"):
+        antennas[side] = []
+        for index, antenna in enumerate(getattr(table, side)):
+            with _blame(f"radar.{side}[{index}]"):
+                antennas[side].append(_antenna(antenna, table))
+    with _blame("radar"):
+        return ep.Radar(waveform, **antennas, transmit_power=table.transmit_power,
+                        noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing, motion=_motion(table.motion, "radar.motion"))
+
+
+def _antenna(antenna, radar: RadarTable):
+    orientation = antenna.orientation or _turned_left(antenna.yaw_deg or 0.0)
+    return ep.Antenna(tuple(antenna.position), orientation=tuple(orientation),
+                      pattern=_pattern(antenna.pattern or radar.pattern),
+                      polarization=tuple(antenna.polarization or radar.polarization))
+
+
+def _turned_left(yaw_deg: float) -> tuple:
+    """Quaternion (w, x, y, z) of a turn about z."""
+    half = 0.5 * math.radians(yaw_deg)
+    return (math.cos(half), 0.0, 0.0, math.sin(half))
+
+
+def _pattern(table):
+    if table is None:
+        return ep.Isotropic()
+    if table.kind == "isotropic":
+        return ep.Isotropic(gain=table.gain)
+    return ep.CosinePower(table.exponent, peak_gain=table.peak_gain)
+
+
+def _motion(table, key: str):
+    if table is None:
+        return None
+    with _blame(key):
+        if table.kind == "linear":
+            return ep.LinearMotion(velocity=tuple(table.velocity), angular_velocity=tuple(table.angular_velocity))
+        return ep.KeyframeMotion(times=table.times, translations=table.translations, rotations=table.rotations,
+                                 interpolation=table.interpolation)
+
+
+def _material(value, key: str):
+    """The material of an object: None, an ep.Material, or a known name (which must be known)."""
+    if value is None:
+        return None
+    with _blame(key):
+        if isinstance(value, str):
+            return _known_material(value)
+        given = value.model_dump(exclude_unset=True)
+        base = given.pop("base", None)
+        if isinstance(given.get("permittivity"), list):
+            real, loss = given["permittivity"]
+            given["permittivity"] = complex(real, -loss)
+        return _known_material(base).replace(**given) if base is not None else ep.Material(**given)
+
+
+def _known_material(name: str):
+    if name not in ep.materials:
+        raise ValueError(f"unknown material '{name}'; {nearest_key(name, ep.materials).replace('keys', 'materials')}")
+    return ep.materials[name]
+
+
+def _build_scene(settings: SceneTable, folder: Path):
+    scene = ep.Scene()
+    for index, table in enumerate(settings.objects):
+        key = f"objects[{index}]"
+        placement = {"transform": table.transform} if table.transform is not None else {
+            "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
+        material = _material(table.material, f"{key}.material")
+        shape, material = _shape(table, folder, key, material)
+        motion = _motion(table.motion, f"{key}.motion")
+        with _blame(key):
+            scene.add(shape, name=table.name, material=material, motion=motion, parent=table.parent,
+                      smooth=table.smooth, **placement)
+    return scene
+
+
+def _shape(table: ObjectTable, folder: Path, key: str, material):
+    """The object's mesh, group of meshes or actor, and the material still to be given to it."""
+    if table.mesh is not None:
+        with _blame(f"{key}.mesh"):
+            meshes = ep.load_meshes(str(folder / table.mesh), unit=table.unit or 1.0)
+        return (meshes[0][1] if len(meshes) == 1 else meshes), material
+    factory = _actor_factory(table.actor, f"{key}.actor")
+    model = _parameter_table(table.actor, factory)
+    parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
+    if material is not None and "material" in inspect.signature(factory).parameters:
+        parameters["material"], material = material, None
+    with _blame(f"{key}.parameters"):
+        return factory(**parameters), material
+
+
+def _as_location(key: str) -> tuple:
+    """'objects[3]' -> ('objects', 3)."""
+    name, _, index = key.rstrip("]").partition("[")
+    return (name, int(index))
+
+
+def actor_names() -> list[str]:
+    """Names of the ready-made objects: the public functions of echopath.actors."""
+    return [name for name in ep.actors.__all__ if inspect.isfunction(getattr(ep.actors, name))]
+
+
+def _actor_factory(name: str, key: str):
+    if name not in actor_names():
+        raise ValueError(f"{key}: unknown actor '{name}'; {nearest_key(name, actor_names()).replace('keys', 'actors')}")
+    return getattr(ep.actors, name)
+
+
+def _parameter_table(name: str, factory) -> type[Table]:
+    """The keywords of an actor as a table: its signature is their only home."""
+    hints = typing.get_type_hints(factory)
+    fields = {}
+    for parameter in inspect.signature(factory).parameters.values():
+        if parameter.name == "material" or parameter.kind is parameter.VAR_KEYWORD:
+            continue
+        default = ... if parameter.default is parameter.empty else parameter.default
+        fields[parameter.name] = (_toml_type(hints.get(parameter.name, typing.Any)), default)
+    return create_model(f"{name}_parameters", __base__=Table, **fields)
+
+
+def _toml_type(hint):
+    """Types that TOML can hold are checked strictly, all others by the actor itself."""
+    return hint if hint in (int, float, bool, str) else typing.Any

@@ -1,0 +1,240 @@
+"""The keys of a scene file: one class per table, units in the description of each field.
+
+Strict: unknown keys, numbers given as text and non-finite numbers are errors. Lengths in m, times in s, angles in
+degrees only where the key says so (`yaw_deg`).
+"""
+from __future__ import annotations
+
+import difflib
+import math
+from typing import Annotated, Any, Literal, Optional, Union
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Vector3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
+Matrix4 = Annotated[list[Quaternion], Field(min_length=4, max_length=4)]
+WINDOWS = ("rect", "hann", "hamming", "blackman_harris")
+
+
+def nearest_key(key: str, candidates) -> str:
+    """What to say about an unknown key: the nearest known one, or all of them when none is near."""
+    candidates = list(candidates)
+    near = difflib.get_close_matches(key.lower(), candidates, n=1, cutoff=0.5)
+    if near:
+        return f"did you mean '{near[0]}'?"
+    return "known keys: " + ", ".join(candidates)
+
+
+def _is_number(value) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _permittivity(value):
+    pair = isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
+    if not (pair or _is_number(value)):
+        raise ValueError("must be a number eps' or a pair [eps', eps''] for eps' - j eps''")
+    return value
+
+
+def _window(value):
+    chebyshev = isinstance(value, list) and len(value) == 2 and value[0] == "chebyshev"
+    if not (value in WINDOWS or (chebyshev and _is_number(value[1]) and value[1] > 0)):
+        raise ValueError(f"must be one of {', '.join(WINDOWS)} or [\"chebyshev\", sidelobe level in dB]")
+    return value
+
+
+Permittivity = Annotated[Any, AfterValidator(_permittivity)]
+Window = Annotated[Any, AfterValidator(_window)]
+
+
+class Table(BaseModel):
+    """A TOML table: only known keys, strict types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, arbitrary_types_allowed=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _know_every_key(cls, data):
+        if isinstance(data, dict):
+            for key in data:
+                if key not in cls.model_fields:
+                    advice = nearest_key(key, cls.model_fields)
+                    raise PydanticCustomError("unknown_key", "unknown key; {advice}", {"key": key, "advice": advice})
+        return data
+
+
+def broken_rule(key: str, rule: str, value=None) -> PydanticCustomError:
+    """An error of several keys together, reported at `key` of the table that raises it."""
+    return PydanticCustomError("broken_rule", "{rule}", {"key": key, "rule": rule, "value": value})
+
+
+def by_kind(kind: str):
+    """Chooses the table of a union by its key `kind`."""
+    def tag(data):
+        return f"<{data.get(kind)}>" if isinstance(data, dict) else None
+    return tag
+
+
+class WaveformTable(Table):
+    start_frequency: Positive = Field(description="Hz, at the first sample")
+    bandwidth: Positive = Field(description="Hz, what the samples of one chirp sweep")
+    num_samples: int = Field(ge=1, description="per chirp")
+    sampling_rate: Positive = Field(description="Hz")
+    num_chirps: int = Field(ge=1, description="per transmitter")
+    chirp_interval: Positive = Field(description="s, between neighbouring slots")
+    real: bool = Field(False, description="real instead of complex samples")
+
+
+class IsotropicTable(Table):
+    kind: Literal["isotropic"] = Field(description="the same gain in every direction")
+    gain: Positive = Field(1.0, description="power gain, linear")
+
+
+class CosinePowerTable(Table):
+    kind: Literal["cosine_power"] = Field(description="gain ~ cos^exponent of the angle from boresight, 0 behind")
+    exponent: NotNegative = Field(description="of the power gain")
+    peak_gain: Optional[Positive] = Field(None, description="power gain, linear; none: of a lossless antenna")
+
+
+PatternTable = Annotated[
+    Union[Annotated[IsotropicTable, Tag("<isotropic>")], Annotated[CosinePowerTable, Tag("<cosine_power>")]],
+    Discriminator(by_kind("kind"))]
+
+
+class AntennaTable(Table):
+    position: Vector3 = Field(description="m, in the radar's frame")
+    orientation: Optional[Quaternion] = Field(None, description="quaternion w, x, y, z; boresight is its +x")
+    yaw_deg: Optional[Number] = Field(None, description="degrees about z, instead of orientation")
+    pattern: Optional[PatternTable] = Field(None, description="none: that of [radar]")
+    polarization: Optional[Vector3] = Field(None, description="in the antenna's frame; none: that of [radar]")
+
+    @model_validator(mode="after")
+    def _one_direction(self):
+        if self.orientation is not None and self.yaw_deg is not None:
+            raise broken_rule("yaw_deg", "must not stand beside orientation", self.yaw_deg)
+        return self
+
+
+class LinearMotionTable(Table):
+    kind: Literal["linear"] = Field(description="constant velocity and rotation")
+    velocity: Vector3 = Field([0.0, 0.0, 0.0], description="m/s")
+    angular_velocity: Vector3 = Field([0.0, 0.0, 0.0], description="rad/s, right-handed about its direction")
+
+
+class KeyframeMotionTable(Table):
+    kind: Literal["keyframes"] = Field(description="sampled positions and orientations")
+    times: list[Number] = Field(min_length=2, description="s, ascending")
+    translations: Optional[list[Vector3]] = Field(None, description="m, one per time")
+    rotations: Optional[list[Quaternion]] = Field(None, description="quaternions w, x, y, z, one per time")
+    interpolation: Literal["cubic", "linear"] = Field("cubic", description="between the times")
+
+
+MotionTable = Annotated[
+    Union[Annotated[LinearMotionTable, Tag("<linear>")], Annotated[KeyframeMotionTable, Tag("<keyframes>")]],
+    Discriminator(by_kind("kind"))]
+
+
+class RadarTable(Table):
+    waveform: WaveformTable
+    transmitters: list[AntennaTable] = Field(min_length=1, description="at least one")
+    receivers: list[AntennaTable] = Field(min_length=1, description="at least one")
+    pattern: Optional[PatternTable] = Field(None, description="of antennas without their own; none: isotropic")
+    polarization: Vector3 = Field([0.0, 0.0, 1.0], description="of antennas without their own")
+    transmit_power: Positive = Field(0.01, description="W, per transmitter")
+    noise_figure_db: Number = Field(12.0, description="dB")
+    multiplexing: Literal["tdm"] = Field("tdm", description="one transmitter per slot")
+    motion: Optional[MotionTable] = Field(None, description="of the radar in the world; none: it stands still")
+
+
+class MaterialTable(Table):
+    conductor: bool = Field(False, description="perfect conductor")
+    permittivity: Optional[Permittivity] = Field(None, description="relative; eps' or [eps', eps''] for eps' - j eps''")
+    conductivity: NotNegative = Field(0.0, description="S/m")
+    reflectivity: Optional[Annotated[float, Field(ge=0, le=1)]] = Field(
+        None, description="share of power, at every angle")
+    roughness_height: NotNegative = Field(0.0, description="m, rms")
+    scattering: Optional[Annotated[float, Field(ge=0, le=1)]] = Field(
+        None, description="S; S^2 is the diffuse share of reflected power")
+    mirror: bool = Field(False, description="a plane larger than its Fresnel zone, treated by images")
+    base: Optional[str] = Field(None, description="name of a known material that gives the other keys")
+
+
+MaterialValue = Annotated[
+    Union[Annotated[str, Tag("<name>")], Annotated[MaterialTable, Tag("<table>")]],
+    Discriminator(lambda value: "<name>" if isinstance(value, str) else "<table>")]
+
+
+class ObjectTable(Table):
+    name: str = Field(min_length=1, description="its name in path expressions")
+    mesh: Optional[str] = Field(None, description="OBJ or PLY file, relative to the scene file")
+    unit: Optional[Positive] = Field(None, description="m, length of one unit of the mesh file; none: 1")
+    actor: Optional[str] = Field(None, description="a ready-made object: a function of echopath.actors")
+    parameters: dict = Field({}, description="keywords of the actor")
+    material: Optional[MaterialValue] = Field(None, description="a known name or a table")
+    position: Optional[Vector3] = Field(None, description="m")
+    yaw_deg: Optional[Number] = Field(None, description="degrees about z")
+    transform: Optional[Matrix4] = Field(None, description="4 x 4, instead of position and yaw_deg")
+    motion: Optional[MotionTable] = Field(None, description="relative to the placement; none: it stands still")
+    parent: Optional[str] = Field(None, description="full name of the node that carries it; none: the scene")
+    smooth: bool = Field(False, description="interpolated normals")
+
+    @model_validator(mode="after")
+    def _one_shape(self):
+        if (self.mesh is None) == (self.actor is None):
+            raise broken_rule("mesh", "exactly one of mesh and actor must be given", self.mesh)
+        if self.unit is not None and self.mesh is None:
+            raise broken_rule("unit", "needs a mesh", self.unit)
+        if self.parameters and self.actor is None:
+            raise broken_rule("parameters", "needs an actor", self.parameters)
+        return self
+
+    @model_validator(mode="after")
+    def _one_placement(self):
+        if self.transform is not None and (self.position is not None or self.yaw_deg is not None):
+            raise broken_rule("transform", "must not stand beside position or yaw_deg", self.transform)
+        return self
+
+
+class TraceTable(Table):
+    num_rays: int = Field(1_000_000, ge=1, description="launched")
+    max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
+    seed: int = Field(1, ge=0, description="of the directions and random phases")
+    start_time: Number = Field(0.0, description="s, first sample of the frame")
+    footprint_filter: bool = Field(True, description="false only to see what it does")
+
+
+class SpectrumTable(Table):
+    window: Window = Field("hann", description="a name, or [\"chebyshev\", sidelobe level in dB]")
+    zero_pad: int = Field(1, ge=1, description="length of the transforms over that of the data")
+
+
+class NoiseTable(Table):
+    seed: int = Field(1, ge=0, description="of the thermal noise")
+
+
+PartsValue = Annotated[
+    Union[Annotated[dict[str, str], Tag("<partition>")], Annotated[str, Tag("<expression>")]],
+    Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
+
+
+class SceneTable(Table):
+    title: str = Field("", description="one line about the scene")
+    radar: RadarTable
+    objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
+    trace: TraceTable = TraceTable()
+    spectrum: SpectrumTable = SpectrumTable()
+    noise: NoiseTable = NoiseTable()
+    parts: dict[str, PartsValue] = Field(
+        {}, description="name = path expression: one partition; tables of these: several")
+
+    @model_validator(mode="after")
+    def _one_kind_of_parts(self):
+        if len({isinstance(value, str) for value in self.parts.values()}) > 1:
+            rule = "must be all expressions (one partition) or all tables (several)"
+            raise broken_rule("parts", rule, list(self.parts))
+        return self

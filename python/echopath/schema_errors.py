@@ -1,0 +1,74 @@
+"""Faults of a scene file in the words of the file: dotted path, rule, value."""
+from __future__ import annotations
+
+from pydantic import BaseModel, ValidationError
+
+MAX_VALUE_LENGTH = 60  # characters of a value that a message repeats
+
+_RULES = {
+    "missing": "is missing",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than_equal": "must be at most {le}",
+    "finite_number": "must be finite",
+    "int_type": "must be an integer",
+    "float_type": "must be a number",
+    "bool_type": "must be true or false",
+    "string_type": "must be text",
+    "list_type": "must be an array",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
+    "string_too_short": "must not be empty",
+    "literal_error": "must be {expected}",
+    "union_tag_invalid": "has an unknown kind; known: {expected_tags}",
+    "union_tag_not_found": "must be a table with a known kind",
+}
+
+
+def dotted(location) -> str:
+    """('objects', 0, 'material', '<table>', 'scattering') -> 'objects[0].material.scattering'."""
+    text = ""
+    for item in location:
+        if isinstance(item, int):
+            text += f"[{item}]"
+        elif not item.startswith("<"):
+            text += f".{item}" if text else item
+    return text
+
+
+def shown(value) -> str:
+    """The value as a message repeats it."""
+    text = repr(value)
+    return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 3] + "..."
+
+
+def one_line(error: dict, prefix: tuple = ()) -> str:
+    """One fault of pydantic as 'dotted path: rule, got value'."""
+    context = error.get("ctx", {})
+    location = prefix + error["loc"]
+    if error["type"] == "unknown_key":
+        return f"{dotted(location + (context['key'],))}: {error['msg']}"
+    if error["type"] == "broken_rule":
+        return f"{dotted(location + (context['key'],))}: {context['rule']}, got {shown(context['value'])}"
+    if error["type"] == "value_error":
+        return f"{dotted(location)}: {context['error']}, got {shown(error['input'])}"
+    rule = _RULES.get(error["type"], error["msg"]).format(**context).replace("'<", "'").replace(">'", "'")
+    if error["type"] == "missing":
+        return f"{dotted(location)}: {rule}"
+    return f"{dotted(location)}: {rule}, got {shown(error['input'])}"
+
+
+def describe(error: ValidationError, prefix: tuple = ()) -> str:
+    """All faults, one line each, each line once."""
+    lines = [one_line(fault, prefix) for fault in error.errors(include_url=False)]
+    return "\n".join(dict.fromkeys(lines))
+
+
+def validated(model: type[BaseModel], data: dict, prefix: tuple = ()) -> BaseModel:
+    """`data` as a `model`; raises ValueError with one line per fault, paths beginning with `prefix`."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise ValueError(describe(error, prefix)) from None

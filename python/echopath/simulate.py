@@ -1,0 +1,111 @@
+"""One call from a scene to a frame: trace, take the signal apart, add noise, transform."""
+from __future__ import annotations
+
+import dataclasses
+
+import echopath as ep
+
+from .path_subset import part_of_path
+from .stages import Stage, StageClock
+
+
+@dataclasses.dataclass
+class Frame:
+    """One simulated frame.
+
+    scene, radar: what was simulated; paths: what every ray touched
+    cube: complex [tx, rx, chirp, sample], sqrt(W), without noise; the sum of the parts of each partition
+    parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
+    selections: {partition: {part: expression as text}}, without "other"
+    part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
+    noise_seed: of the thermal noise, None: no noise
+    spectrum_settings: window and zero_pad of the maps
+    spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
+    stages: time and peak memory of each stage
+    """
+
+    scene: object
+    radar: object
+    paths: object
+    cube: object
+    parts: dict
+    selections: dict
+    part_of_path: dict
+    noise_seed: int | None
+    spectrum_settings: dict
+    spectrum: object = None
+    part_spectra: dict = dataclasses.field(default_factory=dict)
+    stages: list[Stage] = dataclasses.field(default_factory=list)
+
+    @property
+    def noisy_cube(self):
+        """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call."""
+        return self.cube if self.noise_seed is None else ep.add_noise(self.cube, self.radar, seed=self.noise_seed)
+
+    def __repr__(self) -> str:
+        partitions = ", ".join(self.parts) or "none"
+        return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
+
+
+def simulate(scene, radar, *, num_rays=1_000_000, max_bounces=4, seed=1, start_time=0.0, footprint_filter=True,
+             parts=None, tolerance=1e-7, method="auto", noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
+    """Simulates one frame of a radar in a scene.
+
+    num_rays, max_bounces, seed, start_time (s), footprint_filter: as in `trace`
+    parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
+    tolerance, method: as in `synthesize`; window, zero_pad: as in `range_doppler`
+    noise_seed: of the thermal noise, which only the whole gets; None: no noise
+    progress: callable (stage, fraction) or None
+    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
+    """
+    partitions = as_partitions(parts)
+    clock = StageClock()
+    with clock("trace"):
+        paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
+                         footprint_filter=footprint_filter, progress=progress)
+    with clock("synthesis"):
+        settings = {"tolerance": tolerance, "method": method, "progress": progress}
+        cubes, whole = _cubes(paths, radar, partitions, settings)
+    with clock("labels"):
+        labels = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
+    frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
+                  part_of_path=labels, noise_seed=noise_seed,
+                  spectrum_settings={"window": window, "zero_pad": zero_pad}, stages=clock.stages)
+    with clock("spectra"):
+        return with_spectra(frame)
+
+
+def with_spectra(frame: Frame) -> Frame:
+    """Fills in the range-Doppler maps of a frame: with noise of the whole, without noise of its parts."""
+    def spectrum(cube):
+        return ep.range_doppler(cube, frame.radar, **frame.spectrum_settings)
+
+    frame.spectrum = spectrum(frame.noisy_cube)
+    frame.part_spectra = {partition: {name: spectrum(cube) for name, cube in cubes.items()}
+                          for partition, cubes in frame.parts.items()}
+    return frame
+
+
+def as_partitions(parts) -> dict:
+    """{name: selection} or {partition: {name: selection}} -> the latter."""
+    if not parts:
+        return {}
+    nested = [isinstance(value, dict) for value in parts.values()]
+    if all(nested):
+        return {partition: dict(group) for partition, group in parts.items()}
+    if any(nested):
+        raise ValueError(f"parts: must be all selections or all tables of selections, got {list(parts)}")
+    return {"parts": dict(parts)}
+
+
+def _cubes(paths, radar, partitions: dict, settings: dict):
+    """{partition: {part: cube}} and the whole, from one pass."""
+    if not partitions:
+        return {}, ep.synthesize(paths, radar, **settings)
+    cubes = ep.decompose(paths, radar, partitions, **settings)
+    return cubes, sum(next(iter(cubes.values())).values())
+
+
+def _as_text(partitions: dict) -> dict:
+    return {partition: {name: str(selection) for name, selection in group.items()}
+            for partition, group in partitions.items()}

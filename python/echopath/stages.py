@@ -1,0 +1,52 @@
+"""Wall time and peak memory of the stages of a run."""
+from __future__ import annotations
+
+import dataclasses
+import resource
+import sys
+import time
+from contextlib import contextmanager
+
+
+@dataclasses.dataclass(frozen=True)
+class Stage:
+    """One stage: name, seconds of wall time, peak_memory of the process during it in bytes."""
+
+    name: str
+    seconds: float
+    peak_memory: int
+
+
+class StageClock:
+    """Keeps the stages of a run in their order: `with clock("trace"): ...`."""
+
+    def __init__(self):
+        self.stages: list[Stage] = []
+
+    @contextmanager
+    def __call__(self, name: str):
+        _forget_peak_memory()
+        begin = time.perf_counter()
+        yield
+        self.stages.append(Stage(name, time.perf_counter() - begin, peak_memory()))
+
+
+def peak_memory() -> int:
+    """Peak resident memory of the process in bytes, since the last stage began where the system can tell."""
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            for line in status:
+                if line.startswith("VmHWM:"):
+                    return int(line.split()[1]) * 1024
+    except OSError:
+        pass
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+
+
+def _forget_peak_memory() -> None:
+    try:
+        with open("/proc/self/clear_refs", "w", encoding="ascii") as control:
+            control.write("5")
+    except OSError:
+        pass

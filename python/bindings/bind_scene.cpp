@@ -227,6 +227,10 @@ uint32_t checked_mesh_id(const Scene& scene, int64_t mesh_id) {
 
 // All nodes or none.
 void add_nodes(Scene& scene, const std::vector<Node>& nodes) {
+  if (nodes.size() == 1) {
+    scene.add(nodes.front());
+    return;
+  }
   Scene grown = scene;
   for (const Node& node : nodes) grown.add(node);
   scene = std::move(grown);

@@ -1,41 +1,156 @@
 #include <gtest/gtest.h>
 
 #include "cpp/signal/slow_sum.h"
+#include "echopath/signal/method.h"
 
 namespace echopath {
 namespace {
 
 using testing::Complex;
 
-// Phases of 1e5 turns in double: 1e-16 x 512 samples x 2 pi for the tone, 1e-11 rad for the rounding of the delay weights.
+// A carrier of 1e5 turns known to one part in 2^53, and its slope from differences of such delays.
 constexpr double kDoublePhaseError = 3e-11;
+// Rounding of 512 samples of phase, relative to the amplitude.
+constexpr double kToneRounding = 5e-13;
+// The largest error of one sample of a tone over its rms error: at the edge of the band the kernel's spectrum is smallest.
+constexpr double kPeakOverRms = 8.0;
 
+std::vector<double> frequencies() {
+  std::vector<double> out = {0.0, 1e-9, 0.25, 0.5, 1.0 - 1e-9, 1.0 - 0x1.0p-53};
+  for (int i = 1; i < 60; ++i) out.push_back(std::fmod(i * 0.6180339887498949, 1.0));
+  return out;
+}
+
+// Samples of the tone c e^{j 2 pi f n} by a method, phase taken at sample 0.
+std::vector<Complex> tone_samples(const ToneMethod& method, int num_samples, double frequency, Complex c) {
+  const uint32_t group = 0;
+  Carriers carriers;
+  carriers.count = 1;
+  carriers.group = &group;
+  const Complex at_reference = c * std::polar(1.0, 2.0 * M_PI * std::fmod(frequency * method.reference_sample(), 1.0));
+  carriers.frequency[0] = frequency;
+  carriers.re[0] = at_reference.real();
+  carriers.im[0] = at_reference.imag();
+  std::vector<double> row(2 * method.row_length());
+  method.add(carriers, {row.data(), 2 * method.row_length()});
+  std::vector<Complex> out(num_samples);
+  method.samples(row.data(), out.data());
+  return out;
+}
+
+struct ToneError {
+  double rms = 0.0, largest = 0.0;
+};
+
+// Worst errors over the test frequencies, against cosine and sine in extended precision.
+ToneError tone_error(const ToneMethod& method, int num_samples) {
+  ToneError worst;
+  for (const double frequency : frequencies()) {
+    const auto actual = tone_samples(method, num_samples, frequency, 1.0);
+    double sum = 0.0;
+    for (int n = 0; n < num_samples; ++n) {
+      const long double cycles = static_cast<long double>(frequency) * n;
+      const long double angle = 2 * std::numbers::pi_v<long double> * (cycles - std::round(cycles));
+      const Complex expected(static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle)));
+      const double error = std::abs(actual[n] - expected);
+      sum += error * error;
+      worst.largest = std::max(worst.largest, error);
+    }
+    worst.rms = std::max(worst.rms, std::sqrt(sum / num_samples));
+  }
+  return worst;
+}
+
+TEST(Methods, DirectAndRecurrenceToneIsExactToRounding) {
+  for (const int num_samples : {1, 31, 32, 33, 512}) {
+    EXPECT_LT(tone_error(*make_direct(num_samples), num_samples).largest, kToneRounding) << num_samples;
+    EXPECT_LT(tone_error(*make_recurrence(num_samples), num_samples).largest, kToneRounding) << num_samples;
+  }
+}
+
+TEST(Methods, LongRecurrenceDoesNotDrift) {
+  constexpr int kSamples = 65536;
+  constexpr double kPhaseRounding = 2.0 * M_PI * kSamples * 0x1.0p-53;  // of a frequency rounded once, at the last sample
+  EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kPhaseRounding);
+}
+
+TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
+  for (const int num_samples : {1, 2, 5, 100, 255, 512}) {
+    for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
+      const ToneError error = tone_error(*make_nufft(num_samples, tolerance), num_samples);
+      // A handful of samples cannot average the error: their largest is the bound.
+      const double rms = num_samples >= 100 ? error.rms : 0.0;
+      EXPECT_LT(rms, 1.1 * tolerance + kToneRounding) << num_samples << " " << tolerance;
+      EXPECT_LT(error.largest, kPeakOverRms * tolerance + kToneRounding) << num_samples << " " << tolerance;
+    }
+  }
+}
+
+// Largest error of three chirps relative to the sum of |a|.
 double error_against_slow_sum(const ChirpSequence& w, int num_points, const SynthesisOptions& options) {
-  const testing::MovingPoints points(num_points, 7, 1.0, w.max_range() + 10.0);
+  const testing::MovingPoints points(num_points, 7, 1.0, w.max_range() + 10.0);  // some beyond the filter
   const Echoes echoes = testing::exact_echoes(w, points);
   const auto cube = testing::synthesize(w, echoes, options);
+  std::vector<double> taudot;
+  for (const double speed : points.speed) taudot.push_back(2.0 * speed / 299792458.0);
   double largest = 0.0;
   for (const int chirp : {0, w.num_chirps / 2, w.num_chirps - 1}) {
-    const int64_t at = int64_t{chirp} * num_points;
-    std::vector<double> tau(echoes.delay.begin() + at, echoes.delay.begin() + at + num_points), taudot;
-    for (const double speed : points.speed) taudot.push_back(2.0 * speed / 299792458.0);
-    std::vector<Complex> amplitude(echoes.amplitude.begin() + at, echoes.amplitude.begin() + at + num_points);
-    const auto expected = testing::slow_chirp(w, tau, taudot, amplitude);
-    const std::vector<Complex> actual(cube.begin() + int64_t{chirp} * w.num_samples,
-                                      cube.begin() + int64_t{chirp + 1} * w.num_samples);
-    largest = std::max(largest, testing::largest_difference(actual, expected));
+    const auto delay = echoes.delay.begin() + int64_t{chirp} * num_points;
+    const auto amplitude = echoes.amplitude.begin() + int64_t{chirp} * num_points;
+    const auto expected =
+        testing::slow_chirp(w, {delay, delay + num_points}, taudot, {amplitude, amplitude + num_points});
+    const auto samples = cube.begin() + int64_t{chirp} * w.num_samples;
+    largest = std::max(largest, testing::largest_difference({samples, samples + w.num_samples}, expected));
   }
   return largest / testing::sum_of_magnitudes(points.amplitude);
 }
 
 TEST(Methods, DirectAndRecurrenceEqualTheSlowSum) {
-  ChirpSequence w = testing::reference_waveform();
-  w.num_chirps = 8;
-  for (const Method method : {Method::kDirect, Method::kRecurrence}) {
+  for (const bool real : {false, true}) {
+    ChirpSequence w = testing::reference_waveform();
+    w.num_chirps = 8;
+    w.real = real;
     for (const int count : {1, 3, 300}) {
-      EXPECT_LT(error_against_slow_sum(w, count, {.method = method}), kDoublePhaseError) << count;
+      EXPECT_LT(error_against_slow_sum(w, count, {.method = Method::kDirect}), kDoublePhaseError) << count;
+      EXPECT_LT(error_against_slow_sum(w, count, {.method = Method::kRecurrence}), kDoublePhaseError) << count;
     }
   }
+}
+
+TEST(Methods, NufftEqualsTheSlowSumWithinItsTolerance) {
+  for (const bool real : {false, true}) {
+    ChirpSequence w = testing::reference_waveform();
+    w.num_chirps = 4;
+    w.real = real;
+    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
+      const double error = error_against_slow_sum(w, 300, {tolerance, Method::kNufft});
+      EXPECT_LT(error, tolerance + kDoublePhaseError) << tolerance;
+    }
+  }
+}
+
+TEST(Methods, AutomaticChoiceDependsOnTheNumberOfEchoesAlone) {
+  const ChirpSequence w = testing::reference_waveform();
+  for (const int num_groups : {1, 100}) {
+    EXPECT_EQ(Synthesizer(w, 1, num_groups, 10).method(), Method::kRecurrence);
+    EXPECT_EQ(Synthesizer(w, 1, num_groups, 1000).method(), Method::kNufft);
+  }
+}
+
+// A strong echo must not hide a weak one 100 dB below by its spurs.
+TEST(Methods, WeakToneBesideAStrongOneIsKept) {
+  ChirpSequence w = testing::reference_waveform();
+  w.num_chirps = 1;
+  const double strong = 2 * 20.0 / 299792458.0, weak = 2 * 50.0 / 299792458.0;
+  const SynthesisOptions options{1e-9, Method::kNufft};
+  const auto both = testing::synthesize(w, testing::static_echoes(1, {strong, weak}, {1.0, 1e-5}), options);
+  const auto expected_strong = testing::slow_chirp(w, {strong}, {0.0}, {1.0});
+  const auto expected_weak = testing::slow_chirp(w, {weak}, {0.0}, {1e-5});
+  Complex correlation;
+  for (int n = 0; n < w.num_samples; ++n) {
+    correlation += (both[n] - expected_strong[n]) * std::conj(expected_weak[n]) / (1e-10 * w.num_samples);
+  }
+  EXPECT_NEAR(20 * std::log10(std::abs(correlation)), 0.0, 0.1);
 }
 
 }  // namespace

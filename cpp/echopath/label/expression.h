@@ -1,0 +1,62 @@
+#pragma once
+// Path expressions: regular expressions over the hits of a path, from the transmitter T to the receiver R.
+//
+//   expression := 'T' [ choice ] 'R'             'T R' takes the path without hits
+//   choice     := sequence { '|' sequence }
+//   sequence   := repeat { repeat }              never empty
+//   repeat     := atom [ '*' | '+' | '?' | '{' m '}' | '{' m ',' '}' | '{' m ',' n '}' ]
+//   atom       := hit | '(' choice ')'
+//   hit        := '.' | event | [ event ] meshes
+//   event      := 'S' | 'D'                      specular or diffuse: the bit of that hit in Paths::diffuse
+//   meshes     := glob | '[' [ '^' ] glob { glob } ']'
+//   glob       := "'" characters other than "'" "'"
+//
+// The whole path must match. T and R bind weakest: T 'a' | 'b' R is T ('a' | 'b') R. Counts m <= n are at most
+// kMaxRepeatCount; a repeat of a repeat needs parentheses. White space may stand between any two symbols and means
+// nothing, with one exception: between an event and a glob or set it is an error, as S'a' is one hit and (S) 'a' two.
+// A set takes a hit on a mesh that one of its globs takes (scene.h: glob_takes), [^ ...] one that none of them takes.
+// After the light path expressions of Heckbert ("Adaptive radiosity textures for bidirectional ray tracing", 1990).
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace echopath {
+
+constexpr int kMaxRepeatCount = 64;  // the longest path that a trace makes
+constexpr int kNoLimit = -1;
+
+// What one hit must be.
+struct HitPattern {
+  enum class Event { kAny, kSpecular, kDiffuse };
+  struct Glob {
+    std::string text;
+    size_t position;  // of its opening quote in the expression, bytes
+  };
+  Event event = Event::kAny;
+  bool negated = false;     // takes the meshes that no glob takes
+  std::vector<Glob> globs;  // empty: every mesh
+};
+
+// Syntax tree of a path expression without its T and R.
+struct Syntax {
+  enum class Kind { kHit, kSequence, kChoice, kRepeat };
+  Kind kind = Kind::kSequence;   // a sequence without children takes no hit at all
+  HitPattern hit;                // kHit
+  std::vector<Syntax> children;  // kSequence, kChoice: any number; kRepeat: one
+  int min = 0, max = 0;          // kRepeat; max may be kNoLimit
+};
+
+struct PathExpression {
+  std::string text;  // as given
+  Syntax body;
+};
+
+// Raises invalid_argument whose message says what was expected, with a caret under the fault.
+PathExpression parse_path_expression(std::string_view text);
+
+// Raises invalid_argument("path expression: <what>") followed by the line of `text` that holds byte `position` and a
+// caret under it.
+[[noreturn]] void throw_expression_error(std::string_view text, size_t position, std::string_view what);
+
+}  // namespace echopath

@@ -1,0 +1,93 @@
+#include "echopath/label/partition.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+constexpr uint32_t kMaxGroups = 1 << 16;  // each one costs a whole cube in synthesis
+constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+
+void check_names(const std::vector<NamedSelection>& parts) {
+  std::set<std::string> names;
+  for (const NamedSelection& part : parts) {
+    require(!part.name.empty(), "parts", "must have non-empty names", "an empty one");
+    require(part.name != "other", "parts", "must not use the name of the rest", "other");
+    require(names.insert(part.name).second, "parts", "must have names that differ", part.name + " twice");
+  }
+}
+
+// Refines the combined groups by one more partition; new groups are numbered by (old group, part).
+void refine(CombinedPartition& combined, const Partition& partition) {
+  const size_t num_parts = partition.names.size();
+  std::vector<uint32_t> new_group(combined.num_groups * num_parts, kUnused);
+  for (size_t path = 0; path < combined.group.size(); ++path) {
+    new_group[combined.group[path] * num_parts + partition.group[path]] = 0;
+  }
+  const size_t num_done = combined.num_groups == 0 ? 0 : combined.part_of_group.size() / combined.num_groups;
+  std::vector<uint32_t> table;
+  uint32_t num_groups = 0;
+  for (size_t pair = 0; pair < new_group.size(); ++pair) {
+    if (new_group[pair] == kUnused) continue;
+    new_group[pair] = num_groups++;
+    const auto row = combined.part_of_group.begin() + static_cast<int64_t>(pair / num_parts * num_done);
+    table.insert(table.end(), row, row + static_cast<int64_t>(num_done));
+    table.push_back(static_cast<uint32_t>(pair % num_parts));
+  }
+  require(num_groups <= kMaxGroups, "partitions", "must have at most 65536 combinations of parts", num_groups);
+  for (size_t path = 0; path < combined.group.size(); ++path) {
+    combined.group[path] = new_group[combined.group[path] * num_parts + partition.group[path]];
+  }
+  combined.part_of_group = std::move(table);
+  combined.num_groups = num_groups;
+}
+
+}  // namespace
+
+Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts) {
+  check_names(parts);
+  Partition partition;
+  for (const NamedSelection& part : parts) partition.names.push_back(part.name);
+  partition.names.push_back("other");
+  const auto other = static_cast<uint32_t>(parts.size());
+  partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
+  for (uint32_t part = 0; part < other; ++part) {
+    const std::vector<uint8_t> taken = parts[part].selection.matches(paths);
+    for (size_t path = 0; path < taken.size(); ++path) {
+      if (taken[path] && partition.group[path] == other) partition.group[path] = part;
+    }
+  }
+  return partition;
+}
+
+CombinedPartition combine(std::vector<Partition> partitions) {
+  require(!partitions.empty(), "partitions", "must be one or more", "none");
+  const size_t num_paths = partitions.front().group.size();
+  CombinedPartition combined;
+  combined.group.assign(num_paths, 0);
+  combined.num_groups = num_paths > 0 ? 1 : 0;
+  for (const Partition& partition : partitions) {
+    const std::string rule = "must be of the same paths, " + std::to_string(num_paths);
+    require(partition.group.size() == num_paths, "partitions", rule, partition.group.size());
+    refine(combined, partition);
+  }
+  combined.partitions = std::move(partitions);
+  return combined;
+}
+
+std::vector<uint32_t> CombinedPartition::groups_of(size_t partition, uint32_t part) const {
+  require(partition < partitions.size(), "partition", "must be below " + std::to_string(partitions.size()), partition);
+  require(part < partitions[partition].names.size(), "part",
+          "must be below " + std::to_string(partitions[partition].names.size()), part);
+  std::vector<uint32_t> groups;
+  for (uint32_t combined_group = 0; combined_group < num_groups; ++combined_group) {
+    if (part_in(combined_group, partition) == part) groups.push_back(combined_group);
+  }
+  return groups;
+}
+
+}  // namespace echopath

@@ -1,0 +1,55 @@
+#pragma once
+// Paths sorted into named parts that always add up to the whole; and several such views from one synthesis.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "echopath/label/selection.h"
+
+namespace echopath {
+
+struct NamedSelection {
+  std::string name;
+  Selection selection;
+};
+
+// Every path is in exactly one part.
+struct Partition {
+  std::vector<std::string> names;  // of the parts; the last is "other"
+  std::vector<uint32_t> group;     // [P] index into names
+};
+
+// The first selection that takes a path names its part; paths that none takes are "other". Raises invalid_argument when
+// a name is empty, "other" or given twice, or when a glob takes no mesh.
+Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts);
+
+// Several partitions of the same paths in one group index: one group per combination of parts that occurs.
+struct CombinedPartition {
+  std::vector<Partition> partitions;
+  std::vector<uint32_t> group;               // [P]
+  uint32_t num_groups = 0;
+  std::vector<uint32_t> part_of_group;       // [num_groups, num_partitions] part in each partition, rows ascending
+
+  uint32_t part_in(uint32_t combined_group, size_t partition) const {
+    return part_of_group[combined_group * partitions.size() + partition];
+  }
+  // The groups that add up to one part, ascending; empty for a part without paths.
+  std::vector<uint32_t> groups_of(size_t partition, uint32_t part) const;
+
+  // Sums what was computed per group into one part. by_group: [num_groups, size], for example the cubes of one
+  // synthesis pass. Returns [size], added in ascending order of groups; zeros for a part without paths.
+  template <class Value>
+  std::vector<Value> sum_part(size_t partition, uint32_t part, const std::vector<Value>& by_group, size_t size) const {
+    std::vector<Value> sum(size);
+    for (const uint32_t combined_group : groups_of(partition, part)) {
+      const Value* values = by_group.data() + combined_group * size;
+      for (size_t i = 0; i < size; ++i) sum[i] += values[i];
+    }
+    return sum;
+  }
+};
+
+// Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations.
+CombinedPartition combine(std::vector<Partition> partitions);
+
+}  // namespace echopath

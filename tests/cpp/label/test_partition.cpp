@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <set>
+#include <stdexcept>
+
+#include "cpp/label/hand_made_paths.h"
+#include "echopath/label/partition.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+const std::vector<NamedSelection> kRoute{{"direct", "T 'pedestrian' R"}, {"wall", "T .* 'street/wall*' .* R"},
+                                         {"floor", "T .* 'street/floor' .* R"}};
+const std::vector<NamedSelection> kBody{{"arms", Selection::touches("pedestrian/arms")}};
+
+Paths some_paths() { return make_paths(random_paths(5000, 0, 4, 9)); }
+
+TEST(Partition, FirstMatchWinsAndTheRestIsOther) {
+  const Paths paths = make_paths({{{kTorso, false}},
+                                  {{kFloor, false}, {kWallLeft, false}},
+                                  {{kFloor, false}},
+                                  {{kTorso, true}, {kTorso, true}},
+                                  {}});
+  const Partition partition = make_partition(paths, kRoute);
+  EXPECT_EQ(partition.names, (std::vector<std::string>{"direct", "wall", "floor", "other"}));
+  EXPECT_EQ(partition.group, (std::vector<uint32_t>{0, 1, 2, 3, 3}));
+}
+
+TEST(Partition, IsDisjointAndComplete) {
+  const Paths paths = some_paths();
+  const Partition partition = make_partition(paths, kRoute);
+  ASSERT_EQ(partition.group.size(), paths.offsets.size());
+  std::set<uint32_t> seen;
+  Selection earlier = ~Selection("T .* R");
+  for (uint32_t part = 0; part < partition.names.size(); ++part) {
+    const Selection mine = part < kRoute.size() ? kRoute[part].selection & ~earlier : ~earlier;
+    const std::vector<uint8_t> taken = mine.matches(paths);
+    for (size_t path = 0; path < taken.size(); ++path) EXPECT_EQ(partition.group[path] == part, taken[path] != 0);
+    if (part < kRoute.size()) earlier = earlier | kRoute[part].selection;
+    seen.insert(partition.group.begin(), partition.group.end());
+  }
+  EXPECT_EQ(seen.size(), partition.names.size());
+}
+
+TEST(Partition, WithoutPartsAllIsOther) {
+  const Partition partition = make_partition(some_paths(), {});
+  EXPECT_EQ(partition.names, std::vector<std::string>{"other"});
+  EXPECT_EQ(std::set<uint32_t>(partition.group.begin(), partition.group.end()), std::set<uint32_t>{0});
+}
+
+TEST(Partition, BadNamesAreErrors) {
+  const Paths paths = some_paths();
+  EXPECT_THROW(make_partition(paths, {{"other", "T . R"}}), std::invalid_argument);
+  EXPECT_THROW(make_partition(paths, {{"", "T . R"}}), std::invalid_argument);
+  EXPECT_THROW(make_partition(paths, {{"a", "T . R"}, {"a", "T . . R"}}), std::invalid_argument);
+  EXPECT_THROW(make_partition(paths, {{"a", Selection::touches("nobody")}}), std::invalid_argument);
+}
+
+TEST(CombinedPartition, GroupsAreTheCombinationsThatOccur) {
+  const Paths paths = some_paths();
+  const CombinedPartition combined = combine({make_partition(paths, kRoute), make_partition(paths, kBody)});
+  std::set<std::pair<uint32_t, uint32_t>> occurring;
+  for (size_t path = 0; path < paths.offsets.size(); ++path) {
+    const uint32_t route = combined.partitions[0].group[path], body = combined.partitions[1].group[path];
+    occurring.insert({route, body});
+    ASSERT_LT(combined.group[path], combined.num_groups);
+    EXPECT_EQ(combined.part_in(combined.group[path], 0), route);
+    EXPECT_EQ(combined.part_in(combined.group[path], 1), body);
+  }
+  EXPECT_EQ(combined.num_groups, occurring.size());
+  EXPECT_EQ(combined.num_groups, 8u);  // four routes, each with and without arms
+  EXPECT_EQ(combined.part_of_group.size(), 2u * combined.num_groups);
+}
+
+TEST(CombinedPartition, LeavesOutCombinationsThatDoNotOccur) {
+  const Paths paths = make_paths({{{kWallLeft, false}, {kArmLeft, false}}, {{kFloor, false}}});
+  const CombinedPartition combined = combine({make_partition(paths, kRoute), make_partition(paths, kBody)});
+  EXPECT_EQ(combined.num_groups, 2u);
+  EXPECT_EQ(combined.group, (std::vector<uint32_t>{0, 1}));
+  EXPECT_EQ(combined.part_of_group, (std::vector<uint32_t>{1, 0, 2, 1}));
+}
+
+// Each path carries one whole number, so that sums in any order are exact.
+TEST(CombinedPartition, SumsOfGroupsAreSumsOfParts) {
+  using Value = std::complex<double>;
+  constexpr size_t kSize = 3;
+  const Paths paths = some_paths();
+  const CombinedPartition combined = combine({make_partition(paths, kRoute), make_partition(paths, kBody)});
+  const auto value_of = [](size_t path, size_t i) { return Value(static_cast<double>(path), static_cast<double>(i)); };
+  std::vector<Value> by_group(combined.num_groups * kSize);
+  for (size_t path = 0; path < paths.offsets.size(); ++path) {
+    for (size_t i = 0; i < kSize; ++i) by_group[combined.group[path] * kSize + i] += value_of(path, i);
+  }
+  for (size_t partition = 0; partition < 2; ++partition) {
+    for (uint32_t part = 0; part < combined.partitions[partition].names.size(); ++part) {
+      std::vector<Value> direct(kSize);
+      for (size_t path = 0; path < paths.offsets.size(); ++path) {
+        if (combined.partitions[partition].group[path] != part) continue;
+        for (size_t i = 0; i < kSize; ++i) direct[i] += value_of(path, i);
+      }
+      EXPECT_EQ(combined.sum_part(partition, part, by_group, kSize), direct);
+    }
+  }
+}
+
+TEST(CombinedPartition, NoPathsGiveNoGroupsAndZeroSums) {
+  const Paths none = make_paths({});
+  const CombinedPartition combined = combine({make_partition(none, kRoute), make_partition(none, kBody)});
+  EXPECT_EQ(combined.num_groups, 0u);
+  EXPECT_TRUE(combined.groups_of(1, 0).empty());
+  EXPECT_EQ(combined.sum_part(0, 3, std::vector<double>{}, 2), std::vector<double>(2, 0.0));
+}
+
+TEST(CombinedPartition, BadInputIsAnError) {
+  const Paths paths = some_paths();
+  EXPECT_THROW(combine({}), std::invalid_argument);
+  EXPECT_THROW(combine({make_partition(paths, kRoute), make_partition(make_paths({}), kBody)}), std::invalid_argument);
+  const CombinedPartition combined = combine({make_partition(paths, kBody)});
+  EXPECT_THROW(combined.groups_of(1, 0), std::invalid_argument);
+  EXPECT_THROW(combined.groups_of(0, 2), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace echopath

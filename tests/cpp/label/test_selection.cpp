@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "cpp/label/hand_made_paths.h"
+#include "echopath/label/selection.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+using Bits = std::vector<uint8_t>;
+
+std::vector<HandMadePath> some_paths() {
+  std::vector<HandMadePath> paths = random_paths(2000, 0, 5, 5);
+  paths.insert(paths.end(), {{}, {{kTorso, false}}, {{kWallLeft, false}, {kTorso, true}}});
+  return paths;
+}
+
+template <class Holds>
+Bits bits_where(const std::vector<HandMadePath>& paths, Holds holds) {
+  Bits bits;
+  for (const HandMadePath& path : paths) bits.push_back(holds(path) ? 1 : 0);
+  return bits;
+}
+
+TEST(Selection, TouchesTakesPathsWithAHitOnTheMesh) {
+  const auto touches_arm = [](const HandMadePath& path) {
+    for (const HandMadeHit& hit : path) {
+      if (hit.mesh_id == kArmLeft || hit.mesh_id == kArmRight) return true;
+    }
+    return false;
+  };
+  const Bits taken = Selection::touches("pedestrian/arms").matches(make_paths(some_paths()));
+  EXPECT_EQ(taken, bits_where(some_paths(), touches_arm));
+}
+
+TEST(Selection, NumBouncesCountsHits) {
+  const Paths paths = make_paths(some_paths());
+  const auto between = [](size_t low, size_t high) {
+    const auto holds = [=](const HandMadePath& path) { return path.size() >= low && path.size() <= high; };
+    return bits_where(some_paths(), holds);
+  };
+  EXPECT_EQ(Selection::num_bounces(2, 3).matches(paths), between(2, 3));
+  EXPECT_EQ(Selection::num_bounces(2).matches(paths), between(2, 64));
+  EXPECT_EQ(Selection::num_bounces(0, 0).matches(paths), between(0, 0));
+}
+
+TEST(Selection, BooleanLawsHold) {
+  const Paths paths = make_paths(some_paths());
+  const Selection a = Selection::touches("street/wall*"), b = "T .* D R", c = Selection::num_bounces(2, 4);
+  EXPECT_EQ((~(a | b)).matches(paths), (~a & ~b).matches(paths));
+  EXPECT_EQ((~(a & b)).matches(paths), (~a | ~b).matches(paths));
+  EXPECT_EQ((a & (b | c)).matches(paths), ((a & b) | (a & c)).matches(paths));
+  EXPECT_EQ((~~a).matches(paths), a.matches(paths));
+  EXPECT_EQ((a | ~a).matches(paths), Bits(paths.offsets.size(), 1));
+  EXPECT_EQ((a & ~a).matches(paths), Bits(paths.offsets.size(), 0));
+  EXPECT_NE(a.matches(paths), b.matches(paths));
+}
+
+// A path expression says the same as the algebra.
+TEST(Selection, AlgebraAndExpressionsAreOneLanguage) {
+  const Paths paths = make_paths(some_paths());
+  EXPECT_EQ((Selection::touches("pedestrian") & Selection::num_bounces(1, 1)).matches(paths),
+            Selection("T 'pedestrian' R").matches(paths));
+  EXPECT_EQ((~Selection::touches("street")).matches(paths), Selection("T [^ 'street']* R").matches(paths));
+  EXPECT_EQ(Selection(Selection::num_bounces(2, 4).text()).matches(paths), Selection::num_bounces(2, 4).matches(paths));
+}
+
+TEST(Selection, TextReadsLikeTheAlgebra) {
+  const Selection a = Selection::touches("pedestrian"), b = Selection::num_bounces(1, 1), c = Selection::num_bounces(2);
+  EXPECT_EQ(a.text(), "T .* 'pedestrian' .* R");
+  EXPECT_EQ(b.text(), "T .{1} R");
+  EXPECT_EQ(Selection::num_bounces(0, 3).text(), "T .{0,3} R");
+  EXPECT_EQ(((a | b) & ~c).text(), "((T .* 'pedestrian' .* R) | (T .{1} R)) & ~(T .{2,} R)");
+  EXPECT_EQ((a | b | c).text(), "(T .* 'pedestrian' .* R) | (T .{1} R) | (T .{2,} R)");
+}
+
+TEST(Selection, NoPathsGiveNoBits) {
+  const Paths none = make_paths({});
+  EXPECT_TRUE(Selection("T . R").matches(none).empty());
+  EXPECT_TRUE((~Selection::touches("street")).matches(none).empty());
+  Paths empty_scene;
+  empty_scene.scene = std::make_shared<Scene>();
+  EXPECT_TRUE(Selection("T .* R").matches(empty_scene).empty());
+}
+
+TEST(Selection, BadInputNamesTheArgument) {
+  const auto error_of = [](auto make) -> std::string {
+    try {
+      make();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_TRUE(error_of([] { Selection::touches("it's"); }).starts_with("glob: "));
+  EXPECT_TRUE(error_of([] { Selection::touches(""); }).starts_with("glob: "));
+  EXPECT_TRUE(error_of([] { Selection::num_bounces(-1); }).starts_with("num_bounces: "));
+  EXPECT_TRUE(error_of([] { Selection::num_bounces(3, 2); }).starts_with("num_bounces: "));
+  EXPECT_TRUE(error_of([] { Selection::num_bounces(65); }).starts_with("num_bounces: "));
+  EXPECT_TRUE(error_of([] { Selection("T ."); }).starts_with("path expression: "));
+  EXPECT_TRUE(error_of([] { Selection("T . R").matches(Paths{}); }).starts_with("paths: "));
+  Paths empty_scene;
+  empty_scene.scene = std::make_shared<Scene>();
+  const std::string message = error_of([&] { Selection::touches("wall").matches(empty_scene); });
+  EXPECT_NE(message.find("the scene has no meshes"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace echopath

@@ -23,6 +23,24 @@ double Stratum::ray_density() const { return static_cast<double>(num_rays) / sol
 
 bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - axis).squaredNorm() <= versine; }
 
+void Paths::validate() const {
+  const size_t size = offsets.size();
+  require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
+              batch.size() == size && flags.size() == size,
+          "paths", "all arrays must have one entry per path, paths", size);
+  for (size_t i = 0; i < size; ++i) {
+    require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
+    require(offsets[i] >= 0 && offsets[i] + num_bounces[i] <= num_hits(), "offsets", "must lead to hits", offsets[i]);
+    require(stratum[i] == 255 || stratum[i] < frame.strata.size(), "stratum", "must be one of the frame's", int{stratum[i]});
+  }
+  for (int64_t i = 0; i < num_hits(); ++i) {
+    const Hit& hit = (*hits)[static_cast<size_t>(i)];
+    require(hit.mesh_id < scene->meshes().size(), "mesh_id", "must be a mesh of the scene", hit.mesh_id);
+    const size_t num_triangles = scene->node_of(hit.mesh_id).mesh->triangles().size();
+    require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
+  }
+}
+
 Paths Paths::select(const std::vector<uint8_t>& keep) const {
   require(static_cast<int64_t>(keep.size()) == num_paths(), "keep", "must have one entry per path", keep.size());
   Paths out;

@@ -71,6 +71,8 @@ struct Paths {
   int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
   const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
 
+  // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
+  void validate() const;
   // The paths where keep [P] is not 0, in order; shares the hits.
   Paths select(const std::vector<uint8_t>& keep) const;
 };

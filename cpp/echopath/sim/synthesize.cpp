@@ -1,0 +1,113 @@
+#include "echopath/sim/synthesize.h"
+
+#include <algorithm>
+
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
+constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
+constexpr int64_t kLargestBlock = 8192;
+constexpr int64_t kSmallestBlock = 64;
+
+int64_t block_size(int num_channels) {
+  return std::clamp(kEchoesInFlight / (kBlocksInFlight * num_channels), kSmallestBlock, kLargestBlock);
+}
+
+struct Stream {
+  const Replayer& replayer;
+  const std::vector<uint32_t>* group;  // null: all in group 0
+  Synthesizer& synthesizer;
+  Job* job;
+
+  // Blocks are replayed in parallel, a fixed number at a time, and added in their order.
+  void run(const std::vector<int64_t>& paths, bool moving) {
+    const int64_t size = block_size(replayer.num_channels());
+    const auto num_paths = static_cast<int64_t>(paths.size());
+    for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
+      const int64_t num_blocks = std::min(kBlocksInFlight, (num_paths - begin + size - 1) / size);
+      std::vector<std::vector<Echoes>> blocks(static_cast<size_t>(num_blocks));
+      parallel_for(num_blocks, [&](int64_t i) {
+        if (job) job->throw_if_cancelled();
+        const int64_t first = begin + i * size;
+        const std::span<const int64_t> part(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
+        blocks[static_cast<size_t>(i)] = grouped(part, moving);
+      });
+      for (const std::vector<Echoes>& channels : blocks) {
+        for (size_t channel = 0; channel < channels.size(); ++channel) {
+          if (job) job->throw_if_cancelled();
+          synthesizer.add(static_cast<int>(channel), channels[channel], job);
+        }
+      }
+    }
+  }
+
+  std::vector<Echoes> grouped(std::span<const int64_t> part, bool moving) const {
+    std::vector<Echoes> channels = replayer.echoes(part, moving);
+    if (!group) return channels;
+    for (Echoes& echoes : channels) {
+      for (const int64_t path : part) echoes.group.push_back((*group)[static_cast<size_t>(path)]);
+    }
+    return channels;
+  }
+};
+
+// Cubes [group] of all groups, in one pass.
+std::vector<Cube> synthesize_groups(const Paths& paths, const Radar& radar, const std::vector<uint32_t>* group, int num_groups,
+                                    const CubeSettings& settings, Job* job) {
+  const Replayer replayer(paths, radar, settings.replay);
+  const int64_t num_paths = paths.num_paths();
+  Synthesizer synthesizer(radar.waveform, replayer.num_channels(), num_groups, num_paths, settings.synthesis);
+  std::vector<int64_t> still, moving;
+  for (int64_t path = 0; path < num_paths; ++path) (replayer.is_static(path) ? still : moving).push_back(path);
+  if (job) job->start(num_paths * replayer.num_channels());
+  Stream stream{replayer, group, synthesizer, job};
+  stream.run(still, false);
+  stream.run(moving, true);
+
+  std::vector<Cube> cubes;
+  for (int g = 0; g < num_groups; ++g) {
+    cubes.push_back({static_cast<int>(radar.transmitters.size()), static_cast<int>(radar.receivers.size()),
+                     radar.waveform.num_chirps, radar.waveform.num_samples, synthesizer.cube(g, job)});
+  }
+  return cubes;
+}
+
+Cube empty_like(const Radar& radar) {
+  Cube cube{static_cast<int>(radar.transmitters.size()), static_cast<int>(radar.receivers.size()), radar.waveform.num_chirps,
+            radar.waveform.num_samples, {}};
+  cube.values.resize(static_cast<size_t>(cube.num_tx) * cube.num_rx * cube.num_chirps * cube.num_samples);
+  return cube;
+}
+
+}  // namespace
+
+Cube synthesize(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
+  return std::move(synthesize_groups(paths, radar, nullptr, 1, settings, job).front());
+}
+
+std::vector<std::vector<PartCube>> decompose(const Paths& paths, const Radar& radar,
+                                             const std::vector<std::vector<NamedSelection>>& partitions,
+                                             const CubeSettings& settings, Job* job) {
+  std::vector<Partition> parts;
+  for (const std::vector<NamedSelection>& named : partitions) parts.push_back(make_partition(paths, named));
+  const CombinedPartition combined = combine(std::move(parts));
+  const int num_groups = std::max(1, static_cast<int>(combined.num_groups));
+  const std::vector<Cube> by_group = synthesize_groups(paths, radar, &combined.group, num_groups, settings, job);
+
+  std::vector<std::vector<PartCube>> out(partitions.size());
+  for (size_t i = 0; i < partitions.size(); ++i) {
+    const std::vector<std::string>& names = combined.partitions[i].names;
+    for (uint32_t part = 0; part < names.size(); ++part) {
+      PartCube& made = out[i].emplace_back(PartCube{names[part], empty_like(radar)});
+      for (const uint32_t g : combined.groups_of(i, part)) {
+        for (size_t k = 0; k < made.cube.values.size(); ++k) made.cube.values[k] += by_group[g].values[k];
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,120 @@
+#include <pybind11/complex.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+
+#include "array.h"
+#include "echopath/sim/synthesize.h"
+#include "keywords.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "phase_tolerance", "progress"};
+
+Method method_of(const std::string& name) {
+  if (name == "auto") return Method::kAuto;
+  if (name == "direct") return Method::kDirect;
+  if (name == "recurrence") return Method::kRecurrence;
+  if (name == "nufft") return Method::kNufft;
+  throw std::invalid_argument("method: must be 'auto', 'direct', 'recurrence' or 'nufft', got '" + name + "'");
+}
+
+CubeSettings settings_of(double tolerance, const std::string& method, const std::string& replay, double phase_tolerance) {
+  CubeSettings settings;
+  settings.synthesis = {tolerance, method_of(method)};
+  settings.replay.phase_tolerance = phase_tolerance;
+  require(replay == "interpolated" || replay == "exact", "replay", "must be 'interpolated' or 'exact'", replay);
+  settings.replay.exact = replay == "exact";
+  return settings;
+}
+
+py::array cube_array(Cube&& cube) {
+  return numpy_take(std::move(cube.values), {cube.num_tx, cube.num_rx, cube.num_chirps, cube.num_samples});
+}
+
+// None: the radar of the trace.
+const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
+
+py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
+                          const std::string& replay, double phase_tolerance, const py::object& progress,
+                          const py::kwargs& unknown) {
+  refuse_unknown(unknown, "synthesize", kKeywords);
+  const CubeSettings settings = settings_of(tolerance, method, replay, phase_tolerance);
+  return cube_array(run_job("synthesize", progress, [&](Job& job) {
+    return synthesize(paths, radar_or_own(paths, radar), settings, &job);
+  }));
+}
+
+std::vector<NamedSelection> named_selections(const py::dict& parts) {
+  std::vector<NamedSelection> named;
+  for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
+  return named;
+}
+
+// All values are dicts: several partitions; none is: one.
+bool is_nested(const py::dict& parts) {
+  size_t num_dicts = 0;
+  for (const auto& [name, value] : parts) num_dicts += py::isinstance<py::dict>(value) ? 1 : 0;
+  require(num_dicts == 0 || num_dicts == parts.size(), "parts", "must be all selections or all dicts of selections, dicts",
+          num_dicts);
+  return num_dicts > 0;
+}
+
+py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict& parts, double tolerance,
+                         const std::string& method, const std::string& replay, double phase_tolerance,
+                         const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "decompose", kKeywords);
+  const CubeSettings settings = settings_of(tolerance, method, replay, phase_tolerance);
+  const bool nested = is_nested(parts);
+  std::vector<std::string> names;
+  std::vector<std::vector<NamedSelection>> partitions;
+  if (nested) {
+    for (const auto& [name, value] : parts) {
+      names.push_back(name.cast<std::string>());
+      partitions.push_back(named_selections(value.cast<py::dict>()));
+    }
+  } else {
+    partitions.push_back(named_selections(parts));
+  }
+  auto cubes = run_job("decompose", progress, [&](Job& job) {
+    return decompose(paths, radar_or_own(paths, radar), partitions, settings, &job);
+  });
+  const auto mapping = [](std::vector<PartCube>& made) {
+    py::dict out;
+    for (PartCube& part : made) out[py::str(part.name)] = cube_array(std::move(part.cube));
+    return out;
+  };
+  if (!nested) return mapping(cubes.front());
+  py::dict out;
+  for (size_t i = 0; i < cubes.size(); ++i) out[py::str(names[i])] = mapping(cubes[i]);
+  return out;
+}
+
+}  // namespace
+
+void bind_sim(py::module_& m) {
+  m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
+        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "interpolated",
+        py::arg("phase_tolerance") = 1e-5, py::arg("progress") = py::none(),
+        R"(The noise-free IF signal of paths.
+
+radar: another waveform, array or motion than that of the trace, or None
+tolerance: largest error of a sample relative to the sum of all |amplitudes|, 1e-13 to 0.1
+method: "auto", "direct" (the reference), "recurrence" or "nufft"
+replay: "interpolated" (lengths and amplitudes by polynomials in time, to phase_tolerance in rad) or "exact" at each chirp
+progress: callable(stage, fraction) or None
+Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
+  m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar") = py::none(), py::arg("parts") = py::dict(),
+        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "interpolated",
+        py::arg("phase_tolerance") = 1e-5, py::arg("progress") = py::none(),
+        R"(The signals of parts of the paths, in one pass.
+
+parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at once
+Returns {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; one such mapping
+per view for several views. Further arguments as in synthesize.)");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,313 @@
+#include <pybind11/complex.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <string>
+
+#include "array.h"
+#include "echopath/label/partition.h"
+#include "echopath/replay/replay.h"
+#include "echopath/trace/trace.h"
+#include "keywords.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+using PathsPtr = std::shared_ptr<Paths>;
+
+// --- TraceFrame and what it holds ---
+
+void bind_frame(py::module_& m) {
+  py::class_<Stratum>(m, "Stratum", "One launch stratum: uniform directions in a cone.")
+      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, std::string name) {
+             Stratum made;
+             made.axis = as_vec3(axis, "axis");
+             made.versine = versine;
+             made.num_rays = num_rays;
+             made.name = std::move(name);
+             return made;
+           }),
+           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("name"))
+      .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
+      .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle; 2 is the whole sphere")
+      .def_readonly("num_rays", &Stratum::num_rays)
+      .def_readonly("name", &Stratum::name, "what it aims at")
+      .def_property_readonly("ray_density", &Stratum::ray_density, "rays per sr")
+      .def("__repr__", [](const Stratum& self) {
+        return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
+      });
+
+  py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
+      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t near, int64_t grazing, int64_t false_hits) {
+             return TraceStatistics{rays, queries, hits, near, grazing, false_hits};
+           }),
+           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
+           py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_false_hits") = 0)
+      .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
+      .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
+      .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
+      .def_readonly("num_near_antenna", &TraceStatistics::num_near_antenna, "dropped: within 1 mm of an antenna")
+      .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
+      .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision");
+
+  py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
+      .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
+                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, bool footprint_filter,
+                       const TraceStatistics& statistics) {
+             return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
+                               std::move(strata), seed, max_bounces, footprint_filter, statistics};
+           }),
+           py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
+           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint_filter"), py::arg("statistics"))
+      .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
+      .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
+      .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
+                             "[3] m, where rays started, world")
+      .def_property_readonly("receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
+                             "[3] m, where hits were connected to, world")
+      .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
+      .def_readonly("seed", &TraceFrame::seed)
+      .def_readonly("max_bounces", &TraceFrame::max_bounces)
+      .def_readonly("footprint_filter", &TraceFrame::footprint_filter)
+      .def_readonly("statistics", &TraceFrame::statistics);
+}
+
+// --- Paths ---
+
+// A column of the hits, a strided view without a copy.
+template <class T>
+auto hit_column(T Hit::* field) {
+  return [field](const py::object& self) {
+    const auto& paths = self.cast<const Paths&>();
+    const T* first = paths.num_hits() ? &(paths.hits->front().*field) : nullptr;
+    py::array_t<T> array({static_cast<py::ssize_t>(paths.num_hits())}, {static_cast<py::ssize_t>(sizeof(Hit))}, first, self);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+  };
+}
+
+template <class T>
+auto path_column(std::vector<T> Paths::* field) {
+  return [field](const py::object& self) { return numpy_view(self.cast<const Paths&>().*field, self); };
+}
+
+py::array hits_of(const py::object& self) {
+  const auto& paths = self.cast<const Paths&>();
+  return numpy_view(paths.num_hits() ? paths.hits->data() : nullptr, {static_cast<py::ssize_t>(paths.num_hits())}, self);
+}
+
+std::vector<int64_t> all_paths(const Paths& paths) {
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  std::iota(indices.begin(), indices.end(), int64_t{0});
+  return indices;
+}
+
+size_t antenna_index(const py::handle& value, const char* argument, size_t count) {
+  const auto index = *checked_array<int64_t>(value, argument, "[]").data();
+  if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
+  throw std::out_of_range(std::string(argument) + ": must lie in 0 to " + std::to_string(count - 1) + ", got " +
+                          std::to_string(index));
+}
+
+// The antenna of that index, or an isotropic one at a position [3] in m in the radar's frame.
+Antenna antenna_of(const py::object& value, const char* argument, const std::vector<Antenna>& antennas) {
+  if (py::isinstance<py::int_>(value)) return antennas[antenna_index(value, argument, antennas.size())];
+  Antenna made;
+  made.position = as_vec3(value, argument);
+  return made;
+}
+
+struct Series {
+  std::vector<double> lengths;                      // [T, P]
+  std::vector<std::complex<double>> amplitudes;     // [T, P]
+};
+
+Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, Antenna transmitter, Antenna receiver) {
+  Radar radar = paths.radar;
+  radar.transmitters = {std::move(transmitter)};
+  radar.receivers = {std::move(receiver)};
+  const Replayer replayer(paths, radar);
+  const std::vector<int64_t> indices = all_paths(paths);
+  Series series;
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  for (const double time : times) {
+    replayer.evaluate(indices, time, lengths, amplitudes);
+    series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
+    series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
+  }
+  return series;
+}
+
+Shape series_shape(const Paths& paths, const std::vector<double>& times) {
+  return {static_cast<py::ssize_t>(times.size()), static_cast<py::ssize_t>(paths.num_paths())};
+}
+
+py::array amplitudes_of(const Paths& paths, const py::object& times, const py::object& tx, const py::object& rx) {
+  const std::vector<double> at = as_vector<double>(times, "times");
+  const Antenna transmitter = paths.radar.transmitters[antenna_index(tx, "tx", paths.radar.transmitters.size())];
+  const Antenna receiver = paths.radar.receivers[antenna_index(rx, "rx", paths.radar.receivers.size())];
+  Series series;
+  {
+    const py::gil_scoped_release release;
+    series = evaluate_one_channel(paths, at, transmitter, receiver);
+  }
+  return numpy_take(std::move(series.amplitudes), series_shape(paths, at));
+}
+
+py::array amplitude_of(const Paths& paths) {
+  Series series;
+  {
+    const py::gil_scoped_release release;
+    series = evaluate_one_channel(paths, {paths.frame.trace_time}, paths.radar.transmitters[0], paths.radar.receivers[0]);
+  }
+  return numpy_take(std::move(series.amplitudes));
+}
+
+py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver) {
+  const std::vector<double> at = as_vector<double>(times, "times");
+  const Antenna from = antenna_of(transmitter, "transmitter", paths.radar.transmitters);
+  const Antenna to = antenna_of(receiver, "receiver", paths.radar.receivers);
+  Series series;
+  {
+    const py::gil_scoped_release release;
+    series = evaluate_one_channel(paths, at, from, to);
+  }
+  return numpy_take(std::move(series.lengths), series_shape(paths, at));
+}
+
+py::array points_of(const Paths& paths, double time) {
+  std::vector<Vec3> points;
+  {
+    const py::gil_scoped_release release;
+    const Pose pose(*paths.scene, time);
+    points.reserve(static_cast<size_t>(paths.num_hits()));
+    for (int64_t i = 0; i < paths.num_hits(); ++i) {
+      const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+      const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+      points.push_back(a + double{hit.u} * (b - a) + double{hit.v} * (c - a));
+    }
+  }
+  return to_numpy(points);
+}
+
+PathsPtr select_mask(const Paths& paths, const py::array& mask) {
+  const auto keep = checked_array<bool>(mask, "selection", "[P]");
+  const std::vector<uint8_t> bytes(keep.data(), keep.data() + keep.size());
+  return std::make_shared<Paths>(paths.select(bytes));
+}
+
+PathsPtr select_paths(const Paths& paths, const Selection& selection) {
+  return std::make_shared<Paths>(paths.select(selection.matches(paths)));
+}
+
+py::dict partition_paths(const Paths& paths, const py::dict& parts) {
+  std::vector<NamedSelection> named;
+  for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
+  const Partition partition = make_partition(paths, named);
+  py::dict out;
+  for (uint32_t part = 0; part < partition.names.size(); ++part) {
+    std::vector<uint8_t> keep;
+    for (const uint32_t group : partition.group) keep.push_back(group == part);
+    out[py::str(partition.names[part])] = std::make_shared<Paths>(paths.select(keep));
+  }
+  return out;
+}
+
+PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
+                           const py::array& diffuse, const py::array& weight, const py::array& stratum,
+                           const py::array& batch, const py::array& flags, const Scene& scene, const Radar& radar,
+                           const TraceFrame& frame) {
+  auto paths = std::make_shared<Paths>();
+  const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
+  paths->hits = std::make_shared<const std::vector<Hit>>(rows.data(), rows.data() + rows.size());
+  paths->offsets = as_vector<int64_t>(offsets, "offsets", "[P]");
+  paths->num_bounces = as_vector<uint8_t>(num_bounces, "num_bounces", "[P]");
+  paths->diffuse = as_vector<uint64_t>(diffuse, "diffuse", "[P]");
+  paths->weight = as_vector<std::complex<float>>(weight, "weight", "[P]");
+  paths->stratum = as_vector<uint8_t>(stratum, "stratum", "[P]");
+  paths->batch = as_vector<uint8_t>(batch, "batch", "[P]");
+  paths->flags = as_vector<uint32_t>(flags, "flags", "[P]");
+  paths->scene = std::make_shared<const Scene>(scene);
+  paths->radar = radar;
+  paths->frame = frame;
+  paths->validate();
+  return paths;
+}
+
+PathsPtr trace_paths(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces, uint64_t seed,
+                     double start_time, bool footprint_filter, const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint_filter", "progress"});
+  const TraceSettings settings{num_rays, max_bounces, seed, start_time, footprint_filter};
+  return std::make_shared<Paths>(
+      run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
+}
+
+std::string paths_text(const Paths& self) {
+  return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
+}
+
+void bind_paths(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(Hit, mesh_id, triangle_id, u, v);
+  py::class_<Paths, PathsPtr>(m, "Paths", R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
+
+Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
+share hits; selections share all hits of their trace.)")
+      .def_property_readonly("num_paths", &Paths::num_paths)
+      .def_property_readonly("num_hits", &Paths::num_hits)
+      .def_property_readonly("hits", &hits_of, "[H] structured: mesh_id, triangle_id, u, v")
+      .def_property_readonly("mesh_id", hit_column(&Hit::mesh_id), "[H]")
+      .def_property_readonly("triangle_id", hit_column(&Hit::triangle_id), "[H] triangle within the mesh")
+      .def_property_readonly("u", hit_column(&Hit::u), "[H] barycentric: p = (1 - u - v) v0 + u v1 + v v2")
+      .def_property_readonly("v", hit_column(&Hit::v), "[H] barycentric")
+      .def_property_readonly("offsets", path_column(&Paths::offsets), "[P] first hit")
+      .def_property_readonly("num_bounces", path_column(&Paths::num_bounces), "[P]")
+      .def_property_readonly("diffuse", path_column(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
+      .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
+      .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
+      .def_property_readonly("batch", path_column(&Paths::batch), "[P]")
+      .def_property_readonly("flags", path_column(&Paths::flags), "[P] reserved")
+      .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
+                             "snapshot of the scene")
+      .def_readonly("radar", &Paths::radar, "snapshot of the radar")
+      .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
+      .def_property_readonly("amplitude", &amplitude_of,
+                             "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length")
+      .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
+           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for one transmitter and receiver (indices).")
+      .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
+           "Lengths [T, P] in m at `times` [T] in s; antennas are indices or positions [3] in m in the radar's frame.")
+      .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
+      .def("select", &select_paths, py::arg("selection"), "The paths that a path expression or Selection takes.")
+      .def("select", &select_mask, py::arg("selection"), "The paths where a mask, bool [P], is true.")
+      .def("partition", &partition_paths, py::arg("parts"),
+           "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
+      .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
+                  py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
+                  py::arg("flags"), py::arg("scene"), py::arg("radar"), py::arg("frame"),
+                  "Paths of arrays as the properties give them. Raises ValueError where an index leads nowhere.")
+      .def("__len__", &Paths::num_paths)
+      .def("__repr__", &paths_text);
+
+  m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = 1000000,
+        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint_filter") = true,
+        py::arg("progress") = py::none(), R"(Shoots rays through the scene at mid-frame and records what they hit.
+
+num_rays: rays in all; max_bounces: 1 to 64, hits on mirrors count; seed: the same seed gives the same bits
+start_time: s, first sample of the frame; footprint_filter: the ray tube's filter on coherent echoes
+progress: callable(stage, fraction) or None
+Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
+}
+
+}  // namespace
+
+void bind_trace(py::module_& m) {
+  bind_frame(m);
+  bind_paths(m);
+}
+
+}  // namespace echopath::bindings

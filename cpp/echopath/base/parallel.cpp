@@ -5,8 +5,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -43,6 +47,39 @@ std::shared_ptr<tbb::task_arena> current_arena() {
   return arena;
 }
 
+#ifdef ECHOPATH_THREAD_SANITIZER
+// The sanitizer cannot see into the TBB library, where every hand-over of a task would look like a race: plain threads,
+// which it understands, so that what it reports is ours.
+void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
+  std::atomic<int64_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto work = [&] {
+    try {
+      for (int64_t i = next++; i < count; i = next++) step(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  for (int64_t k = 1; k < std::min<int64_t>(num_threads(), count); ++k) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+#else
+void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
+  const auto run_range = [&](const tbb::blocked_range<int64_t>& range) {
+    for (int64_t i = range.begin(); i != range.end(); ++i) step(i);
+  };
+  current_arena()->execute([&] {
+    tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, 1), run_range, tbb::simple_partitioner());
+  });
+}
+#endif
+
 }  // namespace
 
 void set_num_threads(int num_threads) {
@@ -57,18 +94,11 @@ int num_threads() { return current_arena()->max_concurrency(); }
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job) {
   if (count <= 0) return;
-  current_arena()->execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<int64_t>(0, count, 1),
-        [&](const tbb::blocked_range<int64_t>& range) {
-          const FlushDenormals flush;
-          for (int64_t i = range.begin(); i != range.end(); ++i) {
-            if (job) job->throw_if_cancelled();
-            body(i);
-            if (job) job->advance(1);
-          }
-        },
-        tbb::simple_partitioner());
+  run_steps(count, [&](int64_t i) {
+    const FlushDenormals flush;
+    if (job) job->throw_if_cancelled();
+    body(i);
+    if (job) job->advance(1);
   });
 }
 

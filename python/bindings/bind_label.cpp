@@ -1,0 +1,131 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "array.h"
+#include "echopath/label/expression.h"
+#include "echopath/label/partition.h"
+#include "echopath/label/selection.h"
+
+namespace echopath::bindings {
+namespace {
+
+using NamedSelections = std::vector<std::pair<std::string, Selection>>;
+
+// Text becomes a Selection wherever one is asked for. Unlike py::implicitly_convertible, which would turn a fault in the
+// text into "incompatible arguments", this lets the message with the caret through.
+PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
+  if (!PyUnicode_Check(value)) return nullptr;
+  PyObject* made = PyObject_CallOneArg(reinterpret_cast<PyObject*>(selection_type), value);
+  if (made == nullptr) throw py::error_already_set();
+  return made;
+}
+
+py::array_t<bool> matches_of(const Selection& selection, const Paths& paths) {
+  std::vector<uint8_t> taken;
+  {
+    const py::gil_scoped_release release;
+    taken = selection.matches(paths);
+  }
+  py::array_t<bool> mask(static_cast<py::ssize_t>(taken.size()));
+  std::copy(taken.begin(), taken.end(), mask.mutable_data());
+  return mask;
+}
+
+std::vector<NamedSelection> named(const NamedSelections& parts) {
+  std::vector<NamedSelection> made;
+  for (const auto& [name, selection] : parts) made.push_back({name, selection});
+  return made;
+}
+
+py::tuple partition_groups(const Paths& paths, const NamedSelections& parts) {
+  Partition partition;
+  {
+    const py::gil_scoped_release release;
+    partition = make_partition(paths, named(parts));
+  }
+  return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
+}
+
+// Number of hits of a path, to be compared with whole numbers.
+struct NumBounces {};
+
+// Any whole number is a fair question; beyond the longest path the answer is no path or every path.
+constexpr int64_t kUnlimited = std::numeric_limits<int64_t>::max();
+
+Selection between(int64_t min, int64_t max) {
+  const int64_t low = std::max<int64_t>(min, 0);
+  if (low > max || low > kMaxRepeatCount) return ~Selection::num_bounces(0);
+  const auto limit = max > kMaxRepeatCount ? std::nullopt : std::optional(static_cast<int>(max));
+  return Selection::num_bounces(static_cast<int>(low), limit);
+}
+
+[[noreturn]] void refuse_truth(const char* what) {
+  throw py::type_error(std::string(what) + " has no truth value: combine with & | ~ instead of and, or, not, and write " +
+                       "(2 <= ep.num_bounces) & (ep.num_bounces <= 4) instead of 2 <= ep.num_bounces <= 4");
+}
+
+void bind_selection(py::module_& m) {
+  py::class_<Selection> selection(m, "Selection", R"(Which paths are meant: a path expression, or several joined by & | ~.
+
+text: a regular expression over the hits of a path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or
+    that of a group above it), S or D (specular, diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators * + ? | ( ) {m,n}.
+Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a
+glob takes no mesh of the scene.)");
+  selection.def(py::init<const std::string&>(), py::arg("text"))
+      .def(py::init<const Selection&>(), py::arg("selection"))
+      .def_static("path_expression", [](const std::string& text) { return Selection(text); }, py::arg("text"),
+                  "The paths that a path expression takes.")
+      .def_static("touches", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
+                  "Paths with at least one hit on a mesh that the glob takes.")
+      .def_static("num_bounces", &Selection::num_bounces, py::arg("min"), py::arg("max") = py::none(),
+                  "Paths of min to max hits, both included; max None: any number from min on.")
+      .def("matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.")
+      .def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
+      .def("__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
+      .def("__rand__", [](const Selection& a, const Selection& b) { return b & a; }, py::is_operator())
+      .def("__or__", [](const Selection& a, const Selection& b) { return a | b; }, py::is_operator())
+      .def("__ror__", [](const Selection& a, const Selection& b) { return b | a; }, py::is_operator())
+      .def("__invert__", [](const Selection& a) { return ~a; })
+      .def("__bool__", [](const Selection&) -> bool { refuse_truth("a Selection"); })
+      .def("__str__", &Selection::text)
+      .def("__repr__", [](const Selection& self) { return "<Selection " + self.text() + ">"; });
+  py::detail::get_type_info(typeid(Selection))->implicit_conversions.push_back(&selection_of_text);
+  m.def("hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
+        "Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.");
+}
+
+void bind_num_bounces(py::module_& m) {
+  py::class_<NumBounces> type(m, "NumBounces", "The number of hits of a path: ep.num_bounces >= 2 is a Selection.");
+  type.def("__eq__", [](const NumBounces&, int64_t count) { return between(count, count); })
+      .def("__ne__", [](const NumBounces&, int64_t count) { return ~between(count, count); })
+      .def("__ge__", [](const NumBounces&, int64_t count) { return between(count, kUnlimited); })
+      .def("__gt__", [](const NumBounces&, int64_t count) { return ~between(0, count); })
+      .def("__lt__", [](const NumBounces&, int64_t count) { return ~between(count, kUnlimited); })
+      .def("__le__", [](const NumBounces&, int64_t count) { return between(0, count); })
+      .def("__bool__", [](const NumBounces&) -> bool { refuse_truth("ep.num_bounces"); })
+      .def("__repr__", [](const NumBounces&) { return "ep.num_bounces"; });
+  m.attr("num_bounces") = NumBounces{};
+}
+
+}  // namespace
+
+void bind_label(py::module_& m) {
+  bind_selection(m);
+  bind_num_bounces(m);
+  m.def("partition_groups", &partition_groups, py::arg("paths"), py::arg("parts"),
+        R"(The part of each path in a partition.
+
+parts: [(name, selection), ...]; the first that takes a path has it
+Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty, "other"
+or given twice.)");
+}
+
+}  // namespace echopath::bindings

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -122,8 +123,9 @@ std::vector<uint32_t> corners_of(const PlyValues& values, const std::vector<doub
   for (const double item : items) {
     const bool exists = item >= 0.0 && item < static_cast<double>(soup.vertices.size()) && item == std::floor(item);
     if (!exists) {
-      values.refuse(face + ": vertex " + std::to_string(item) + " does not exist, there are " +
-                    std::to_string(soup.vertices.size()));
+      std::ostringstream text;
+      text << face << ": vertex " << item << " does not exist, there are " << soup.vertices.size();
+      values.refuse(text.str());
     }
     corners.push_back(static_cast<uint32_t>(item));
   }

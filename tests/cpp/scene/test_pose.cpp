@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kRounding = 1e-13;  // of products of a few transforms with entries of order 10
+
+MaterialPtr metal() { return std::make_shared<const Material>(Material::metal()); }
+
+MeshPtr triangle() {
+  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
+}
+
+// 4x4 matrices written out, to share nothing with the transforms of the program.
+using Matrix4 = Eigen::Matrix4d;
+
+Matrix4 shift(double x, double y, double z) {
+  Matrix4 m = Matrix4::Identity();
+  m.col(3) << x, y, z, 1;
+  return m;
+}
+
+Matrix4 turn_z(double angle) {
+  Matrix4 m = Matrix4::Identity();
+  m.row(0) << std::cos(angle), -std::sin(angle), 0, 0;
+  m.row(1) << std::sin(angle), std::cos(angle), 0, 0;
+  return m;
+}
+
+Matrix4 turn_x(double angle) {
+  Matrix4 m = Matrix4::Identity();
+  m.row(1) << 0, std::cos(angle), -std::sin(angle), 0;
+  m.row(2) << 0, std::sin(angle), std::cos(angle), 0;
+  return m;
+}
+
+Transform transform(const Matrix4& matrix) {
+  Transform result;
+  result.matrix() = matrix;
+  return result;
+}
+
+Node node(const std::string& name, int parent, const Matrix4& placement, std::shared_ptr<const Motion> motion = nullptr) {
+  Node made;
+  made.name = name;
+  made.parent = parent;
+  made.placement = transform(placement);
+  made.motion = std::move(motion);
+  return made;
+}
+
+// A car that drives and turns, on it a turret that rotates, on that a radar dish at rest, tilted.
+Scene driving_scene() {
+  Scene scene;
+  scene.add(node("car", -1, shift(10, 2, 0) * turn_z(0.5), std::make_shared<const LinearMotion>(Vec3(3, 1, 0), Vec3(0, 0, 0.2))));
+  scene.add(node("turret", 0, shift(0, 0, 1.5) * turn_x(0.1), std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, 2))));
+  Node dish = node("dish", 1, shift(0.4, 0, 0.2) * turn_x(-0.7));
+  dish.mesh = triangle(), dish.material = metal();
+  scene.add(dish);
+  return scene;
+}
+
+TEST(Pose, NestedMotionsAreTheProductOfTheirMatrices) {
+  const Scene scene = driving_scene();
+  for (const double t : {-1.0, 0.0, 0.3, 2.0}) {
+    const Matrix4 car = shift(10, 2, 0) * shift(3 * t, t, 0) * turn_z(0.2 * t) * turn_z(0.5);
+    const Matrix4 turret = shift(0, 0, 1.5) * turn_z(2 * t) * turn_x(0.1);
+    const Matrix4 dish = shift(0.4, 0, 0.2) * turn_x(-0.7);
+    const Pose pose(scene, t);
+    EXPECT_EQ(pose.time(), t);
+    EXPECT_LT((pose.world_from_mesh(0).matrix() - car * turret * dish).norm(), kRounding);
+  }
+}
+
+TEST(Pose, AMotionTurnsANodeAboutItsOwnOriginInTheAxesOfItsParent) {
+  Scene scene;
+  Node fan = node("fan", -1, shift(5, 0, 0) * turn_x(kPi / 2), std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, kPi / 2)));
+  fan.mesh = triangle(), fan.material = metal();
+  scene.add(fan);
+  const std::vector<Vec3> vertices = Pose(scene, 1.0).world_vertices(0);
+  EXPECT_LT((vertices[0] - Vec3(5, 0, 0)).norm(), kRounding);
+  EXPECT_LT((vertices[1] - Vec3(5, 1, 0)).norm(), kRounding);  // x axis of the fan, a quarter turn about the parent's z
+  EXPECT_LT((vertices[2] - Vec3(5, 0, 1)).norm(), kRounding);  // y axis, tilted up by the placement
+}
+
+TEST(Pose, TrianglesVerticesAndSingleMeshesAgree) {
+  const Scene scene = driving_scene();
+  const Pose pose(scene, 0.7);
+  const std::vector<Vec3> all = pose.world_vertices(0);
+  const std::array<Vec3, 3> corners = pose.world_triangle(0, 0);
+  const std::vector<Vec3> alone = world_vertices(scene, 0, 0.7);
+  for (size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(corners[k], all[k]);
+    EXPECT_LT((alone[k] - all[k]).norm(), kRounding);
+    EXPECT_LT((pose.world_from_mesh(0) * pose.local_vertices(0)[k] - all[k]).norm(), kRounding);
+  }
+}
+
+TEST(Pose, ASequenceDeformsInTheFrameOfItsNode) {
+  Scene scene;
+  Node flag = node("flag", -1, shift(0, 0, 4) * turn_z(kPi / 2), std::make_shared<const LinearMotion>(Vec3(1, 0, 0)));
+  flag.mesh = triangle(), flag.material = metal();
+  std::vector<Vec3> raised = triangle()->vertices();
+  raised[1].z() = 2.0;
+  flag.sequence = std::make_shared<const VertexSequence>(std::vector<double>{0, 2},
+                                                         std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
+  scene.add(flag);
+  const Vec3 expected = (shift(1, 0, 0) * shift(0, 0, 4) * turn_z(kPi / 2) * Eigen::Vector4d(1, 0, 1, 1)).head<3>();
+  EXPECT_LT((Pose(scene, 1.0).world_vertices(0)[1] - expected).norm(), kRounding);
+  EXPECT_LT((world_vertices(scene, 0, 1.0)[1] - expected).norm(), kRounding);
+  EXPECT_THROW(Pose(scene, 2.5), std::invalid_argument);
+}
+
+TEST(Pose, AnEmptySceneHasOne) { EXPECT_EQ(Pose(Scene(), 3.0).time(), 3.0); }
+
+}  // namespace
+}  // namespace echopath

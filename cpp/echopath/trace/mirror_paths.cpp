@@ -82,9 +82,15 @@ class ImageSearch {
     return true;
   }
 
+  // Off all the planes that meet in this point, toward the side of the target.
   Vec3 lifted_toward(size_t k, const Vec3& target) const {
-    const Mirror& plane = mirror(k);
-    return geometry_.lifted(points_[k], plane.signed_distance(target) >= 0 ? plane.normal : Vec3(-plane.normal));
+    Vec3 point = points_[k];
+    for (size_t other = 0; other < points_.size(); ++other) {
+      if ((points_[other] - points_[k]).norm() > kEdgeTolerance) continue;
+      const Mirror& plane = mirror(other);
+      point = geometry_.lifted(point, plane.signed_distance(target) >= 0 ? plane.normal : Vec3(-plane.normal));
+    }
+    return point;
   }
 
   bool sees_all() {

@@ -1,0 +1,184 @@
+// The record of a trace: determinism, shapes, offsets of the world, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "echopath/base/parallel.h"
+#include "echopath/trace/embree_scene.h"
+#include "echopath/trace/launch.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+Scene mixed_scene(const Vec3& offset) {
+  Scene scene;
+  Surface ball = ellipsoid(offset + Vec3(6, 0.5, 0.2), {0.4, 0.3, 0.5}, 3);
+  Material rough;
+  rough.permittivity = std::complex<double>(4.0, -0.2);
+  rough.scattering = 0.7;
+  Material wall = rough;
+  wall.mirror = true;
+  add_mesh(scene, "ball", std::move(ball.vertices), std::move(ball.triangles), share(rough));
+  add_rectangle(scene, "wall", offset + Vec3(-5, 2, -2), {30, 0, 0}, {0, 0, 6}, share(wall));
+  add_rectangle(scene, "plate", offset + Vec3(8, -2, -1), {0, 1, 0}, {0, 0, 2}, share(Material::metal()));
+  return scene;
+}
+
+TraceSettings small(int64_t num_rays = 20000) {
+  TraceSettings settings;
+  settings.num_rays = num_rays;
+  return settings;
+}
+
+bool same_bits(const Paths& a, const Paths& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+  };
+  return same(*a.hits, *b.hits) && same(a.offsets, b.offsets) && same(a.num_bounces, b.num_bounces) &&
+         same(a.diffuse, b.diffuse) && same(a.weight, b.weight) && same(a.stratum, b.stratum);
+}
+
+TEST(Trace, BitsDoNotDependOnThreads) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const Radar radar = plain_radar({0, 0, 0}, {0, 0.1, 0});
+  set_num_threads(1);
+  const Paths reference = trace(scene, radar, small());
+  ASSERT_GT(reference.num_paths(), 10000);
+  for (const int threads : {2, 3, 7}) {
+    set_num_threads(threads);
+    EXPECT_TRUE(same_bits(reference, trace(scene, radar, small()))) << threads;
+  }
+  set_num_threads(0);
+}
+
+TEST(Trace, SeedChangesTheRays) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const Radar radar = plain_radar({0, 0, 0}, {0, 0.1, 0});
+  TraceSettings other = small();
+  other.seed = 2;
+  EXPECT_FALSE(same_bits(trace(scene, radar, small()), trace(scene, radar, other)));
+}
+
+TEST(Trace, EmptySceneHasNoPaths) {
+  const Paths paths = trace(Scene(), plain_radar(Vec3::Zero(), Vec3::Zero()), small());
+  EXPECT_EQ(paths.num_paths(), 0);
+  EXPECT_EQ(paths.num_hits(), 0);
+}
+
+// A record is well formed: every index leads somewhere, and coherent paths end in a surface that is no mirror, or have
+// mirrors only.
+TEST(Trace, RecordIsWellFormed) {
+  const Paths paths = trace(mixed_scene(Vec3::Zero()), plain_radar({0, 0, 0}, {0, 0.1, 0}), small());
+  EXPECT_NO_THROW(paths.validate());
+  int64_t num_coherent = 0;
+  for (int64_t i = 0; i < paths.num_paths(); ++i) {
+    const auto p = static_cast<size_t>(i);
+    EXPECT_LE(paths.num_bounces[p], 4);
+    EXPECT_EQ(paths.diffuse[p] >> paths.num_bounces[p], 0u);
+    EXPECT_TRUE(std::isfinite(paths.weight[p].real()) && std::isfinite(paths.weight[p].imag()));
+    num_coherent += paths.diffuse[p] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(num_coherent, 0);
+  EXPECT_LT(num_coherent, paths.num_paths());
+}
+
+// An offset of UTM size changes nothing but the last digits of double precision (9e-10 m at 5.4e6 m).
+TEST(Trace, WorldOffsetDoesNoHarm) {
+  const Vec3 offset(4.5e5, 5.4e6, 120.0);
+  const Vec3 receiver(0, 0.1, 0);
+  const Paths near = trace(mixed_scene(Vec3::Zero()), plain_radar(Vec3::Zero(), receiver), small());
+  const Paths far = trace(mixed_scene(offset), plain_radar(offset, offset + receiver), small());
+  EXPECT_NEAR(static_cast<double>(far.num_paths()) / static_cast<double>(near.num_paths()), 1.0, 1e-4);
+  const std::complex<double> at_origin = coherent_sum(near), at_offset = coherent_sum(far);
+  double scale = 0.0;
+  for (const std::complex<double>& amplitude : replayed(near).amplitudes) scale += std::norm(amplitude);
+  // Relative to the level of the speckle; a ray that falls on the other side of an edge changes it by 1 / sqrt(paths) at most.
+  EXPECT_LT(std::abs(at_origin - at_offset), 1e-2 * std::sqrt(scale));
+}
+
+TEST(Trace, HitsLieOnTheirTriangles) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  int num_hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 direction = Vec3(1.0, std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized();
+    RayHit hit;
+    if (geometry.intersect(Vec3::Zero(), direction, hit) != EmbreeScene::Verdict::kHit) continue;
+    ++num_hits;
+    const auto [a, b, c] = geometry.corners(hit.hit.mesh_id, hit.hit.triangle_id);
+    EXPECT_LT(std::abs(hit.normal.dot(hit.position - a)), 1e-12);
+    EXPECT_LT((hit.position - hit.distance * direction).norm(), 1e-4);
+    EXPECT_LE(hit.normal.dot(direction), 0.0);
+  }
+  EXPECT_GT(num_hits, 100);
+}
+
+// The density of rays over directions integrates to their number.
+TEST(Launch, DensityIsThatOfTheDirections) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  LaunchSettings settings;
+  settings.num_rays = 200000;
+  const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
+  ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
+  ASSERT_GE(plan.strata.size(), 4u);  // ball, plate, an image, the field of view
+  double solid_angle = 0.0;  // sum of 1 / density over all rays estimates the solid angle they cover: the sphere
+  for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
+    const int stratum = plan.stratum_of(ray);
+    const Vec3 direction = plan.direction(stratum, ray);
+    EXPECT_NEAR(direction.norm(), 1.0, 1e-12);
+    solid_angle += 1.0 / plan.ray_density(direction, stratum);
+  }
+  EXPECT_NEAR(solid_angle / (4 * kPi), 1.0, 1e-3);
+}
+
+TEST(Trace, BadInputIsNamed) {
+  const auto message = [](const Scene& scene, const Radar& radar, const TraceSettings& settings) -> std::string {
+    try {
+      trace(scene, radar, settings);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  TraceSettings no_rays = small(0), many = small(), late = small();
+  many.max_bounces = 65;
+  late.start_time = std::nan("");
+  EXPECT_NE(message(Scene(), radar, no_rays).find("num_rays: must be >= 1, got 0"), std::string::npos);
+  EXPECT_NE(message(Scene(), radar, many).find("max_bounces"), std::string::npos);
+  EXPECT_NE(message(Scene(), radar, late).find("start_time"), std::string::npos);
+
+  Scene bent;
+  add_mesh(bent, "bent", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, share(Material::metal(true)));
+  EXPECT_NE(message(bent, radar, small()).find("'bent' must be flat"), std::string::npos);
+
+  Scene brief;
+  const auto motion = std::make_shared<KeyframeMotion>(std::vector<double>{0.0, 1e-6}, std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX()},
+                                                       std::vector<Quaternion>{}, Interpolation::kLinear);
+  add_rectangle(brief, "brief", {5, 0, 0}, {0, 1, 0}, {0, 0, 1}, lambert(0.5), motion);
+  EXPECT_NE(message(brief, radar, small()).find("brief"), std::string::npos);
+}
+
+TEST(Trace, CancellingStopsIt) {
+  Job job;
+  job.cancel();
+  EXPECT_THROW(trace(mixed_scene(Vec3::Zero()), plain_radar(Vec3::Zero(), Vec3::Zero()), small(), &job), Cancelled);
+}
+
+TEST(Paths, SelectionSharesTheHits) {
+  const Paths paths = trace(mixed_scene(Vec3::Zero()), plain_radar(Vec3::Zero(), {0, 0.1, 0}), small(2000));
+  std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()), 0);
+  keep[3] = keep[7] = 1;
+  const Paths some = paths.select(keep);
+  EXPECT_EQ(some.hits.get(), paths.hits.get());
+  EXPECT_EQ(some.num_paths(), 2);
+  EXPECT_EQ(some.offsets[1], paths.offsets[7]);
+  EXPECT_THROW(paths.select({1, 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -12,6 +12,8 @@ using testing::Complex;
 constexpr double kDoublePhaseError = 3e-11;
 // Rounding of 512 samples of phase, relative to the amplitude.
 constexpr double kToneRounding = 5e-13;
+// 300 turns of beat phase, each of a handful of terms rounded once.
+constexpr double kPhaseRounding = 2e-12;
 // The largest error of one sample of a tone over its rms error: at the edge of the band the kernel's spectrum is smallest.
 constexpr double kPeakOverRms = 8.0;
 
@@ -70,8 +72,8 @@ TEST(Methods, DirectAndRecurrenceToneIsExactToRounding) {
 
 TEST(Methods, LongRecurrenceDoesNotDrift) {
   constexpr int kSamples = 65536;
-  constexpr double kPhaseRounding = 2.0 * M_PI * kSamples * 0x1.0p-53;  // of a frequency rounded once, at the last sample
-  EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kPhaseRounding);
+  constexpr double kLastPhaseRounding = 2.0 * M_PI * kSamples * 0x1.0p-53;  // of a frequency rounded once, at the last sample
+  EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kLastPhaseRounding);
 }
 
 TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
@@ -103,6 +105,18 @@ double error_against_slow_sum(const ChirpSequence& w, int num_points, const Synt
     largest = std::max(largest, testing::largest_difference({samples, samples + w.num_samples}, expected));
   }
   return largest / testing::sum_of_magnitudes(points.amplitude);
+}
+
+// 4e4 turns of the carrier, rounded before the whole turns are removed, would leave 1e-11 rad.
+TEST(Methods, StartPhaseKeepsAllBits) {
+  ChirpSequence w = testing::reference_waveform();
+  w.num_chirps = 1;
+  const testing::MovingPoints points(40, 11, 60.0, 76.0);
+  for (int p = 0; p < 40; ++p) {
+    const std::vector<double> delay = {2.0 * points.range[p] / 299792458.0};
+    const auto cube = testing::synthesize(w, testing::static_echoes(1, delay, {1.0}), {.method = Method::kDirect});
+    EXPECT_LT(testing::largest_difference(cube, testing::slow_chirp(w, delay, {0.0}, {1.0})), kPhaseRounding);
+  }
 }
 
 TEST(Methods, DirectAndRecurrenceEqualTheSlowSum) {

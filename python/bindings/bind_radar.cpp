@@ -1,0 +1,210 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "array.h"
+#include "echopath/base/errors.h"
+#include "echopath/radar/radar.h"
+#include "keywords.h"
+
+namespace echopath::bindings {
+namespace {
+
+// A vector of unit length up to `kUnitTolerance` is scaled to it; one that already is keeps its bits.
+constexpr double kUnitTolerance = 1e-6, kUnitRounding = 1e-14;
+
+template <class Vector>
+void make_unit(Vector& vector, const char* argument) {
+  const double norm = vector.norm();
+  require(std::abs(norm - 1.0) <= kUnitTolerance, argument, "must have norm 1 within 1e-6", norm);
+  if (std::abs(norm - 1.0) > kUnitRounding) vector /= norm;
+}
+
+ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate, int num_chirps,
+                             double chirp_interval, bool real, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "ChirpSequence", {"start_frequency", "bandwidth", "num_samples", "sampling_rate", "num_chirps",
+                                            "chirp_interval", "real"});
+  const ChirpSequence waveform{start_frequency, bandwidth, num_samples, sampling_rate, num_chirps, chirp_interval, real};
+  waveform.validate();
+  return waveform;
+}
+
+AntennaPattern isotropic(double gain, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "Isotropic", {"gain"});
+  return AntennaPattern::isotropic(gain);
+}
+
+AntennaPattern cosine_power(double exponent, std::optional<double> peak_gain, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "CosinePower", {"exponent", "peak_gain"});
+  if (peak_gain) {
+    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None", *peak_gain);
+  }
+  return AntennaPattern::cosine_power(exponent, peak_gain.value_or(0.0));
+}
+
+Antenna antenna(const py::object& position, const py::object& orientation, const std::optional<AntennaPattern>& pattern,
+                const py::object& polarization, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "Antenna", {"position", "orientation", "pattern", "polarization"});
+  Antenna made;
+  made.position = as_vec3(position, "position");
+  made.orientation = as_quaternion(orientation, "orientation");
+  made.polarization = as_vec3(polarization, "polarization");
+  made.pattern = pattern.value_or(AntennaPattern{});
+  make_unit(made.orientation.coeffs(), "orientation");
+  make_unit(made.polarization, "polarization");
+  return made;
+}
+
+Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters, const std::vector<Antenna>& receivers,
+            double transmit_power, double noise_figure_db, const std::string& multiplexing,
+            const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "Radar", {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db",
+                                    "multiplexing", "motion"});
+  require(multiplexing == "tdm", "multiplexing", "must be 'tdm'", "'" + multiplexing + "'");
+  Radar made{waveform, transmitters, receivers, transmit_power, noise_figure_db, Multiplexing::kTdm, motion};
+  made.validate();
+  return made;
+}
+
+const char* kind_of(const AntennaPattern& pattern) {
+  return pattern.kind == AntennaPattern::Kind::kIsotropic ? "isotropic" : "cosine_power";
+}
+
+std::string text_of(const ChirpSequence& w) {
+  std::ostringstream text;
+  text << "ChirpSequence(" << w.start_frequency * 1e-9 << " GHz + " << w.bandwidth * 1e-9 << " GHz, " << w.num_samples
+       << (w.real ? " real" : " complex") << " samples at " << w.sampling_rate * 1e-6 << " MHz, " << w.num_chirps
+       << " chirps every " << w.chirp_interval * 1e6 << " us)";
+  return text.str();
+}
+
+std::string text_of(const AntennaPattern& pattern) {
+  std::ostringstream text;
+  if (pattern.kind == AntennaPattern::Kind::kIsotropic) {
+    text << "Isotropic(gain=" << pattern.peak_gain << ")";
+  } else {
+    text << "CosinePower(exponent=" << pattern.exponent << ", peak_gain=" << pattern.peak_gain << ")";
+  }
+  return text.str();
+}
+
+std::string text_of(const Antenna& a) {
+  std::ostringstream text;
+  text << "Antenna((" << a.position.x() << ", " << a.position.y() << ", " << a.position.z()
+       << ") m, pattern=" << text_of(a.pattern) << ")";
+  return text.str();
+}
+
+std::string text_of(const Radar& r) {
+  std::ostringstream text;
+  text << "Radar(" << text_of(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
+       << " receivers, " << r.transmit_power << " W, noise figure " << r.noise_figure_db << " dB"
+       << (r.motion ? ", moving" : "") << ")";
+  return text.str();
+}
+
+void bind_waveform(py::module_& m) {
+  py::class_<ChirpSequence>(m, "ChirpSequence", R"(A frame of linear up-chirps.
+
+start_frequency: Hz, at the first sample
+bandwidth: Hz, swept by the samples of a chirp
+num_samples: of a chirp
+sampling_rate: Hz
+num_chirps: per transmitter
+chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
+real: real IF samples instead of complex ones
+Raises ValueError naming the argument.)")
+      .def(py::init(&chirp_sequence), py::kw_only(), py::arg("start_frequency") = 77e9, py::arg("bandwidth") = 1e9,
+           py::arg("num_samples") = 512, py::arg("sampling_rate") = 20e6, py::arg("num_chirps") = 128,
+           py::arg("chirp_interval") = 60e-6, py::arg("real") = false)
+      .def_readonly("start_frequency", &ChirpSequence::start_frequency, "Hz, at the first sample")
+      .def_readonly("bandwidth", &ChirpSequence::bandwidth, "Hz, sampled")
+      .def_readonly("num_samples", &ChirpSequence::num_samples, "of a chirp")
+      .def_readonly("sampling_rate", &ChirpSequence::sampling_rate, "Hz")
+      .def_readonly("num_chirps", &ChirpSequence::num_chirps, "per transmitter")
+      .def_readonly("chirp_interval", &ChirpSequence::chirp_interval, "s, between neighbouring slots")
+      .def_readonly("real", &ChirpSequence::real, "whether samples are real")
+      .def_property_readonly("slope", &ChirpSequence::slope, "Hz/s")
+      .def_property_readonly("chirp_duration", &ChirpSequence::chirp_duration, "s, sampled")
+      .def_property_readonly("window_centre", &ChirpSequence::window_centre, "s from the first sample to the middle")
+      .def_property_readonly("centre_frequency", &ChirpSequence::centre_frequency, "Hz")
+      .def_property_readonly("wavelength", &ChirpSequence::wavelength, "m, at the centre frequency")
+      .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 bandwidth)")
+      .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")
+      .def("velocity_resolution", &ChirpSequence::velocity_resolution, py::arg("num_slots") = 1,
+           "m/s, when `num_slots` transmitters take turns")
+      .def("max_velocity", &ChirpSequence::max_velocity, py::arg("num_slots") = 1,
+           "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns")
+      .def("__repr__", [](const ChirpSequence& self) { return text_of(self); });
+}
+
+void bind_antenna(py::module_& m) {
+  py::class_<AntennaPattern>(m, "AntennaPattern", "Power gain over direction; made by Isotropic or CosinePower.")
+      .def_property_readonly("kind", &kind_of, "\"isotropic\" or \"cosine_power\"")
+      .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear, towards the boresight")
+      .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")
+      .def("gain", &AntennaPattern::gain, py::arg("cos_boresight"),
+           "Linear power gain at the angle from the boresight with that cosine.")
+      .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
+  m.def("Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
+  m.def("CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
+        "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
+        "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)");
+
+  py::class_<Antenna>(m, "Antenna", R"(One element of a radar.
+
+position: [3] in m, in the radar's frame
+orientation: unit quaternion (w, x, y, z), radar from antenna; the boresight is +x of the antenna's frame
+pattern: Isotropic(gain) or CosinePower(exponent, peak_gain); None is Isotropic(1)
+polarization: [3] unit vector in the antenna's frame
+Raises ValueError naming the argument.)")
+      .def(py::init(&antenna), py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(),
+           py::arg("orientation") = py::make_tuple(1.0, 0.0, 0.0, 0.0), py::arg("pattern") = py::none(),
+           py::arg("polarization") = py::make_tuple(0.0, 0.0, 1.0))
+      .def_property_readonly("position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] in m")
+      .def_property_readonly("orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
+                             "[4] (w, x, y, z), radar from antenna")
+      .def_readonly("pattern", &Antenna::pattern)
+      .def_property_readonly("polarization", [](const Antenna& self) { return to_numpy(self.polarization); }, "[3], unit")
+      .def("__repr__", [](const Antenna& self) { return text_of(self); });
+}
+
+}  // namespace
+
+void bind_radar(py::module_& m) {
+  bind_waveform(m);
+  bind_antenna(m);
+  py::class_<Radar>(m, "Radar", R"(Waveform, antennas and the platform that carries them.
+
+waveform: ChirpSequence
+transmitters, receivers: lists of Antenna, at least one each
+transmit_power: W per transmitter
+noise_figure_db: dB, single sideband
+multiplexing: "tdm": transmitters take turns, one slot each
+motion: Motion of the radar's frame in the world, or None at rest
+Raises ValueError naming the argument.)")
+      .def(py::init(&radar), py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
+           py::arg("transmit_power") = 0.01, py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm",
+           py::arg("motion") = py::none())
+      .def_readonly("waveform", &Radar::waveform)
+      .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
+      .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
+      .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
+      .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB")
+      .def_property_readonly("multiplexing", [](const Radar&) { return "tdm"; }, "\"tdm\"")
+      .def_property_readonly("motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
+                             "Motion of the radar's frame, or None")
+      .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
+      .def("chirp_time", &Radar::chirp_time, py::arg("tx"), py::arg("chirp"),
+           "Time of the middle of a chirp of a transmitter, s after the frame's start. Raises IndexError.")
+      .def("world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
+           py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
+      .def("__repr__", [](const Radar& self) { return text_of(self); });
+}
+
+}  // namespace echopath::bindings

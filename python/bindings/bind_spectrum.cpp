@@ -1,0 +1,75 @@
+#include <pybind11/complex.h>
+#include <pybind11/pybind11.h>
+
+#include <sstream>
+#include <string>
+
+#include "array.h"
+#include "cube_array.h"
+#include "echopath/spectrum/range_doppler.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+// "hann", or ("chebyshev", 80).
+Window as_window(const py::object& value) {
+  if (py::isinstance<py::str>(value)) return Window::named(value.cast<std::string>());
+  const bool pair = (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) && py::len(value) == 2;
+  if (!pair) throw py::type_error("window: must be a name or (name, sidelobe level in dB), got " + py::str(value).cast<std::string>());
+  const py::sequence parts = value;
+  return Window::named(parts[0].cast<std::string>(), parts[1].cast<double>());
+}
+
+RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const py::object& window, int zero_pad) {
+  const std::vector<std::complex<double>> values = as_cube(cube, radar);
+  const Window taper = as_window(window);
+  return run_job("range_doppler", py::none(),
+                 [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
+}
+
+py::array values_of(const py::object& self) {
+  const auto& map = self.cast<const RangeDoppler&>();
+  return numpy_view(map.values.data(),
+                    {map.num_transmitters, map.num_receivers, static_cast<py::ssize_t>(map.velocity.size()),
+                     static_cast<py::ssize_t>(map.range.size())},
+                    self);
+}
+
+std::string text_of(const RangeDoppler& map) {
+  std::ostringstream text;
+  text << "RangeDoppler([" << map.num_transmitters << ", " << map.num_receivers << ", " << map.velocity.size() << ", "
+       << map.range.size() << "], " << map.velocity.front() << " to " << map.velocity.back() << " m/s, 0 to "
+       << map.range.back() << " m)";
+  return text.str();
+}
+
+}  // namespace
+
+void bind_spectrum(py::module_& m) {
+  py::class_<RangeDoppler>(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.")
+      .def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
+      .def_property_readonly("velocity", [](const py::object& self) {
+        return numpy_view(self.cast<const RangeDoppler&>().velocity, self);
+      }, "[velocity] in m/s, ascending, receding positive")
+      .def_property_readonly("range", [](const py::object& self) {
+        return numpy_view(self.cast<const RangeDoppler&>().range, self);
+      }, "[range] in m, ascending from 0")
+      .def("__repr__", &text_of);
+
+  m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
+        py::arg("zero_pad") = 1,
+        R"(Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
+
+cube: [tx, rx, chirp, sample] in sqrt(W)
+window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes
+zero_pad: 1 to 64, transforms of so many times the samples and chirps
+Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
+Raises ValueError naming the argument.)");
+  m.def("window", [](const std::string& name, int n, double sidelobe_db) {
+    return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
+  }, py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
+        "Samples [n] of a window: cosine windows periodic, \"chebyshev\" symmetric with sidelobes `sidelobe_db` dB down.");
+}
+
+}  // namespace echopath::bindings

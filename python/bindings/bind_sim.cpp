@@ -7,6 +7,7 @@
 #include "array.h"
 #include "echopath/sim/synthesize.h"
 #include "keywords.h"
+#include "method_name.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -14,17 +15,9 @@ namespace {
 
 const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "phase_tolerance", "progress"};
 
-Method method_of(const std::string& name) {
-  if (name == "auto") return Method::kAuto;
-  if (name == "direct") return Method::kDirect;
-  if (name == "recurrence") return Method::kRecurrence;
-  if (name == "nufft") return Method::kNufft;
-  throw std::invalid_argument("method: must be 'auto', 'direct', 'recurrence' or 'nufft', got '" + name + "'");
-}
-
 CubeSettings settings_of(double tolerance, const std::string& method, const std::string& replay, double phase_tolerance) {
   CubeSettings settings;
-  settings.synthesis = {tolerance, method_of(method)};
+  settings.synthesis = {tolerance, as_method(method)};
   settings.replay.phase_tolerance = phase_tolerance;
   require(replay == "interpolated" || replay == "exact", "replay", "must be 'interpolated' or 'exact'", replay);
   settings.replay.exact = replay == "exact";

@@ -17,9 +17,21 @@ namespace {
 
 using Complex = std::complex<double>;
 
-py::array noisy_cube(const py::object& cube, const Radar& radar, uint64_t seed) {
+uint64_t as_seed(const py::object& value) {
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  if (!number) throw py::error_already_set();
+  const uint64_t seed = PyLong_AsUnsignedLongLong(number.ptr());
+  if (PyErr_Occurred()) {
+    PyErr_Clear();
+    throw std::invalid_argument("seed: must be in [0, 2^64), got " + py::str(number).cast<std::string>());
+  }
+  return seed;
+}
+
+py::array noisy_cube(const py::object& cube, const Radar& radar, const py::object& seed) {
   std::vector<Complex> values = as_cube(cube, radar);
-  run_job("add_noise", py::none(), [&](Job&) { add_noise(values, radar, seed); });
+  const uint64_t number = as_seed(seed);
+  run_job("add_noise", py::none(), [&](Job&) { add_noise(values, radar, number); });
   return numpy_take(std::move(values), cube_shape(radar));
 }
 

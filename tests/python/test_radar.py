@@ -1,0 +1,91 @@
+import numpy as np
+import pytest
+
+import echopath as ep
+
+C = 299792458.0
+
+
+def reference(**changes):
+    fields = dict(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=128,
+                  chirp_interval=30e-6)
+    return ep.ChirpSequence(**{**fields, **changes})
+
+
+def test_waveform_axes_are_those_of_the_reference_radar():
+    waveform = reference()
+    assert waveform.range_resolution == pytest.approx(0.14990, abs=1e-5)
+    assert waveform.max_range == pytest.approx(76.747, abs=1e-3)
+    assert waveform.velocity_resolution() == pytest.approx(0.5037, abs=1e-4)
+    assert waveform.max_velocity() == pytest.approx(32.236, abs=1e-3)
+    assert waveform.max_velocity(num_slots=2) == pytest.approx(32.236 / 2, abs=1e-3)
+    assert waveform.wavelength == pytest.approx(C / 77.5e9, rel=1e-15)
+    assert waveform.slope == pytest.approx(1e9 / 25.6e-6)
+    assert reference(real=True).max_range == pytest.approx(76.747 / 2, abs=1e-3)
+
+
+def test_fields_read_back_as_given():
+    motion = ep.LinearMotion(velocity=(1, 0, 0))
+    antenna = ep.Antenna((0, 0.01, 1), orientation=(0.6, 0, 0, 0.8), pattern=ep.CosinePower(2.0, peak_gain=5.0),
+                         polarization=(0, 1, 0))
+    radar = ep.Radar(reference(real=True), transmitters=[antenna], receivers=[ep.Antenna((1, 2, 3)), antenna],
+                     transmit_power=0.5, noise_figure_db=9.0, motion=motion)
+    assert radar.waveform.real and radar.waveform.num_samples == 512
+    assert (radar.transmit_power, radar.noise_figure_db, radar.multiplexing) == (0.5, 9.0, "tdm")
+    assert radar.motion is motion
+    assert len(radar.receivers) == 2
+    back = radar.transmitters[0]
+    np.testing.assert_array_equal(back.position, (0, 0.01, 1))
+    np.testing.assert_array_equal(back.orientation, (0.6, 0, 0, 0.8))
+    np.testing.assert_array_equal(back.polarization, (0, 1, 0))
+    assert (back.pattern.kind, back.pattern.exponent, back.pattern.peak_gain) == ("cosine_power", 2.0, 5.0)
+    assert ep.CosinePower(2.0).peak_gain == 6.0
+    assert (ep.Antenna().pattern.kind, ep.Isotropic(3.0).peak_gain) == ("isotropic", 3.0)
+
+
+def test_unit_vectors_are_made_unit_once():
+    antenna = ep.Antenna(polarization=(0, 0.6, 0.8 + 1e-8), orientation=(1 + 1e-8, 0, 0, 0))
+    assert np.linalg.norm(antenna.polarization) == pytest.approx(1, abs=1e-15)
+    again = ep.Antenna(polarization=antenna.polarization, orientation=antenna.orientation)
+    np.testing.assert_array_equal(again.polarization, antenna.polarization)
+    np.testing.assert_array_equal(again.orientation, antenna.orientation)
+
+
+def test_chirp_times_of_slots():
+    radar = ep.Radar(reference(), transmitters=[ep.Antenna()] * 2, receivers=[ep.Antenna()])
+    assert radar.chirp_time(tx=1, chirp=3) == pytest.approx(7 * 30e-6 + 511 / 40e6, rel=1e-12)
+    with pytest.raises(IndexError, match="chirp"):
+        radar.chirp_time(0, 128)
+
+
+@pytest.mark.parametrize("field, value", [("start_frequency", 0), ("bandwidth", -1), ("num_samples", 0),
+                                          ("sampling_rate", np.inf), ("num_chirps", 0), ("chirp_interval", 20e-6)])
+def test_bad_waveform_names_the_field(field, value):
+    with pytest.raises(ValueError, match=f"^{field}: .*got"):
+        reference(**{field: value})
+
+
+def test_bad_radar_names_the_field():
+    one = [ep.Antenna()]
+    with pytest.raises(ValueError, match="^transmitters: "):
+        ep.Radar(reference(), transmitters=[], receivers=one)
+    with pytest.raises(ValueError, match="^transmit_power: "):
+        ep.Radar(reference(), transmitters=one, receivers=one, transmit_power=-1)
+    with pytest.raises(ValueError, match="^multiplexing: "):
+        ep.Radar(reference(), transmitters=one, receivers=one, multiplexing="ddm")
+    with pytest.raises(ValueError, match="^polarization: "):
+        ep.Antenna(polarization=(0, 0, 1.1))
+    with pytest.raises(ValueError, match="^orientation: "):
+        ep.Antenna(orientation=(1, 1, 0, 0))
+    with pytest.raises(ValueError, match="^peak_gain: "):
+        ep.CosinePower(1.0, peak_gain=0.0)
+    with pytest.raises(TypeError, match="'num_chirps'"):
+        ep.ChirpSequence(num_chirp=3)
+    with pytest.raises(TypeError, match="'receivers'"):
+        ep.Radar(reference(), transmitters=one, receivers=one, reciever=one)
+
+
+def test_representations_tell_what_they_are():
+    radar = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna(pattern=ep.CosinePower(2))])
+    assert "77 GHz" in repr(radar) and "1 receivers" in repr(radar)
+    assert "CosinePower" in repr(radar.receivers[0])

@@ -1,0 +1,211 @@
+"""Replay, synthesis and decomposition of traced scenes against closed forms."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+FREQUENCY = 77e9
+WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
+DELAY_PHASE_TOLERANCE = 2e-5   # rad: the phase tolerance of the replay, 1e-5 rad, on both ways
+ADDITIVITY = 1e-12
+
+
+def make_radar(num_chirps=64, chirp_interval=60e-6, transmitters=((0, 0, 1),), receivers=((0, 0.01, 1),), **keywords):
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=chirp_interval)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in transmitters],
+                    receivers=[ep.Antenna(p) for p in receivers], **keywords)
+
+
+def chirp_times(radar):
+    waveform = radar.waveform
+    return np.arange(waveform.num_chirps) * waveform.chirp_interval + 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+
+
+def small_triangle(size=0.01):
+    return ep.Mesh([[0, -size, -size], [0, size, -size], [0, 0, size]], [[0, 1, 2]])
+
+
+ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
+
+
+def wall_mesh():
+    return ep.Mesh([[-20, 3, -10], [60, 3, -10], [60, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
+
+
+def mirror(**keywords):
+    return ep.Material(permittivity=5 - 0.3j, mirror=True, **keywords)
+
+
+def walking_scene():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1), motion=ep.LinearMotion(velocity=(-2, 0.3, 0)))
+    scene.add(wall_mesh(), name="wall", material=mirror(scattering=0.3))
+    return scene
+
+
+def test_wall_ghosts_have_their_lengths():
+    """Target 20 m away, wall 3 m aside: direct 20 m, one-way ghost 20.440307 m, two-way ghost 20.880613 m."""
+    scene = ep.Scene()
+    scene.add(small_triangle(1e-4), name="target", material=ROUGH, position=(20, 0, 0))
+    scene.add(wall_mesh(), name="wall", material=mirror())
+    radar = make_radar(num_chirps=1, transmitters=[(0, 0, 0)], receivers=[(0, 0, 0)])
+    paths = ep.trace(scene, radar, num_rays=2000)
+    ranges = paths.lengths([paths.frame.trace_time])[0] / 2
+    names = [mesh.name for mesh in scene.meshes]
+    found = {}
+    for path in range(paths.num_paths):
+        hits = paths.hits[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
+        found.setdefault(tuple(names[i] for i in hits["mesh_id"]), []).append(ranges[path])
+    for sequence, expected in {("target",): 20.0, ("wall", "target"): 20.440307, ("target", "wall"): 20.440307,
+                               ("wall", "target", "wall"): 20.880613}.items():
+        assert np.abs(np.array(found[sequence]) - expected).max() < 1e-3, sequence
+
+
+def test_wall_ghosts_stand_in_the_map():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.1), name="target", material=ROUGH, position=(20, 0, 0), motion=ep.LinearMotion(velocity=(-5, 0, 0)))
+    scene.add(wall_mesh(), name="wall", material=ep.Material.metal(mirror=True))
+    radar = make_radar(num_chirps=128, transmitters=[(0, 0, 0)], receivers=[(0, 0, 0)])
+    paths = ep.trace(scene, radar, num_rays=20000)
+    parts = ep.decompose(paths, radar, {"direct": "T 'target' R", "one way": "T ('target' 'wall' | 'wall' 'target') R",
+                                        "two way": "T 'wall' 'target' 'wall' R"})
+    waveform = radar.waveform
+    # The peak of a receding target lies f_c v / slope farther (range-Doppler coupling).
+    coupling = waveform.centre_frequency / waveform.slope
+    for name, distance, speed in (("direct", 20.0, -5.0), ("one way", 20.4403, -4.8946), ("two way", 20.8806, -4.7891)):
+        spectrum = ep.range_doppler(parts[name], radar, window="hann", zero_pad=4)
+        row, column = np.unravel_index(np.abs(spectrum.values[0, 0]).argmax(), spectrum.values[0, 0].shape)
+        # A 0.1 m ball is a speckled target: its peak lies within a cell of its near side.
+        assert abs(spectrum.range[column] - (distance + coupling * speed)) < 0.2, name
+        assert abs(spectrum.velocity[row] - speed) < 0.1, name
+
+
+def test_rotating_scatterer_has_the_exact_phase():
+    """A vertex sequence that rotates a small facet: the phase history is that of the point on the circle."""
+    rate, radius = 2 * np.pi * 10, 0.3
+    times = np.linspace(-0.002, 0.012, 141)
+    facet = np.array([[0, -1e-4, -1e-4], [0, 1e-4, -1e-4], [0, 0, 1e-4]])
+    centres = radius * np.stack([np.cos(rate * times), np.sin(rate * times), 0 * times], axis=1)
+    scene = ep.Scene()
+    scene.add(ep.Mesh(facet, [[0, 1, 2]]), name="tip", material=ROUGH, position=(10, 0, 1),
+              motion=ep.VertexSequence(times=times, vertices=centres[:, None, :] + facet))
+    radar = make_radar(num_chirps=128)
+    paths = ep.trace(scene, radar, num_rays=400, max_bounces=1)
+    assert paths.num_paths > 50
+    at = chirp_times(radar)
+    lengths = paths.lengths(at)
+    u, v = paths.u[paths.offsets].astype(float), paths.v[paths.offsets].astype(float)
+    on_facet = (1 - u - v)[:, None] * facet[0] + u[:, None] * facet[1] + v[:, None] * facet[2]
+    circle = radius * np.stack([np.cos(rate * at), np.sin(rate * at), 0 * at], axis=1) + np.array([10, 0, 1])
+    points = circle[:, None, :] + on_facet
+    exact = np.linalg.norm(points - [0, 0, 1], axis=2) + np.linalg.norm(points - [0, 0.01, 1], axis=2)
+    assert np.abs(WAVE_NUMBER * (lengths - exact)).max() < DELAY_PHASE_TOLERANCE
+
+    # And so has the signal: the first sample's phase follows the delay.
+    one = paths.select(np.arange(paths.num_paths) == 0)
+    cube = ep.synthesize(one, radar, method="direct")[0, 0]
+    delay = exact[:, 0] / ep.speed_of_light
+    rate_of_delay = np.gradient(delay, at, edge_order=2)
+    waveform = radar.waveform
+    slope, middle = waveform.slope, 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+    beat = slope * delay + (FREQUENCY + slope * middle - slope * delay) * rate_of_delay
+    phase = 2 * np.pi * (FREQUENCY * delay + slope * middle * delay - 0.5 * slope * delay**2 - beat * middle)
+    expected = np.exp(1j * (phase - phase[0]))
+    measured = cube[:, 0] / cube[0, 0]
+    assert np.abs(np.angle(measured / np.abs(measured) / expected)).max() < 1e-3
+
+
+def test_interpolated_replay_is_the_exact_one():
+    radar = make_radar()
+    paths = ep.trace(walking_scene(), radar, num_rays=3000)
+    exact = ep.synthesize(paths, radar, replay="exact", method="direct")
+    error = np.linalg.norm(ep.synthesize(paths, radar, method="direct") - exact) / np.linalg.norm(exact)
+    assert error < 1e-4  # of 1e-5 rad and of amplitudes to the same order
+
+
+def test_static_scene_has_identical_chirps():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1))
+    scene.add(wall_mesh(), name="wall", material=mirror(scattering=0.3))
+    radar = make_radar()
+    cube = ep.synthesize(ep.trace(scene, radar, num_rays=5000), radar)
+    assert np.abs(cube).max() > 0
+    assert np.array_equal(cube, np.broadcast_to(cube[:, :, :1], cube.shape))
+
+
+def test_parts_add_up_to_the_whole():
+    radar = make_radar(receivers=[(0, 0.01, 1), (0, 0.02, 1)])
+    paths = ep.trace(walking_scene(), radar, num_rays=5000)
+    whole = ep.synthesize(paths, radar)
+    views = ep.decompose(paths, radar, {"route": {"direct": "T 'ball' R", "wall": "T .* 'wall' .* R"},
+                                        "count": {"one": ep.num_bounces == 1, "few": ep.num_bounces <= 2}})
+    scale = np.abs(whole).max()
+    for parts in views.values():
+        assert all(part.any() for name, part in parts.items() if name != "other")
+        assert np.abs(sum(parts.values()) - whole).max() < ADDITIVITY * scale
+
+
+def test_partition_is_disjoint_and_complete():
+    paths = ep.trace(walking_scene(), make_radar(), num_rays=2000)
+    parts = paths.partition({"wall": ep.hits("wall"), "rest of the ball": ep.hits("ball")})
+    assert sum(part.num_paths for part in parts.values()) == paths.num_paths
+    assert paths.select("T .* 'wall' .* R").num_paths == parts["wall"].num_paths
+    assert paths.select(~ep.hits("wall")).num_paths == paths.num_paths - parts["wall"].num_paths
+
+
+def test_the_chain_has_the_same_bits_for_any_number_of_threads():
+    radar = make_radar(num_chirps=16)
+    cubes = []
+    try:
+        for threads in (1, 2, 5):
+            ep.set_num_threads(threads)
+            cubes.append(ep.synthesize(ep.trace(walking_scene(), radar, num_rays=5000), radar))
+    finally:
+        ep.set_num_threads(0)
+    assert np.array_equal(cubes[0], cubes[1]) and np.array_equal(cubes[0], cubes[2])
+
+
+def test_antennas_are_served_by_one_trace():
+    """Lengths of an array from one trace are those of the points, for each pair."""
+    transmitters, receivers = [(0, 0, 1), (0, 0.05, 1)], [(0, 0.01, 1), (0, 0.02, 1.1), (0.1, 0, 1)]
+    radar = make_radar(num_chirps=4, transmitters=transmitters, receivers=receivers)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(6, 0.5, 1))
+    paths = ep.trace(scene, radar, num_rays=500, max_bounces=1)
+    points = paths.points(0.0)[paths.offsets]
+    for tx, a in enumerate(transmitters):
+        for rx, b in enumerate(receivers):
+            expected = np.linalg.norm(points - a, axis=1) + np.linalg.norm(points - b, axis=1)
+            assert np.abs(paths.lengths([0.0], tx, rx)[0] - expected).max() < 1e-12
+            assert np.abs(paths.lengths([0.0], a, b)[0] - expected).max() < 1e-12
+    assert ep.synthesize(paths, radar).shape == (2, 3, 4, 512)
+
+
+def test_another_waveform_needs_no_trace():
+    radar = make_radar(num_chirps=4)
+    paths = ep.trace(walking_scene(), radar, num_rays=1000)
+    other = ep.Radar(ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=0.5e9, num_samples=128, sampling_rate=10e6,
+                                      num_chirps=2, chirp_interval=50e-6),
+                     transmitters=radar.transmitters, receivers=radar.receivers)
+    assert ep.synthesize(paths, other).shape == (1, 1, 2, 128)
+
+
+@pytest.mark.parametrize("keywords, text", [
+    ({"method": "fft"}, "method: must be"),
+    ({"replay": "none"}, "replay: must be"),
+    ({"tolerance": 0.0}, "tolerance"),
+    ({"phase_tolerance": -1.0}, "phase_tolerance"),
+])
+def test_bad_settings_are_named(keywords, text):
+    radar = make_radar(num_chirps=2)
+    paths = ep.trace(ep.Scene(), radar, num_rays=10)
+    with pytest.raises(ValueError, match=text):
+        ep.synthesize(paths, radar, **keywords)
+
+
+def test_mixed_views_are_refused():
+    radar = make_radar(num_chirps=2)
+    paths = ep.trace(ep.Scene(), radar, num_rays=10)
+    with pytest.raises(ValueError, match="parts"):
+        ep.decompose(paths, radar, {"a": "T . R", "b": {"c": "T . R"}})

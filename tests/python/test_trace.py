@@ -1,0 +1,137 @@
+"""The record of a trace against a slow independent ray-triangle loop, and its rules as Python sees them."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.slow_rays import closest_hit, segment_is_free
+
+BARYCENTRIC_TOLERANCE = 2e-3  # single precision of a ray over some metres on triangles of decimetres
+ON_RAY_TOLERANCE = 1e-4       # m, likewise
+
+
+def make_radar(transmitter=(0.0, 0.0, 0.0), receiver=(0.0, 0.3, 0.0), num_chirps=1, **keywords):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=30e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter)], receivers=[ep.Antenna(receiver)], **keywords)
+
+
+def triangle_soup(seed, count=60):
+    rng = np.random.default_rng(seed)
+    centres = rng.uniform((3, -2, -2), (7, 2, 2), (count, 3))
+    return centres[:, None, :] + rng.uniform(-0.6, 0.6, (count, 3, 3))
+
+
+def soup_scene(soup, **material):
+    """Each triangle is a mesh of its own, in one object."""
+    scene = ep.Scene()
+    scene.add(None, name="soup")
+    for i, corners in enumerate(soup):
+        scene.add(ep.Mesh(corners, [[0, 1, 2]]), name=f"t{i}", parent="soup", material=ep.Material(**material))
+    return scene
+
+
+def chains(paths):
+    """Hits of each path as rows (mesh_id, triangle_id, u, v)."""
+    for offset, count in zip(paths.offsets, paths.num_bounces):
+        yield [paths.hits[k] for k in range(offset, offset + count)]
+
+
+def test_recorded_hits_are_those_of_a_slow_loop():
+    soup = triangle_soup(seed=3)
+    paths = ep.trace(soup_scene(soup, reflectivity=0.5, scattering=0.6), make_radar(), num_rays=3000, max_bounces=3)
+    points = paths.points(paths.frame.trace_time)
+    checked = 0
+    for path, chain in enumerate(chains(paths)):
+        start = np.zeros(3)
+        for k, hit in enumerate(chain):
+            corners = soup[hit["mesh_id"]]
+            u, v = float(hit["u"]), float(hit["v"])
+            point = (1 - u - v) * corners[0] + u * corners[1] + v * corners[2]
+            assert np.allclose(points[paths.offsets[path] + k], point, atol=1e-12)
+            direction = (point - start) / np.linalg.norm(point - start)
+            index, slow_u, slow_v, distance = closest_hit(start + 1e-4 * direction, direction, soup)
+            if min(u, v, 1 - u - v) < BARYCENTRIC_TOLERANCE:
+                continue  # at an edge either neighbour may be met
+            assert index == hit["mesh_id"] and hit["triangle_id"] == 0
+            assert abs(slow_u - u) < BARYCENTRIC_TOLERANCE and abs(slow_v - v) < BARYCENTRIC_TOLERANCE
+            assert np.linalg.norm(start + 1e-4 * direction + distance * direction - point) < ON_RAY_TOLERANCE
+            start, checked = point, checked + 1
+    assert checked > 500
+
+
+def test_every_path_ends_in_view_of_the_receiver():
+    soup = triangle_soup(seed=4)
+    radar = make_radar()
+    paths = ep.trace(soup_scene(soup, reflectivity=0.5, scattering=1.0), radar, num_rays=3000, max_bounces=2)
+    points = paths.points(0.0)
+    last = points[paths.offsets + paths.num_bounces - 1]
+    blocked = sum(not segment_is_free(point, np.array([0.0, 0.3, 0.0]), soup) for point in last)
+    assert len(last) > 300
+    assert blocked <= 0.002 * len(last)  # rays that graze an edge within the margin of the slow test
+
+
+def test_lengths_are_those_of_the_points():
+    paths = ep.trace(soup_scene(triangle_soup(seed=5), reflectivity=0.5, scattering=1.0), make_radar(), num_rays=2000)
+    points = paths.points(0.0)
+    lengths = paths.lengths([0.0])[0]
+    for path in range(0, paths.num_paths, 7):
+        hits = points[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
+        corners = np.vstack([[0, 0, 0], hits, [0, 0.3, 0]])
+        expected = np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()
+        assert abs(lengths[path] - expected) < 1e-12
+
+
+def test_columns_are_read_only_views():
+    paths = ep.trace(soup_scene(triangle_soup(seed=6), reflectivity=0.5, scattering=1.0), make_radar(), num_rays=500)
+    assert paths.mesh_id.base is not None and paths.mesh_id.strides == (16,)
+    assert np.array_equal(paths.mesh_id, paths.hits["mesh_id"])
+    for name in ("mesh_id", "u", "offsets", "weight", "diffuse"):
+        with pytest.raises(ValueError):
+            getattr(paths, name)[0] = 0
+    column = paths.weight
+    expected = column.copy()
+    del paths  # the view keeps the record alive
+    assert np.array_equal(column, expected)
+
+
+def test_arrays_give_the_paths_back():
+    paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000)
+    columns = {name: np.array(getattr(paths, name)) for name in
+               ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
+    again = ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    assert np.array_equal(again.amplitude, paths.amplitude)
+    columns["offsets"][0] = len(columns["hits"])
+    with pytest.raises(ValueError, match="offsets: must lead to hits"):
+        ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+
+
+def test_empty_scene_gives_zeros():
+    radar = make_radar(num_chirps=4)
+    paths = ep.trace(ep.Scene(), radar, num_rays=100)
+    assert paths.num_paths == 0 and paths.amplitude.shape == (0,) and paths.points(0.0).shape == (0, 3)
+    cube = ep.synthesize(paths, radar)
+    assert cube.shape == (1, 1, 4, 512) and not cube.any()
+    parts = ep.decompose(paths, radar, {"direct": "T . R"})
+    assert set(parts) == {"direct", "other"} and not any(part.any() for part in parts.values())
+
+
+@pytest.mark.parametrize("keywords, text", [
+    ({"num_rays": 0}, "num_rays: must be >= 1, got 0"),
+    ({"max_bounces": 0}, "max_bounces"),
+    ({"max_bounces": 65}, "max_bounces"),
+    ({"start_time": float("inf")}, "start_time"),
+])
+def test_bad_settings_are_named(keywords, text):
+    with pytest.raises(ValueError, match=text):
+        ep.trace(ep.Scene(), make_radar(), **keywords)
+
+
+def test_unknown_keyword_names_the_nearest():
+    with pytest.raises(TypeError, match="num_ray.*num_rays"):
+        ep.trace(ep.Scene(), make_radar(), num_ray=10)
+
+
+def test_antenna_index_out_of_range():
+    paths = ep.trace(soup_scene(triangle_soup(seed=8), reflectivity=0.5, scattering=1.0), make_radar(), num_rays=100)
+    with pytest.raises(IndexError, match="rx: must lie in 0 to 0, got 1"):
+        paths.amplitudes([0.0], 0, 1)

@@ -1,0 +1,7 @@
+"""Actors: bodies to put into a scene, from plates to walking people."""
+from .actor import Actor, Part
+from .human.pedestrian import pedestrian
+from .shapes import box, capsule, dihedral, ellipsoid, ground, plate, sphere, trihedral, wall
+
+__all__ = ["Actor", "Part", "box", "capsule", "dihedral", "ellipsoid", "ground", "pedestrian", "plate", "sphere",
+           "trihedral", "wall"]

@@ -1,0 +1,1 @@
+"""A walking person: proportions, walking model, gait on planted feet, body surfaces."""

@@ -1,0 +1,89 @@
+"""Lengths of the body's segments.
+
+Fractions of the body height after R. Drillis and R. Contini, "Body segment parameters" (New York University, 1966), as
+reprinted in D. A. Winter, "Biomechanics and Motor Control of Human Movement" (4th ed. 2009, figure 4.1).
+"""
+from dataclasses import dataclass
+
+HIP_HEIGHT = 0.530        # hip joint above the floor
+KNEE_HEIGHT = 0.285
+ANKLE_HEIGHT = 0.039
+SHOULDER_HEIGHT = 0.818
+CHIN_HEIGHT = 0.870
+UPPER_ARM = 0.186
+FOREARM = 0.146
+HAND = 0.108
+FOOT_LENGTH = 0.152
+FOOT_BREADTH = 0.055
+SHOULDER_BREADTH = 0.259  # over the deltoids
+HIP_BREADTH = 0.191       # over the skin
+CHEST_BREADTH = 0.174
+
+
+@dataclass(frozen=True)
+class Proportions:
+    """Lengths in m of a body of `height` m that stands upright; x forward, y left, z up."""
+
+    height: float
+
+    def of(self, fraction):
+        """A length given as a fraction of the body height."""
+        return fraction * self.height
+
+    @property
+    def thigh(self):
+        return self.of(HIP_HEIGHT - KNEE_HEIGHT)
+
+    @property
+    def shank(self):
+        return self.of(KNEE_HEIGHT - ANKLE_HEIGHT)
+
+    @property
+    def ankle_height(self):
+        return self.of(ANKLE_HEIGHT)
+
+    @property
+    def hip_height(self):
+        return self.of(HIP_HEIGHT)
+
+    @property
+    def upper_arm(self):
+        return self.of(UPPER_ARM)
+
+    @property
+    def forearm(self):
+        return self.of(FOREARM)
+
+    @property
+    def hip_offset(self):
+        """Half the distance between the hip joints, which lie well inside the skin."""
+        return self.of(0.26 * HIP_BREADTH)
+
+    @property
+    def shoulder_offset(self):
+        """Half the distance between the shoulder joints: an upper arm's half breadth inside the skin."""
+        return self.of(SHOULDER_BREADTH / 2 - 0.024)
+
+    @property
+    def spine_base(self):
+        """Height of the joint of torso and pelvis above the hip joints."""
+        return self.of(0.05)
+
+    @property
+    def shoulder_above_spine_base(self):
+        return self.of(SHOULDER_HEIGHT - HIP_HEIGHT) - self.spine_base
+
+    @property
+    def neck_above_spine_base(self):
+        """Height of the neck's lower joint above the spine base."""
+        return self.shoulder_above_spine_base + self.of(0.005)
+
+    @property
+    def neck(self):
+        """From the neck's lower joint to the joint of neck and head, a little above the chin."""
+        return self.of(CHIN_HEIGHT - SHOULDER_HEIGHT + 0.010)
+
+    @property
+    def step_width(self):
+        """Lateral distance of the ankles in walking."""
+        return self.of(0.06)

@@ -1,0 +1,153 @@
+"""Joint positions and orientations of a walking body over time.
+
+The pelvis, the trunk and the arms follow the walking model (boulic.py); the feet are planted (steps.py) and the legs
+are bent so that they reach them. Two numbers are left to choose: the height of the pelvis is the greatest that no leg
+needs to be straighter than MIN_KNEE for, and the feet are planted that far ahead of the hips that the pelvis can be
+highest. Axes of the actor: x forward, y left, z up, floor at z = 0.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+from .boulic import LIMIT, Cycle, Walk
+from .foot import Sole
+from .rotations import about_x, about_y, about_z
+from .steps import Steps
+
+MIN_KNEE = np.radians(7.0)     # least bend of a knee: near a straight leg its rate has no bound
+PELVIS_EARLIER = 0.03          # phase by which the pelvis rises earlier than in the model, as a planted leg allows
+ARM_ABDUCTION = np.radians(7.0)
+SEARCH_PHASES = 400            # per cycle, in the search for the pelvis height
+LEADS = np.linspace(0.10, 0.30, 81)   # tried distances from hips to the flat ankle at its strike, in cycle lengths
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A body part over time: its proximal joint and its axes (part to actor)."""
+
+    origin: np.ndarray     # [T, 3] m
+    rotation: np.ndarray   # [T, 3, 3]
+
+
+class Gait:
+    """A walk at `speed` m/s of a body (anthropometry.Proportions). Phase 0 is the heel strike of the right foot."""
+
+    def __init__(self, body, speed):
+        self.body, self.speed = body, float(speed)
+        self.cycle = Cycle.of(self.speed, body.hip_height)
+        self.walk = Walk(self.speed / body.hip_height, self.cycle.support)
+        self.steps = Steps(Sole.of(body), self.walk, self.cycle)
+        self.lead, self.pelvis_height = self._fit_pelvis()
+
+    def frames(self, phase):
+        """Frames of every part, by name, at phases [T].
+
+        The pelvis is at x = phase * cycle length but for its oscillation.
+        """
+        phase = np.asarray(phase, dtype=float)
+        pelvis = self._pelvis(phase, self.pelvis_height)
+        parts = {"pelvis": pelvis}
+        parts.update(self._trunk(phase, pelvis))
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            parts.update(_prefixed(f"leg_{side}/", self._leg(phase, sign, pelvis)))
+            parts.update(_prefixed(f"arm_{side}/", self._arm(phase, sign, parts["torso"])))
+        return parts
+
+    def _pelvis(self, phase, height):
+        scale, walk = self.body.hip_height, self.walk
+        origin = np.stack([phase * self.cycle.length + scale * walk.forward(phase), scale * walk.lateral(phase),
+                           height + scale * walk.vertical(phase + PELVIS_EARLIER)], axis=-1)
+        return Frames(origin, about_z(walk.torsion(phase)) @ about_x(walk.tilt(phase)))
+
+    def _hip(self, pelvis, sign):
+        return pelvis.origin + pelvis.rotation @ np.array([0.0, sign * self.body.hip_offset, 0.0])
+
+    def _foot(self, phase, sign, lead):
+        """Ankle [T, 3] in actor axes and pitch [T] of a foot."""
+        own = _own_phase(phase, sign)
+        ankle, pitch = self.steps.at(own)
+        ankle[:, 0] += lead + (phase - own)[0] * self.cycle.length
+        ankle[:, 1] = sign * (ankle[:, 1] + self.body.step_width / 2)
+        return ankle, pitch
+
+    def _fit_pelvis(self):
+        """Lead of the planted ankle over the pelvis at the strike, and height of the pelvis at its highest, in m."""
+        phase = np.arange(SEARCH_PHASES) / SEARCH_PHASES
+        hip = self._hip(self._pelvis(phase, 0.0), -1.0)
+        ankle, _ = self._foot(phase, -1.0, 0.0)
+        thigh, shank = self.body.thigh, self.body.shank
+        reach = thigh**2 + shank**2 + 2 * thigh * shank * np.cos(MIN_KNEE)
+        ahead = ankle[None, :, 0] + LEADS[:, None] * self.cycle.length - hip[:, 0]
+        room = np.maximum(reach - ahead**2 - (ankle[:, 1] - hip[:, 1]) ** 2, 0.0)
+        heights = np.min(ankle[:, 2] + np.sqrt(room) - hip[:, 2], axis=1)
+        best = int(np.argmax(heights))
+        return LEADS[best] * self.cycle.length, heights[best]
+
+    def _leg(self, phase, sign, pelvis):
+        hip = self._hip(pelvis, sign)
+        ankle, pitch = self._foot(phase, sign, self.lead)
+        opening = sign * self.steps.opening
+        heading = (self.walk.torsion(phase) + opening) / 2
+        knee, thigh, shank = bend_leg(hip, ankle, self.body.thigh, self.body.shank, heading)
+        foot = about_z(np.full_like(phase, opening)) @ about_y(-pitch)
+        return {"thigh": Frames(hip, thigh), "shank": Frames(knee, shank), "foot": Frames(ankle, foot)}
+
+    def _trunk(self, phase, pelvis):
+        body, walk = self.body, self.walk
+        yaw, lean = walk.thorax(phase), walk.lean(phase)
+        base = pelvis.origin + pelvis.rotation @ np.array([0.0, 0.0, body.spine_base])
+        torso = Frames(base, about_z(yaw) @ about_y(lean))
+        neck = Frames(base + torso.rotation @ np.array([0.0, 0.0, body.neck_above_spine_base]),
+                      about_z(yaw / 2) @ about_y(lean / 2 + np.radians(8.0)))
+        head = Frames(neck.origin + neck.rotation @ np.array([0.0, 0.0, body.neck]), about_z(0.0 * yaw))
+        return {"torso": torso, "neck": neck, "head": head}
+
+    def _arm(self, phase, sign, torso):
+        own = _own_phase(phase, sign)
+        body, elbow_bend = self.body, self.walk.elbow(own)
+        shoulder = torso.origin + torso.rotation @ np.array(
+            [0.0, sign * body.shoulder_offset, body.shoulder_above_spine_base])
+        upper = torso.rotation @ about_y(-self.walk.shoulder(own)) @ about_x(np.full_like(phase, sign * ARM_ABDUCTION))
+        # The forearm hangs back towards the body by as much as the upper arm is spread.
+        forearm = upper @ about_y(-elbow_bend) @ about_x(np.full_like(phase, -0.8 * sign * ARM_ABDUCTION))
+        elbow = shoulder + upper @ np.array([0.0, 0.0, -body.upper_arm])
+        wrist = elbow + forearm @ np.array([0.0, 0.0, -body.forearm])
+        hand = forearm @ about_y(np.full_like(phase, np.radians(-8.0)))
+        return {"upper": Frames(shoulder, upper), "forearm": Frames(elbow, forearm), "hand": Frames(wrist, hand)}
+
+
+def relative_speed_limit(body):
+    """Greatest walking speed in m/s that the model covers."""
+    return LIMIT * body.hip_height
+
+
+def bend_leg(hip, ankle, thigh, shank, heading):
+    """Knee [T, 3] and axes of thigh and shank [T, 3, 3] of a leg from hip [T, 3] to ankle [T, 3] that bends forwards.
+
+    thigh, shank: lengths in m; heading [T]: direction in rad, about z from x, of the vertical plane that the knee
+    bends in when the leg is upright. The axes have z up the segment and y along the knee's axis, to the left.
+    """
+    leg = hip - ankle
+    distance = np.linalg.norm(leg, axis=-1)
+    up = leg / distance[:, None]
+    axis = np.cross(up, np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=-1))
+    axis /= np.linalg.norm(axis, axis=-1)[:, None]
+    forward = np.cross(axis, up)
+    below = (distance**2 + shank**2 - thigh**2) / (2 * distance)
+    out = np.sqrt(shank**2 - below**2)
+    knee = ankle + below[:, None] * up + out[:, None] * forward
+    return knee, _segment_axes(hip - knee, axis), _segment_axes(knee - ankle, axis)
+
+
+def _segment_axes(up, left):
+    up = up / np.linalg.norm(up, axis=-1)[:, None]
+    return np.stack([np.cross(left, up), left, up], axis=-1)
+
+
+def _own_phase(phase, sign):
+    """Phase of the limbs of one side: those on the left (sign 1) lag by half a cycle."""
+    return phase - 0.5 if sign > 0 else phase
+
+
+def _prefixed(prefix, frames):
+    return {prefix + name: value for name, value in frames.items()}

@@ -1,0 +1,72 @@
+"""The pedestrian: a parametric walking person."""
+import numpy as np
+
+from ..actor import Actor, PartArrays
+from ..checks import edge_length, nearest_keywords, number, positive
+from .anthropometry import Proportions
+from .body import surface
+from .gait import Gait, relative_speed_limit
+from .rotations import quaternions
+
+HEIGHTS = (0.5, 2.5)          # m
+MIN_SPEED = 0.1               # m/s
+MIN_KEYFRAME_RATE = 60.0      # 1/s: fewer do not follow the landing of a foot
+SKIN_PARTS = ("head", "neck", "hand")
+
+
+@nearest_keywords
+def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0.0, edge=0.024, keyframe_rate=120.0,
+               clothing="clothing", skin="skin"):
+    """A person who walks along +x, 16 closed meshes that move by keyframes.
+
+    Proportions after Drillis and Contini (anthropometry.py), motion after Boulic, Thalmann and Thalmann (boulic.py)
+    with feet that are planted (steps.py): a sole that touches the floor z = 0 does not slide. Steady walking on level
+    ground, arms free.
+
+    Frame: x forward, y left, z up. At time 0 the pelvis, but for its oscillation of a few cm, is above the origin; it
+    has been and goes on along the x axis at `speed`.
+
+    Parts: pelvis, torso, neck, head, arm_left/upper, arm_left/forearm, arm_left/hand, leg_left/thigh, leg_left/shank,
+    leg_left/foot, and likewise right; "pedestrian/arm_*" takes both arms of an actor added as "pedestrian".
+
+    height: of the body in m, 0.5 to 2.5. speed: in m/s, 0.1 to 3 hip heights a second (where walking ends).
+    start_time, duration: first time and length of the motion in s; a scene can be posed at no other time.
+    phase: of the walking cycle (two steps, about 1.1 s) at time 0, in cycles; 0 is the strike of the right heel.
+    edge: length in m of the triangles' sides; about 10 000 triangles in all by default.
+    keyframe_rate: in 1/s, at least 60.
+    clothing, skin: materials, names in echopath.materials or objects; skin are head, neck and hands.
+
+    Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
+    """
+    arrays = pedestrian_arrays(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase,
+                               edge=edge, keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
+    return Actor([part.build() for part in arrays])
+
+
+def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
+    """The parts of a pedestrian as plain arrays: a list of PartArrays. Arguments as of pedestrian()."""
+    body = Proportions(number("height", height, *HEIGHTS, unit="m"))
+    speed = number("speed", speed, MIN_SPEED, round(relative_speed_limit(body), 3), unit="m/s")
+    edge = edge_length(edge, 3.0 * body.height)
+    number("edge", edge, 0.0, 0.05 * body.height, unit="m")
+    gait = Gait(body, speed)
+    times = keyframe_times(number("start_time", start_time), positive("duration", duration, unit="s"),
+                           number("keyframe_rate", keyframe_rate, MIN_KEYFRAME_RATE, unit="1/s"))
+    frames = gait.frames(number("phase", phase) + times / gait.cycle.duration)
+    start = np.array([phase * gait.cycle.length, 0.0, 0.0])
+    surfaces = {}
+    parts = []
+    for name, frame in frames.items():
+        kind = name.rsplit("/")[-1]
+        if kind not in surfaces:
+            surfaces[kind] = surface(name, body, edge)
+        material = skin if kind in SKIN_PARTS else clothing
+        parts.append(PartArrays(name, *surfaces[kind], material, times, frame.origin - start,
+                                quaternions(frame.rotation)))
+    return parts
+
+
+def keyframe_times(start_time, duration, rate):
+    """Times [T] in s, evenly from start_time over `duration`, at least `rate` a second and at least 4."""
+    count = max(4, int(np.ceil(duration * rate - 1e-9)) + 1)
+    return start_time + duration * np.linspace(0.0, 1.0, count)

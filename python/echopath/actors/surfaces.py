@@ -1,0 +1,157 @@
+"""Triangulated surfaces as plain arrays: each function returns vertices [V, 3] in m and triangles [F, 3].
+
+Triangles are counter-clockwise seen from the front (outside, where the surface is closed).
+"""
+import numpy as np
+
+from .curves import monotone_cubic
+
+RING_SAMPLES = 256       # points that the perimeter of a section is measured with
+MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
+ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
+WELD = 1e-9              # m: vertices nearer than that are one
+
+
+def parallelogram(corner, u, v, edge=np.inf):
+    """The parallelogram corner + [0, 1] u + [0, 1] v with its front along u x v, in pieces of at most `edge` m."""
+    corner, u, v = (np.asarray(x, dtype=float) for x in (corner, u, v))
+    nu, nv = num_pieces(np.linalg.norm(u), edge), num_pieces(np.linalg.norm(v), edge)
+    i, j = np.meshgrid(np.arange(nu + 1), np.arange(nv + 1), indexing="ij")
+    vertices = corner + np.multiply.outer(i / nu, u) + np.multiply.outer(j / nv, v)
+    index = np.arange((nu + 1) * (nv + 1)).reshape(nu + 1, nv + 1)
+    a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
+    triangles = np.stack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)], axis=-2)
+    return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
+
+
+def triangle(a, b, c, pieces=1):
+    """The triangle a b c with every side in `pieces` equal pieces, pieces^2 triangles."""
+    a, b, c = (np.asarray(x, dtype=float) for x in (a, b, c))
+    n = int(pieces)
+    i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
+    inside = i + j <= n
+    index = np.cumsum(inside.ravel()).reshape(n + 1, n + 1) - 1
+    vertices = (a + np.multiply.outer(i / n, b - a) + np.multiply.outer(j / n, c - a))[inside]
+    i, j = i[inside], j[inside]
+    up = i + j < n
+    down = i + j < n - 1
+    upward = np.stack([index[i[up], j[up]], index[i[up] + 1, j[up]], index[i[up], j[up] + 1]], -1)
+    i, j = i[down], j[down]
+    return vertices, np.concatenate([upward, np.stack([index[i + 1, j], index[i + 1, j + 1], index[i, j + 1]], -1)])
+
+
+def joined(*pieces):
+    """One surface of several (vertices, triangles); vertices at the same place become one."""
+    offsets = np.cumsum([0] + [len(vertices) for vertices, _ in pieces[:-1]])
+    vertices = np.concatenate([vertices for vertices, _ in pieces])
+    triangles = np.concatenate([faces + offset for (_, faces), offset in zip(pieces, offsets)])
+    _, first, same = np.unique(np.round(vertices / WELD), axis=0, return_index=True, return_inverse=True)
+    return vertices[first], same.reshape(-1)[triangles]
+
+
+def icosphere(radius, pieces):
+    """Sphere about the origin, vertices on it: an icosahedron with its edges in `pieces` pieces."""
+    golden = (1.0 + np.sqrt(5.0)) / 2.0
+    corners = np.array([[0, s, t * golden] for s in (-1, 1) for t in (-1, 1)], dtype=float)
+    corners = np.concatenate([np.roll(corners, k, axis=1) for k in range(3)])
+    distance = np.linalg.norm(corners[:, None] - corners[None], axis=-1)
+    near = np.abs(distance - 2.0) < 1e-9
+    faces = [(i, j, k) for i in range(12) for j in range(i) for k in range(j)
+             if near[i, j] and near[j, k] and near[i, k]]
+    sides = []
+    for face in faces:
+        a, b, c = corners[list(face)]
+        sides.append(triangle(a, b, c, pieces) if np.dot(np.cross(b, c), a) > 0 else triangle(a, c, b, pieces))
+    vertices, triangles = joined(*sides)
+    return radius * vertices / np.linalg.norm(vertices, axis=1)[:, None], triangles
+
+
+def table_section(table, begin_cap, end_cap):
+    """Section function of a limb (see swept) from a table [N, 6] of stations.
+
+    Columns: place along the axis, centre u, centre v, half width u, half width v, power of the superellipse. Between
+    the stations, of which the first and last are the tips, it is interpolated without overshoot. Within begin_cap and
+    end_cap m of the tips it is rounded off as an ellipsoid is.
+    """
+    table = np.asarray(table, dtype=float)
+    begin, end = table[0, 0], table[-1, 0]
+
+    def section(t):
+        values = np.stack([monotone_cubic(table[:, 0], table[:, k], t) for k in range(1, 6)], axis=-1)
+        lack = np.maximum(1.0 - (t - begin) / begin_cap, 0.0) ** 2 + np.maximum(1.0 - (end - t) / end_cap, 0.0) ** 2
+        values[:, 2:4] *= np.sqrt(np.maximum(1.0 - lack, 0.0))[:, None]
+        return values
+
+    return section
+
+
+def swept(section, begin, end, edge, axes=(0, 1, 2)):
+    """Closed surface swept along an axis by superellipses that shrink to a point at both ends.
+
+    section(t [N]) -> [N, 5]: centre u and v, half width u and v, power (2: ellipse) of the section at t m.
+    axes: which coordinates u, v and t are; a cyclic permutation of 0, 1, 2. Triangles have sides of about `edge` m.
+    """
+    places = _ring_places(section, begin, end, edge)
+    values = section(places)
+    rings, triangles, first = [], [], 0
+    for k, (place, value) in enumerate(zip(places, values)):
+        tip = k in (0, len(places) - 1)
+        ring = value[None, :2] if tip else _ring(value, edge, 0.5 * (k % 2))
+        rings.append(np.column_stack([ring, np.full(len(ring), place)]))
+        if k:
+            before = len(rings[-2])
+            triangles.append(_band(before, len(ring), 0.5 * ((k - 1) % 2), 0.5 * (k % 2)) + first)
+            first += before
+    vertices = np.empty((first + len(rings[-1]), 3))
+    vertices[:, list(axes)] = np.concatenate(rings)
+    return vertices, np.concatenate(triangles)
+
+
+def num_pieces(length, edge):
+    """Number of equal pieces of a line that are at most `edge` long."""
+    return max(1, int(np.ceil(length / edge - 1e-9)))
+
+
+def signed_volume(vertices, triangles):
+    """Volume in m^3 inside a closed surface; negative when it is inside out."""
+    a, b, c = np.moveaxis(np.asarray(vertices)[np.asarray(triangles)], 1, 0)
+    return float(np.sum(a * np.cross(b, c)) / 6.0)
+
+
+def _ring_places(section, begin, end, edge):
+    """Places of the rings, tips included, at equal distances along the longest meridian."""
+    t = begin + (end - begin) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, MERIDIAN_SAMPLES)))
+    u, v, half_u, half_v, _ = section(t).T
+    steps = [np.hypot(np.diff(t), np.diff(line)) for line in (u + half_u, u - half_u, v + half_v, v - half_v)]
+    along = np.concatenate([[0.0], np.cumsum(np.max(steps, axis=0))])
+    count = max(3, int(round(along[-1] / (ROW_HEIGHT * edge))))
+    return np.interp(np.linspace(0.0, along[-1], count + 1), along, t)
+
+
+def _ring(value, edge, offset):
+    """Points [M, 2] at equal distances on a superellipse, counter-clockwise; the first `offset` distances from +u."""
+    angle = np.linspace(0.0, 2.0 * np.pi, RING_SAMPLES + 1)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    power = 2.0 / value[4]
+    curve = np.column_stack([value[0] + value[2] * np.sign(cosine) * np.abs(cosine) ** power,
+                             value[1] + value[3] * np.sign(sine) * np.abs(sine) ** power])
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
+    count = max(5, int(round(along[-1] / edge)))
+    at = (np.arange(count) + offset) / count * along[-1]
+    return np.column_stack([np.interp(at, along, curve[:, 0]), np.interp(at, along, curve[:, 1])])
+
+
+def _band(num_lower, num_upper, lower_offset, upper_offset):
+    """Triangles between two rings of vertices 0.. and num_lower.., by merging their steps around the axis.
+
+    A ring of one vertex is a tip and has no steps.
+    """
+    lower = (np.arange(num_lower) + 1 + lower_offset) / num_lower if num_lower > 1 else np.empty(0)
+    upper = (np.arange(num_upper) + 1 + upper_offset) / num_upper if num_upper > 1 else np.empty(0)
+    is_lower = np.concatenate([np.ones(len(lower), bool), np.zeros(len(upper), bool)])
+    is_lower = is_lower[np.argsort(np.concatenate([lower, upper]), kind="stable")]
+    done_lower = np.cumsum(is_lower) - is_lower
+    done_upper = np.cumsum(~is_lower) - ~is_lower
+    a, b = done_lower % num_lower, num_lower + done_upper % num_upper
+    next_a, next_b = (done_lower + 1) % num_lower, num_lower + (done_upper + 1) % num_upper
+    return np.where(is_lower[:, None], np.column_stack([a, next_a, b]), np.column_stack([a, next_b, b]))

@@ -1,0 +1,334 @@
+"""The walking person against the published proportions and walking model, the floor, and measured gaits."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.actors.human.anthropometry import Proportions
+from echopath.actors.human.boulic import Cycle, Walk
+from echopath.actors.human.gait import Gait
+
+HEIGHT, SPEED = 1.78, 1.4
+HIP_HEIGHT = 0.530                       # of the body height: Drillis and Contini (1966), in Winter (2009)
+SLIDE = 0.02                             # m a stance: what the pedestrian promises
+SINK = 0.015                             # m
+CONTACT = 0.002                          # m: triangles of 2.4 cm lie up to 1 mm above the round sole they stand for
+WALKERS = [(1.78, 1.4), (1.78, 0.5), (1.10, 1.0), (1.95, 2.2)]   # height in m, speed in m/s
+
+
+class Person:
+    """A pedestrian's parts evaluated at many times, as a scene does it."""
+
+    def __init__(self, height, speed, **options):
+        self.actor = ep.actors.pedestrian(height=height, speed=speed, start_time=-0.1, duration=4.0, **options)
+        self.scene = ep.Scene()
+        self.scene.add(self.actor, name="pedestrian")
+        self.ids = {mesh.name.removeprefix("pedestrian/"): mesh.id for mesh in self.scene.meshes}
+        self.parts = {part.name: part for part in self.actor.parts}
+
+    def vertices(self, name, times):
+        """[T, V, 3]"""
+        return np.stack([self.scene.world_vertices(self.ids[name], float(t)) for t in times])
+
+    def center(self, name, times):
+        """[T, 3]"""
+        return self.vertices(name, times).mean(axis=1)
+
+
+@pytest.fixture(scope="module")
+def person():
+    return Person(HEIGHT, SPEED)
+
+
+def cycle_of(height, speed):
+    """Length in m and duration in s of a cycle as published: relative length 1.346 sqrt(v_R)."""
+    hip = HIP_HEIGHT * height
+    length = 1.346 * np.sqrt(speed / hip) * hip
+    return length, length / speed
+
+
+def strikes(ankle_x, times):
+    """Places and times at which a foot comes to rest: middle of each interval in which the ankle stands still."""
+    still = np.abs(np.gradient(ankle_x, times)) < 1e-3
+    begins = np.flatnonzero(still[1:] & ~still[:-1]) + 1
+    ends = np.flatnonzero(~still[1:] & still[:-1])
+    ends = ends[ends > begins[0]]
+    return [(ankle_x[(b + e) // 2], times[(b + e) // 2]) for b, e in zip(begins, ends)]
+
+
+@pytest.mark.parametrize("height, speed", WALKERS)
+def test_stride_has_the_published_length_and_duration(height, speed):
+    times = np.arange(0.0, 3.0 * cycle_of(height, speed)[1], 0.002)
+    gait = Gait(Proportions(height), speed)
+    ankle = gait.frames(times / gait.cycle.duration)["leg_right/foot"].origin[:, 0]
+    places = np.diff(np.array(strikes(ankle, times)), axis=0)
+    assert len(places) >= 1
+    np.testing.assert_allclose(places[:, 0], cycle_of(height, speed)[0], rtol=1e-9)
+    np.testing.assert_allclose(places[:, 1], cycle_of(height, speed)[1], atol=0.004)   # two time steps
+
+
+def test_support_share_follows_the_published_line():
+    # Duration of support 0.752 T - 0.143 s of a cycle of T s: about 60 % of a usual walk.
+    cycle = Cycle.of(SPEED, HIP_HEIGHT * HEIGHT)
+    assert cycle.support == pytest.approx((0.752 * cycle.duration - 0.143) / cycle.duration)
+    assert 0.58 < cycle.support < 0.64
+
+
+@pytest.mark.parametrize("height, speed", WALKERS)
+def test_mean_speed_is_the_asked_one(height, speed):
+    duration = cycle_of(height, speed)[1]
+    person = Person(height, speed) if duration < 1.9 else pytest.skip("motion shorter than two cycles")
+    for name in ("torso", "arm_left/hand", "leg_right/foot"):
+        way = np.diff(person.center(name, [0.0, 2 * duration])[:, 0])[0]
+        assert way / (2 * duration) == pytest.approx(speed, rel=1e-3)
+
+
+def test_pelvis_is_above_the_origin_at_time_zero(person):
+    assert np.abs(person.center("pelvis", [0.0])[0, :2]).max() < 0.04
+
+
+CONTROL_POINTS = [   # phase, degrees of the published trajectories at relative speed 1
+    ("hip", 0.5, -15.0), ("hip", 0.9, 25.0), ("knee", 0.17, 3.0), ("knee", 0.4, 3.0), ("knee", 0.75, 70.0),
+    ("ankle", 0.08, -18.0), ("ankle", 0.5, 8.0), ("ankle", 0.85, -3.0), ("elbow", 0.05, 11.0), ("elbow", 0.50625, 35.0),
+    ("elbow", 0.9, 13.625), ("shoulder", 0.0, 3 - 1.5 * 9.88), ("shoulder", 0.5, 3 + 0.5 * 9.88)]
+SMOOTHING_ERROR = 2.0   # deg: curves with corners in their slope are smoothed over 1 % of a cycle
+
+
+@pytest.mark.parametrize("joint, phase, degrees", CONTROL_POINTS)
+def test_trajectories_pass_the_published_control_points(joint, phase, degrees):
+    walk = Walk(1.0, support_share(1.0))
+    assert np.degrees(getattr(walk, joint)(phase)) == pytest.approx(degrees, abs=SMOOTHING_ERROR)
+
+
+def support_share(relative_speed):
+    duration = 1.346 / np.sqrt(relative_speed)
+    return (0.752 * duration - 0.143) / duration
+
+
+@pytest.mark.parametrize("height, speed", WALKERS)
+def test_feet_stand_on_the_floor_without_sliding(height, speed):
+    person = Person(height, speed)
+    times = np.arange(0.0, 2.2, 0.002)
+    supported = np.zeros(len(times), bool)
+    for side in ("left", "right"):
+        points = person.vertices(f"leg_{side}/foot", times)
+        touches = points[:, :, 2] < CONTACT
+        assert slide_while(touches, points).max() <= SLIDE
+        lowest = points[:, :, 2].min(axis=1)
+        assert lowest.min() > -SINK / 5
+        supported |= lowest < SINK / 3
+    assert supported.all()           # a walker never flies
+
+
+def slide_while(touches, points):
+    """Greatest distance [V] in the floor's plane between any two positions of a vertex within one contact."""
+    slides = np.zeros(points.shape[1])
+    for v in np.flatnonzero(touches.any(axis=0)):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], touches[:, v].astype(int), [0]])))
+        for begin, end in edges.reshape(-1, 2):
+            track = points[begin:end, v, :2]
+            slides[v] = max(slides[v], np.linalg.norm(np.ptp(track, axis=0)))
+    return slides
+
+
+def test_nothing_sinks_below_the_floor(person):
+    for name in person.ids:
+        assert person.vertices(name, np.linspace(0.0, 1.2, 61))[:, :, 2].min() > -SINK
+
+
+def test_left_side_is_the_right_side_half_a_cycle_later(person):
+    length, duration = cycle_of(HEIGHT, SPEED)
+    times = np.linspace(0.0, 1.0, 11)
+    for name in ("arm_{}/hand", "leg_{}/shank", "leg_{}/foot"):
+        right = person.center(name.format("right"), times)
+        left = person.center(name.format("left"), times + duration / 2)
+        mirrored = right * [1, -1, 1] + [length / 2, 0, 0]
+        np.testing.assert_allclose(left, mirrored, atol=5e-4)    # keyframes fall on other phases
+
+
+def knee_bend(person, times):
+    """Angle [T] in degrees between thigh and shank from their keyframed axes, and from their meshes' long axes."""
+    axes = []
+    for name in ("leg_right/thigh", "leg_right/shank"):
+        local = np.asarray(person.parts[name].mesh.vertices)
+        top, bottom = np.argmax(local[:, 2]), np.argmin(local[:, 2])
+        world, rest = person.vertices(name, times), local[top] - local[bottom]
+        axes.append(world[:, top] - world[:, bottom])
+        assert rest[2] / np.linalg.norm(rest) > 0.99             # the long axis is nearly the segment's
+    cosine = np.sum(axes[0] * axes[1], axis=1) / np.prod([np.linalg.norm(a, axis=1) for a in axes], axis=0)
+    return np.degrees(np.arccos(cosine))
+
+
+def test_knee_bends_as_measured_ones_do(person):
+    # Normal gait: about 60 to 65 deg in swing, 15 to 25 deg under load, nearly straight in between.
+    duration = cycle_of(HEIGHT, SPEED)[1]
+    phase = np.arange(0.0, 1.0, 0.01)
+    bend = knee_bend(person, phase * duration)
+    assert 55.0 < bend.max() < 67.0
+    assert 0.68 < phase[bend.argmax()] < 0.82
+    assert 12.0 < bend[(phase > 0.08) & (phase < 0.25)].max() < 28.0
+    assert bend[(phase > 0.3) & (phase < 0.45)].min() < 12.0
+
+
+SEGMENTS = [   # parent part, its child, length as a share of the height (Drillis and Contini)
+    ("leg_left/thigh", "leg_left/shank", 0.245), ("leg_right/shank", "leg_right/foot", 0.246),
+    ("arm_left/upper", "arm_left/forearm", 0.186), ("arm_right/forearm", "arm_right/hand", 0.146)]
+
+
+@pytest.mark.parametrize("parent, child, share", SEGMENTS)
+def test_segments_have_the_published_lengths_all_the_time(person, parent, child, share):
+    joints = [np.asarray(person.parts[name].motion.translations) for name in (parent, child)]
+    np.testing.assert_allclose(np.linalg.norm(joints[0] - joints[1], axis=1), share * HEIGHT, rtol=1e-9)
+
+
+def test_body_stands_its_height_and_foot_has_its_length(person):
+    top = person.vertices("head", np.linspace(0.0, 1.2, 25))[:, :, 2].max()
+    assert 0.96 * HEIGHT < top < 1.0 * HEIGHT                    # bent knees take a few per cent
+    assert np.ptp(person.parts["leg_left/foot"].mesh.vertices[:, 0]) == pytest.approx(0.152 * HEIGHT, rel=0.01)
+
+
+def test_every_part_is_closed_and_faces_outwards(person):
+    assert len(person.parts) >= 16
+    for part in person.actor.parts:
+        triangles = np.asarray(part.mesh.triangles).astype(np.int64)
+        directed = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+        keys = directed[:, 0] * len(part.mesh.vertices) + directed[:, 1]
+        back = directed[:, 1] * len(part.mesh.vertices) + directed[:, 0]
+        assert len(np.unique(keys)) == len(keys) and np.isin(back, keys).all()
+        a, b, c = np.moveaxis(np.asarray(part.mesh.vertices)[triangles], 1, 0)
+        assert np.sum(a * np.cross(b, c)) > 0
+        assert part.mesh.num_removed_triangles == 0
+
+
+def test_triangles_are_many_enough_and_even(person):
+    assert 5_000 <= person.actor.num_triangles <= 15_000
+    finer = ep.actors.pedestrian(edge=0.012)
+    assert finer.num_triangles == pytest.approx(4 * person.actor.num_triangles, rel=0.15)
+    sides = np.concatenate([np.linalg.norm(c - np.roll(c, 1, axis=1), axis=-1).ravel() for c in
+                            (np.asarray(p.mesh.vertices)[np.asarray(p.mesh.triangles)] for p in finer.parts)])
+    assert np.quantile(sides, 0.99) < 1.6 * 0.012
+
+
+def winding(mesh, point):
+    """Times that a closed surface goes round a point: its solid angle over 4 pi (Van Oosterom and Strackee 1983)."""
+    r = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)] - point
+    d = np.linalg.norm(r, axis=-1)
+    a, b, c = np.moveaxis(r, 1, 0)
+    below = (np.prod(d, axis=1) + np.sum(a * b, 1) * d[:, 2] + np.sum(b * c, 1) * d[:, 0] + np.sum(c * a, 1) * d[:, 1])
+    return np.sum(np.arctan2(np.sum(a * np.cross(b, c), 1), below)) / (2.0 * np.pi)
+
+
+JOINTS = [("leg_{}/thigh", "leg_{}/shank"), ("leg_{}/shank", "leg_{}/foot"), ("arm_{}/upper", "arm_{}/forearm"),
+          ("arm_{}/forearm", "arm_{}/hand"), ("pelvis", "leg_{}/thigh"), ("torso", "arm_{}/upper"), ("torso", "neck"),
+          ("neck", "head"), ("pelvis", "torso")]
+
+
+@pytest.mark.parametrize("parent, child", JOINTS)
+def test_parts_overlap_at_their_joint_through_the_cycle(person, parent, child):
+    parent, child = parent.format("right"), child.format("right")
+    motion = person.parts[child].motion
+    for k in range(0, 140, 20):
+        joint = np.asarray(motion.translations)[k]
+        for name in (parent, child):
+            own = person.parts[name].motion
+            local = rotation(np.asarray(own.rotations)[k]).T @ (joint - np.asarray(own.translations)[k])
+            assert winding(person.parts[name].mesh, local) == pytest.approx(1.0, abs=1e-6), (name, k)
+
+
+def rotation(q):
+    """Rotation matrix of a unit quaternion (w, x, y, z)."""
+    w, v = q[0], q[1:]
+    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+
+
+def test_limb_speeds_are_those_of_a_walker(person):
+    # Radar and motion capture: feet reach about three times the walking speed, arms swing by about one.
+    duration = cycle_of(HEIGHT, SPEED)[1]
+    times = np.arange(0.0, 1.5 * duration, 0.002)
+    speed = {name: np.gradient(person.center(name, times)[:, 0], times) for name in
+             ("leg_right/foot", "arm_right/hand", "torso", "head")}
+    assert 2.5 < speed["leg_right/foot"].max() / SPEED < 4.5
+    assert speed["leg_right/foot"].min() > -0.1 * SPEED
+    assert 0.4 < np.abs(speed["arm_right/hand"] - SPEED).max() / SPEED < 1.4
+    for name in ("torso", "head"):
+        assert np.abs(speed[name] - SPEED).max() < 0.35 * SPEED
+
+
+def test_arms_swing_against_the_legs(person):
+    times = np.arange(0.0, cycle_of(HEIGHT, SPEED)[1], 0.02)
+    for side in ("left", "right"):
+        hand = person.center(f"arm_{side}/hand", times)[:, 0] - SPEED * times
+        foot = person.center(f"leg_{side}/foot", times)[:, 0] - SPEED * times
+        assert np.corrcoef(hand, foot)[0, 1] < -0.7
+
+
+def test_knees_and_elbows_bend_the_human_way_and_toes_point_forward(person):
+    for side in ("left", "right"):
+        hip, knee, ankle, shoulder, elbow, wrist = (
+            np.asarray(person.parts[name.format(side)].motion.translations) for name in
+            ("leg_{}/thigh", "leg_{}/shank", "leg_{}/foot", "arm_{}/upper", "arm_{}/forearm", "arm_{}/hand"))
+        assert np.cross(knee - hip, ankle - knee)[:, 1].min() > 0        # shank backwards of the thigh
+        assert np.cross(elbow - shoulder, wrist - elbow)[:, 1].max() < 0  # forearm ahead of the upper arm
+        foot = np.asarray(person.parts[f"leg_{side}/foot"].mesh.vertices)
+        toe, heel = np.argmax(foot[:, 0]), np.argmin(foot[:, 0])
+        flat = person.vertices(f"leg_{side}/foot", np.arange(0.0, 1.1, 0.05))
+        assert (flat[:, toe, 0] - flat[:, heel, 0]).min() > 0.0
+
+
+def test_keyframes_are_unit_continuous_and_dense():
+    person = ep.actors.pedestrian(start_time=1.0, duration=0.7, keyframe_rate=90.0)
+    for part in person.parts:
+        times, q = np.asarray(part.motion.times), np.asarray(part.motion.rotations)
+        assert (times[0], times[-1]) == pytest.approx((1.0, 1.7))
+        assert np.diff(times).max() <= 1 / 90 + 1e-12
+        np.testing.assert_allclose(np.linalg.norm(q, axis=1), 1.0, atol=1e-12)
+        assert np.sum(q[1:] * q[:-1], axis=1).min() > 0.9
+
+
+def test_keyframes_hold_the_gait_between_them(person):
+    # 77 GHz: 0.1 mm is 0.3 rad of phase, over a whole motion; within a frame it hardly changes.
+    gait = Gait(Proportions(HEIGHT), SPEED)
+    times = np.linspace(0.2, 1.5, 700) + 1e-4
+    for name, frame in gait.frames(times / gait.cycle.duration).items():
+        local = np.asarray(person.parts[name].mesh.vertices)[::50]
+        exact = frame.origin[:, None] + np.einsum("tij,vj->tvi", frame.rotation, local)
+        assert np.abs(person.vertices(name, times)[:, ::50] - exact).max() < 1e-4, name
+
+
+def test_motion_is_the_same_walk_whatever_the_phase_and_start():
+    late = ep.actors.pedestrian(start_time=0.3, duration=1.0, keyframe_rate=100.0)
+    early = ep.actors.pedestrian(start_time=0.0, duration=1.5, keyframe_rate=100.0)
+    length, duration = cycle_of(HEIGHT, SPEED)
+    ahead = ep.actors.pedestrian(start_time=0.0, duration=1.0, keyframe_rate=100.0, phase=0.3 / duration)
+    for a, b, c in zip(early.parts, late.parts, ahead.parts):
+        expected = np.asarray(a.motion.translations)[30:131]
+        np.testing.assert_allclose(np.asarray(b.motion.translations), expected, atol=1e-9)
+        np.testing.assert_allclose(np.asarray(c.motion.translations), expected - [0.3 * SPEED, 0, 0], atol=1e-9)
+
+
+def test_materials_are_rough_cloth_and_skin(person):
+    assert all(ep.materials[name].scattering == 1.0 for name in ("clothing", "skin"))
+    by_material = {part.name: part.material for part in person.actor.parts}
+    assert {name for name, material in by_material.items() if material == "skin"} == {
+        "head", "neck", "arm_left/hand", "arm_right/hand"}
+    assert set(by_material.values()) == {"clothing", "skin"}
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ({"height": -1.0}, "height must be from 0.5 to 2.5 m, got -1.0"),
+    ({"speed": 0.0}, "speed must be from 0.1 to 2.83 m/s, got 0.0"),
+    ({"speed": 5.0}, "speed must be from 0.1 to 2.83 m/s, got 5.0"),
+    ({"duration": 0.0}, "duration must be greater than 0 s, got 0.0"),
+    ({"keyframe_rate": 10.0}, "keyframe_rate must be at least 60 1/s, got 10.0"),
+    ({"edge": 1e-7}, "edge must be long enough"),
+    ({"edge": 1.0}, "edge must be from 0 to 0.089 m, got 1.0"),
+    ({"phase": float("inf")}, "phase must be a finite number, got inf"),
+])
+def test_bad_arguments_name_rule_and_value(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        ep.actors.pedestrian(**arguments)
+
+
+def test_unknown_keyword_names_the_nearest_right_one():
+    with pytest.raises(TypeError, match="no argument 'hieght'; did you mean 'height'"):
+        ep.actors.pedestrian(hieght=1.8)

@@ -25,11 +25,12 @@ void make_unit(Vector& vector, const char* argument) {
   if (std::abs(norm - 1.0) > kUnitRounding) vector /= norm;
 }
 
-ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate, int num_chirps,
-                             double chirp_interval, bool real, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "ChirpSequence", {"start_frequency", "bandwidth", "num_samples", "sampling_rate", "num_chirps",
-                                            "chirp_interval", "real"});
-  const ChirpSequence waveform{start_frequency, bandwidth, num_samples, sampling_rate, num_chirps, chirp_interval, real};
+ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate,
+                             int num_chirps, double chirp_interval, bool real, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "ChirpSequence", {"start_frequency", "bandwidth", "num_samples", "sampling_rate",
+                                            "num_chirps", "chirp_interval", "real"});
+  const ChirpSequence waveform{start_frequency, bandwidth,      num_samples, sampling_rate,
+                               num_chirps,      chirp_interval, real};
   waveform.validate();
   return waveform;
 }
@@ -42,7 +43,8 @@ AntennaPattern isotropic(double gain, const py::kwargs& unknown) {
 AntennaPattern cosine_power(double exponent, std::optional<double> peak_gain, const py::kwargs& unknown) {
   refuse_unknown(unknown, "CosinePower", {"exponent", "peak_gain"});
   if (peak_gain) {
-    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None", *peak_gain);
+    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None",
+            *peak_gain);
   }
   return AntennaPattern::cosine_power(exponent, peak_gain.value_or(0.0));
 }
@@ -60,9 +62,9 @@ Antenna antenna(const py::object& position, const py::object& orientation, const
   return made;
 }
 
-Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters, const std::vector<Antenna>& receivers,
-            double transmit_power, double noise_figure_db, const std::string& multiplexing,
-            const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
+Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters,
+            const std::vector<Antenna>& receivers, double transmit_power, double noise_figure_db,
+            const std::string& multiplexing, const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
   refuse_unknown(unknown, "Radar", {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db",
                                     "multiplexing", "motion"});
   require(multiplexing == "tdm", "multiplexing", "must be 'tdm'", "'" + multiplexing + "'");
@@ -170,7 +172,8 @@ Raises ValueError naming the argument.)")
       .def_property_readonly("orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
                              "[4] (w, x, y, z), radar from antenna")
       .def_readonly("pattern", &Antenna::pattern)
-      .def_property_readonly("polarization", [](const Antenna& self) { return to_numpy(self.polarization); }, "[3], unit")
+      .def_property_readonly("polarization", [](const Antenna& self) { return to_numpy(self.polarization); },
+                             "[3], unit")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
 }
 

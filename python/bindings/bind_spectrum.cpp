@@ -16,7 +16,10 @@ namespace {
 Window as_window(const py::object& value) {
   if (py::isinstance<py::str>(value)) return Window::named(value.cast<std::string>());
   const bool pair = (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) && py::len(value) == 2;
-  if (!pair) throw py::type_error("window: must be a name or (name, sidelobe level in dB), got " + py::str(value).cast<std::string>());
+  if (!pair) {
+    throw py::type_error("window: must be a name or (name, sidelobe level in dB), got " +
+                         py::str(value).cast<std::string>());
+  }
   const py::sequence parts = value;
   return Window::named(parts[0].cast<std::string>(), parts[1].cast<double>());
 }
@@ -69,7 +72,7 @@ Raises ValueError naming the argument.)");
   m.def("window", [](const std::string& name, int n, double sidelobe_db) {
     return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
   }, py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
-        "Samples [n] of a window: cosine windows periodic, \"chebyshev\" symmetric with sidelobes `sidelobe_db` dB down.");
+        "Samples [n] of a window. Cosine windows are periodic; \"chebyshev\" is symmetric, sidelobes `sidelobe_db` dB down.");
 }
 
 }  // namespace echopath::bindings

@@ -35,7 +35,8 @@ class Fft {
   Fft(Fft&&) noexcept;
   Fft& operator=(Fft&&) noexcept;
   int size() const;
-  // In place; raises invalid_argument unless the buffer has the plan's size. Safe from several threads on different buffers.
+  // In place; raises invalid_argument unless the buffer has the plan's size. Safe from several threads on different
+  // buffers.
   void transform(FftBuffer& buffer) const;
 
  private:

@@ -26,7 +26,7 @@ struct ChirpSequence {
   double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }          // Hz
   double wavelength() const;                                                             // m, at the centre frequency
   double range_resolution() const;                                                       // m, c / 2B
-  double max_range() const;                                                              // m, c fs / 2 slope (half when real)
+  double max_range() const;                                                              // m, c fs / 2 slope, or half
   double velocity_resolution(int num_slots) const;                                       // m/s
   double max_velocity(int num_slots) const;                                              // m/s, unambiguous +-
 };

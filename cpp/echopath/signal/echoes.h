@@ -7,8 +7,8 @@
 namespace echopath {
 
 // How values at a few nodes give values at each chirp: value(chirp j) = sum_k value[j][k] * node[first_node[j] + k],
-// likewise `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K nodes per
-// piece) and exact evaluation (one node per chirp with central differences).
+// likewise `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K
+// nodes per piece) and exact evaluation (one node per chirp with central differences).
 struct TimeSampling {
   int num_nodes = 1;
   int order = 1;                 // nodes that take part in one chirp

@@ -37,10 +37,11 @@ class ToneMethod {
 
 // Sine and cosine of every sample: the reference. Error 1e-13 of the sum of |a|.
 std::unique_ptr<const ToneMethod> make_direct(int num_samples);
-// Powers of e^{j 2 pi f} by multiplication, in blocks. Error 1e-13 of the sum of |a| at 512 samples, growing with their number.
+// Powers of e^{j 2 pi f} by multiplication, in blocks. Error 1e-13 of the sum of |a| at 512 samples, growing with
+// their number.
 std::unique_ptr<const ToneMethod> make_recurrence(int num_samples);
-// Type-1 non-uniform FFT. Rms error over the samples below `tolerance` of the sum of |a|, for 1e-13 <= tolerance <= 0.1 (and
-// not below the rounding of 1e-16 x num_samples); the largest error of one sample is up to six times that.
+// Type-1 non-uniform FFT. Rms error over the samples below `tolerance` of the sum of |a|, for 1e-13 <= tolerance <=
+// 0.1 (and not below the rounding of 1e-16 x num_samples); the largest error of one sample is up to six times that.
 std::unique_ptr<const ToneMethod> make_nufft(int num_samples, double tolerance);
 
 }  // namespace echopath

@@ -8,12 +8,13 @@
 
 namespace echopath {
 
-// Noise power of one IF sample, W: k T0 F fs for complex samples, half of it for real ones (single-sideband noise figure,
-// no image).
+// Noise power of one IF sample, W: k T0 F fs for complex samples, half of it for real ones (single-sideband noise
+// figure, no image).
 double noise_power(const Radar& radar);
 
-// Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise), independent
-// from sample to sample. A pure function of (seed, place in the cube), so it depends on no thread. Parallel over chirps.
+// Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise),
+// independent from sample to sample. A pure function of (seed, place in the cube), so it depends on no thread.
+// Parallel over chirps.
 // Raises invalid_argument unless the cube has the size that the radar gives it.
 void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed);
 // The same for the `size` samples at `cube`.

@@ -1,5 +1,6 @@
-// Type-1 NUFFT of one row: each tone is spread with a narrow kernel onto a grid of twice the bandwidth, one FFT turns the
-// grid into samples, and the kernel's own spectrum is divided out. A row is the grid, its ends overhanging by the kernel.
+// Type-1 NUFFT of one row: each tone is spread with a narrow kernel onto a grid of twice the bandwidth, one FFT turns
+// the grid into samples, and the kernel's own spectrum is divided out. A row is the grid, its ends overhanging by the
+// kernel.
 #include <algorithm>
 #include <vector>
 

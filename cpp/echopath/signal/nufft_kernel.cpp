@@ -9,7 +9,8 @@ namespace {
 
 using Real = long double;
 
-// Measured rms error over the samples of one tone of unit amplitude, for width 3, 4, ... (test_methods.cpp holds them to it).
+// Measured rms error over the samples of one tone of unit amplitude, for width 3, 4, ... (test_methods.cpp holds them
+// to it).
 constexpr double kToneError[] = {8.3e-3, 8.3e-4, 8.2e-5, 7.8e-6, 8.1e-7, 9.8e-8, 1.25e-8,
                                  1.45e-9, 1.6e-10, 1.65e-11, 1.75e-12, 2.0e-13, 6.5e-14, 0.0};
 
@@ -25,7 +26,9 @@ std::vector<Real> polynomial_through_chebyshev_nodes(const std::vector<Real>& va
   current[0] = 1;  // T_0
   for (int k = 0; k < count; ++k) {
     Real weight = 0;
-    for (int i = 0; i < count; ++i) weight += value[i] * std::cos(k * (i + Real{0.5}) * std::numbers::pi_v<Real> / count);
+    for (int i = 0; i < count; ++i) {
+      weight += value[i] * std::cos(k * (i + Real{0.5}) * std::numbers::pi_v<Real> / count);
+    }
     weight *= (k == 0 ? Real{1} : Real{2}) / count;
     for (int power = 0; power < count; ++power) sum[power] += weight * current[power];
     // T_{k+1} = 2 t T_k - T_{k-1}, and T_1 = t.

@@ -13,8 +13,8 @@ struct NufftKernel {
   // Values per coefficient row: whole vectors; the values beyond the width are zero.
   static constexpr int padded(int width) { return width <= 8 ? 8 : 16; }
 
-  // The narrowest kernel on a grid of twice the samples whose rms error over the samples of any tone stays below `tolerance`
-  // of its amplitude.
+  // The narrowest kernel on a grid of twice the samples whose rms error over the samples of any tone stays below
+  // `tolerance` of its amplitude.
   static int width_for(double tolerance);
 
   explicit NufftKernel(int kernel_width);

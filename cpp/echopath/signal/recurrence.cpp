@@ -1,5 +1,6 @@
-// Sample n = kBlock a + b of a tone is (c w^{kBlock a}) w^b: the first factor runs by multiplication from block to block, the
-// second is a table of kBlock powers. Adding kTones tones per pass is then a small matrix product that stays in registers.
+// Sample n = kBlock a + b of a tone is (c w^{kBlock a}) w^b: the first factor runs by multiplication from block to
+// block, the second is a table of kBlock powers. Adding kTones tones per pass is then a small matrix product that
+// stays in registers.
 #include <algorithm>
 
 #include "echopath/signal/method.h"

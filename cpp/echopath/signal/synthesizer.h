@@ -21,15 +21,17 @@ struct SynthesisOptions {
   Method method = Method::kAuto;  // kAuto: recurrence for few echoes, else NUFFT; kDirect is the reference
 };
 
-// Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at the
-// sampling rate, or half of it for real samples).
-// Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once from the
-// number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same bits for any
-// number of threads. Echoes that do not move are added once, so a static scene gives bit-identical chirps.
+// Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at
+// the sampling rate, or half of it for real samples).
+// Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once
+// from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
+// bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
+// chirps.
 // Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for channels with moving echoes.
 class Synthesizer {
  public:
-  // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or tolerance.
+  // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
+  // tolerance.
   Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
               const SynthesisOptions& options = {});
   ~Synthesizer();
@@ -37,9 +39,9 @@ class Synthesizer {
 
   Method method() const { return method_; }  // the one chosen, never kAuto
 
-  // Adds a block to a channel; parallel over chirps. Raises invalid_argument on wrong shapes, groups out of range, or values
-  // that are not finite; nothing is added then. The job's progress advances by the number of echoes; when it is cancelled,
-  // Cancelled is raised and the cubes are void.
+  // Adds a block to a channel; parallel over chirps. Raises invalid_argument on wrong shapes, groups out of range, or
+  // values that are not finite; nothing is added then. The job's progress advances by the number of echoes; when it
+  // is cancelled, Cancelled is raised and the cubes are void.
   void add(int channel, const Echoes& block, Job* job = nullptr);
 
   // Samples [channel, chirp, sample] of one group so far, in sqrt(W).

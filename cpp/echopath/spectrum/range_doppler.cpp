@@ -33,8 +33,8 @@ void transform(const Fft& fft, const Taper& taper, const std::complex<double>* i
 }
 
 // [rows, samples] -> [rows, range]
-std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
-                                                  int fft_size, int64_t num_ranges, Job* job) {
+std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows,
+                                                  const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
   const int64_t num_samples = static_cast<int64_t>(taper.weight.size());
   std::vector<std::complex<double>> profiles(num_rows * num_ranges);
@@ -93,8 +93,8 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   const ChirpSequence& waveform = radar.waveform;
   const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
   const int64_t num_rows = num_maps * waveform.num_chirps;
-  require(size == num_rows * waveform.num_samples, "cube", "must have transmitters x receivers x chirps x samples values",
-          size);
+  require(size == num_rows * waveform.num_samples, "cube",
+          "must have transmitters x receivers x chirps x samples values", size);
 
   RangeDoppler map;
   map.num_transmitters = static_cast<int>(radar.transmitters.size());

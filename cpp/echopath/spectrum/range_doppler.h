@@ -14,21 +14,22 @@ struct RangeDoppler {
   int num_transmitters = 0, num_receivers = 0;
   std::vector<double> velocity;              // [V] m/s, ascending, receding positive
   std::vector<double> range;                 // [R] m, ascending from 0
-  std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |value|^2 of a peak on a bin is received power in W
+  std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |peak|^2 is received power
 };
 
-// Range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for real samples.
+// Range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for real
+// samples.
 std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins);
-// Velocity of each bin for `num_bins` chirps after padding, v = f_D lambda / 2 at the centre frequency; num_slots transmitters
-// share the time. Bin num_bins / 2 is at rest.
+// Velocity of each bin for `num_bins` chirps after padding, v = f_D lambda / 2 at the centre frequency; num_slots
+// transmitters share the time. Bin num_bins / 2 is at rest.
 std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, int num_bins);
 
-// Windowed Fourier transform of the cube [tx, rx, chirp, sample] over samples and chirps, both padded to zero_pad times their
-// number, divided by the window sums (real samples: times sqrt 2, positive beat frequencies only).
+// Windowed Fourier transform of the cube [tx, rx, chirp, sample] over samples and chirps, both padded to zero_pad
+// times their number, divided by the window sums (real samples: times sqrt 2, positive beat frequencies only).
 // The Doppler phase between TDM slots is left in. Parallel over rows; independent of threads.
 // Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window = {},
-                           int zero_pad = 1, Job* job = nullptr);
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar,
+                           const Window& window = {}, int zero_pad = 1, Job* job = nullptr);
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 

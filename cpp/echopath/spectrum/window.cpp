@@ -29,7 +29,8 @@ double chebyshev_polynomial(int order, double x) {
   return x < 0.0 && order % 2 != 0 ? -magnitude : magnitude;
 }
 
-// Dolph 1946: the spectrum at bin k is T_{n-1}(x0 cos(pi k / n)); the samples are its inverse transform about the centre.
+// Dolph 1946: the spectrum at bin k is T_{n-1}(x0 cos(pi k / n)); the samples are its inverse transform about the
+// centre.
 std::vector<double> chebyshev_window(int n, double sidelobe_db) {
   const double x0 = std::cosh(std::acosh(std::pow(10.0, sidelobe_db / 20.0)) / (n - 1));
   std::vector<double> spectrum((n - 1) / 2 + 1), samples(n), cosine(2 * n);
@@ -80,7 +81,9 @@ std::vector<double> window_samples(const Window& window, int n) {
   return chebyshev_window(n, window.sidelobe_db);
 }
 
-double coherent_gain(const std::vector<double>& samples) { return sum_of(samples) / static_cast<double>(samples.size()); }
+double coherent_gain(const std::vector<double>& samples) {
+  return sum_of(samples) / static_cast<double>(samples.size());
+}
 
 double equivalent_noise_bandwidth(const std::vector<double>& samples) {
   const double power = std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);

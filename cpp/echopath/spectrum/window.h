@@ -16,8 +16,9 @@ struct Window {
   static Window named(const std::string& name, double sidelobe_db = 80.0);
 };
 
-// Samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin grid sees exact gains
-// such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal sidelobes require.
+// Samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin grid
+// sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal
+// sidelobes require.
 // Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 

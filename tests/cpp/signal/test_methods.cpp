@@ -14,7 +14,8 @@ constexpr double kDoublePhaseError = 3e-11;
 constexpr double kToneRounding = 5e-13;
 // 300 turns of beat phase, each of a handful of terms rounded once.
 constexpr double kPhaseRounding = 2e-12;
-// The largest error of one sample of a tone over its rms error: at the edge of the band the kernel's spectrum is smallest.
+// The largest error of one sample of a tone over its rms error: at the edge of the band the kernel's spectrum is
+// smallest.
 constexpr double kPeakOverRms = 8.0;
 
 std::vector<double> frequencies() {
@@ -72,7 +73,8 @@ TEST(Methods, DirectAndRecurrenceToneIsExactToRounding) {
 
 TEST(Methods, LongRecurrenceDoesNotDrift) {
   constexpr int kSamples = 65536;
-  constexpr double kLastPhaseRounding = 2.0 * M_PI * kSamples * 0x1.0p-53;  // of a frequency rounded once, at the last sample
+  // Phase of the last sample when the frequency is rounded once.
+  constexpr double kLastPhaseRounding = 2.0 * M_PI * kSamples * 0x1.0p-53;
   EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kLastPhaseRounding);
 }
 

@@ -1,4 +1,5 @@
-// Points whose signal is known in closed form, as published for the reference radar (77 GHz, 1 GHz, 512 samples at 20 MHz).
+// Points whose signal is known in closed form, as published for the reference radar (77 GHz, 1 GHz, 512 samples at 20
+// MHz).
 #include <gtest/gtest.h>
 
 #include "cpp/signal/slow_sum.h"
@@ -36,7 +37,8 @@ double peak_bin(const std::vector<Complex>& samples, double guess) {
   const double ratio = 0.6180339887498949;
   while (high - low > 1e-7) {
     const double a = high - ratio * (high - low), b = low + ratio * (high - low);
-    (spectrum_at(samples, a) > spectrum_at(samples, b) ? high : low) = spectrum_at(samples, a) > spectrum_at(samples, b) ? b : a;
+    const bool lower = spectrum_at(samples, a) > spectrum_at(samples, b);
+    (lower ? high : low) = lower ? b : a;
   }
   return 0.5 * (low + high);
 }

@@ -13,7 +13,8 @@ using testing::Complex;
 
 constexpr Method kMethods[] = {Method::kDirect, Method::kRecurrence, Method::kNufft};
 constexpr double kAdditivity = 1e-12;  // relative to the sum of |a|: order of additions only
-// Differences of equal delays of 5e-7 s over 60 us leave a rate of 2e-18, which turns the carrier by 1e-11 rad in a chirp.
+// Differences of equal delays of 5e-7 s over 60 us leave a rate of 2e-18, which turns the carrier by 1e-11 rad in a
+// chirp.
 constexpr double kRateRounding = 2e-11;
 
 ChirpSequence short_frame(int num_chirps = 13) {
@@ -101,7 +102,8 @@ TEST(Synthesizer, NodesWithWeightsAreInterpolatedPerChirp) {
   const double delay0 = 2e-7, rate = 2e-7;
   Echoes nodes;
   nodes.num_echoes = 1;
-  nodes.sampling = {.num_nodes = 2, .order = 2, .first_node = std::vector<int>(w.num_chirps, 0), .value = {}, .slope = {}};
+  nodes.sampling.num_nodes = nodes.sampling.order = 2;
+  nodes.sampling.first_node.assign(w.num_chirps, 0);
   for (const double t : times) {  // linear Lagrange weights for nodes at 0 and `half`
     nodes.sampling.value.insert(nodes.sampling.value.end(), {1.0 - t / half, t / half});
     nodes.sampling.slope.insert(nodes.sampling.slope.end(), {-1.0 / half, 1.0 / half});

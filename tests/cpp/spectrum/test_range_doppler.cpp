@@ -14,8 +14,8 @@ constexpr double kRounding = 1e-13;  // relative to a tone of unit power
 
 Radar small_radar(int num_tx = 1, int num_rx = 1) {
   Radar radar;
-  radar.waveform = {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = 32, .sampling_rate = 20e6, .num_chirps = 16,
-                    .chirp_interval = 30e-6, .real = false};
+  radar.waveform = {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = 32, .sampling_rate = 20e6,
+                    .num_chirps = 16, .chirp_interval = 30e-6, .real = false};
   radar.transmitters.resize(num_tx);
   radar.receivers.resize(num_rx);
   return radar;
@@ -66,7 +66,8 @@ TEST(RangeDoppler, EqualsTheSlowTransform) {
 TEST(RangeDoppler, PeakIsReceivedPowerInEveryChannelAndWindow) {
   const Radar radar = small_radar(2, 3);
   const auto cube = tones(radar, 4.0, 3.0);
-  for (const auto& window : {Window{WindowKind::kRect}, Window{WindowKind::kHann}, Window{WindowKind::kChebyshev, 60.0}}) {
+  const Window windows[] = {{WindowKind::kRect}, {WindowKind::kHann}, {WindowKind::kChebyshev, 60.0}};
+  for (const Window& window : windows) {
     const RangeDoppler map = range_doppler(cube, radar, window);
     for (int c = 0; c < 6; ++c) {
       const Complex peak = map.values[(c * 16 + 8 + 3) * 32 + 4 + c];

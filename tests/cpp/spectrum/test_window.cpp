@@ -66,7 +66,9 @@ TEST(Window, CosineWindowsArePeriodicAndChebyshevIsSymmetric) {
 TEST(Window, ShortWindowsHaveAPositiveSum) {
   for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
                           WindowKind::kChebyshev}) {
-    for (const int n : {1, 2, 3}) EXPECT_GT(coherent_gain(window_samples({kind}, n)), 0.0) << static_cast<int>(kind) << n;
+    for (const int n : {1, 2, 3}) {
+      EXPECT_GT(coherent_gain(window_samples({kind}, n)), 0.0) << static_cast<int>(kind) << " " << n;
+    }
   }
 }
 

@@ -54,6 +54,11 @@ bool Replayer::is_static(int64_t path) const {
   return std::none_of(hits, hits + count, [&](const Hit& hit) { return mesh_moves_[hit.mesh_id] != 0; });
 }
 
+size_t Replayer::num_slots() const { return radar_.transmitters.size() * static_cast<size_t>(radar_.waveform.num_chirps); }
+
+// Differences between chirps need three of them; shorter frames stay with the polynomial.
+int Replayer::last_level() const { return num_slots() >= 3 ? kExactLevel : kExactLevel - 1; }
+
 const Replayer::Level& Replayer::level(int index) const {
   const std::lock_guard lock(levels_mutex_);
   std::unique_ptr<const Level>& slot = levels_[static_cast<size_t>(index)];
@@ -191,8 +196,13 @@ std::vector<Echoes> Replayer::echoes(std::span<const int64_t> indices, bool movi
   const Block block = localise(indices);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  int index = moving ? (settings_.exact ? kExactLevel : 1) : kStaticLevel;
-  while (!evaluate_level(block, level(index), index != kStaticLevel && index != kExactLevel, lengths, amplitudes)) ++index;
+  int index = moving ? (settings_.exact ? last_level() : 1) : kStaticLevel;
+  // More nodes than chirps would be work for nothing.
+  const auto is_costly = [&](int at) { return at < last_level() && at > 0 && level(at).nodes.times.size() >= num_slots(); };
+  while (is_costly(index) ||
+         !evaluate_level(block, level(index), index != kStaticLevel && index != last_level(), lengths, amplitudes)) {
+    ++index;
+  }
 
   const FrameNodes& nodes = level(index).nodes;
   const size_t num_paths = indices.size(), num_nodes = nodes.times.size();

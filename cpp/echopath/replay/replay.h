@@ -40,6 +40,8 @@ class Replayer {
  private:
   struct Block;
   struct Level;
+  size_t num_slots() const;
+  int last_level() const;
   const Level& level(int index) const;
   Block localise(std::span<const int64_t> paths) const;
   void add_footprint(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;

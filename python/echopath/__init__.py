@@ -1,39 +1,39 @@
 """Echopath: FMCW radar simulation by shooting and bouncing rays that remember what they touched.
 
     scene = ep.Scene()
-    paths = ep.trace(scene, radar, num_rays=1_000_000)      # once
-    cube = ep.synthesize(paths, radar)                      # [tx, rx, chirp, sample]
-    parts = ep.decompose(paths, radar, {"wall": "T .* 'wall' .* R"})
+    scene.add(ep.load_mesh("wall.obj"), name="wall", material="concrete")
+    paths = ep.trace(scene, radar, num_rays=1_000_000)                     # once
+    cube = ep.synthesize(paths, radar)                                     # [tx, rx, chirp, sample]
+    parts = ep.decompose(paths, radar, {"ghosts": "T .* 'wall' .* R"})     # and "other"
 """
-from importlib.util import find_spec
-
 from . import _core
-from ._core import (DeviceError, FileError, KeyframeMotion, LinearMotion, Material, Mesh, Motion, VertexSequence, __version__,
-                    boltzmann, load_mesh, load_meshes, num_threads, set_num_threads, speed_of_light)
+from ._core import (
+    Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, Isotropic, KeyframeMotion, LinearMotion,
+    Material, Mesh, Motion, Paths, Radar, RangeDoppler, Selection, Stratum, TraceFrame, TraceStatistics, VertexSequence,
+    __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes, num_bounces, num_threads, range_doppler,
+    set_num_threads, speed_of_light, synthesize, trace,
+)
 from .materials import materials
 from .scene import Scene
-
-# TEMPORARY: what is not there yet is left out.
-for _name in ("Antenna", "ChirpSequence", "CosinePower", "Isotropic", "Paths", "Radar", "RangeDoppler", "Selection", "Stratum",
-              "TraceFrame", "TraceStatistics", "add_noise", "decompose", "hits", "num_bounces", "range_doppler", "synthesize",
-              "trace"):
-    if hasattr(_core, _name):
-        globals()[_name] = getattr(_core, _name)
-
-if find_spec("echopath.actors"):
-    from . import actors
-if find_spec("echopath.actors.actor"):
-    from .actors.actor import Actor, Part
-if find_spec("echopath.simulate"):
-    from .simulate import Frame, simulate
-if find_spec("echopath.frame_file") and find_spec("h5py"):
-    from .frame_file import load_frame, save_frame
-if find_spec("echopath.scene_file") and find_spec("pydantic"):
-    from .scene_file import SceneFile, load_scene
+from . import actors
+from .actors import Actor, Part
+from .simulate import Frame, simulate
+from .frame_file import load_frame, save_frame
+from .scene_file import SceneFile, load_scene
 
 
 def view(*arguments, **keywords):
-    """Opens the viewer: view(scene, paths, parts). Needs the packages of `pip install echopath[viewer]`."""
+    """Opens the viewer: view(scene, paths, parts). It comes with `pip install echopath[viewer]`."""
     from echopath_viewer import view as open_viewer
 
     return open_viewer(*arguments, **keywords)
+
+
+__all__ = [
+    "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "FileError", "Frame", "Isotropic",
+    "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar", "RangeDoppler", "Scene",
+    "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics", "VertexSequence", "actors", "add_noise",
+    "boltzmann", "decompose", "hits", "load_frame", "load_mesh", "load_meshes", "load_scene", "materials", "num_bounces",
+    "num_threads", "range_doppler", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace",
+    "view",
+]

@@ -24,7 +24,7 @@ class Scene(_core.Scene):
         """Adds an object and returns its full name, "street/pedestrian".
 
         mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part (a '/' in
-            a part's name makes nodes in between); or None for an empty node to hang others on
+            a part's name makes a group, a node at rest, in between); or None for an empty node to hang others on
         name: without '/', '*', '?' and quotes, unique among its siblings
         material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given here
             replaces them)
@@ -70,18 +70,16 @@ class _Batch:
         if motion is None:
             motion = getattr(content, "motion", None)
         self._add(name, self._parent, placement, motion, None, None)
-        known = {"": self._first}
+        groups = {(): self._first}
         for part_name, mesh, part_material, part_motion, part_placement in parts:
-            known[part_name] = self._add_part(known, part_name, part_placement, part_motion, mesh, part_material)
+            *path, own_name = str(part_name).split("/")
+            self._add(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material)
 
-    def _add_part(self, known: dict, name: str, placement, motion, mesh, material) -> int:
-        *groups, own_name = name.split("/")
-        path = ""
-        for group in groups:
-            outer, path = path, f"{path}/{group}".lstrip("/")
-            if path not in known:
-                known[path] = self._add(group, known[outer], None, None, None, None)
-        return self._add(own_name, known[path], placement, motion, mesh, material)
+    def _group(self, groups: dict, path: tuple) -> int:
+        """The node of a group, added with those above it where it is not there yet."""
+        if path not in groups:
+            groups[path] = self._add(path[-1], self._group(groups, path[:-1]), None, None, None, None)
+        return groups[path]
 
     def _add(self, name, parent: int, placement, motion, mesh, material) -> int:
         if not isinstance(name, str):

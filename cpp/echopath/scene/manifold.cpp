@@ -90,36 +90,13 @@ void split_fans(std::vector<Triangle>& triangles, UnionFind& corners, std::vecto
   }
 }
 
-// A fan that runs around a vertex (a Moebius strip does) can still bring two sides of the same direction together: such a
-// triangle gets three vertices of its own. Returns whether there was one.
-bool isolate_repeated_sides(std::vector<Triangle>& triangles, std::vector<uint32_t>& original_vertex) {
-  std::vector<uint32_t> repeated;
-  for_each_edge(sorted_sides(triangles), [&](auto first, auto last) {
-    bool seen[2] = {false, false};
-    for (auto side = first; side != last; ++side) {
-      if (seen[side->ascending]) repeated.push_back(side->id / 3);
-      seen[side->ascending] = true;
-    }
-  });
-  std::sort(repeated.begin(), repeated.end());
-  repeated.erase(std::unique(repeated.begin(), repeated.end()), repeated.end());
-  for (const uint32_t t : repeated) {
-    for (uint32_t& vertex : triangles[t]) {
-      const uint32_t origin = original_vertex[vertex];
-      vertex = static_cast<uint32_t>(original_vertex.size());
-      original_vertex.push_back(origin);
-    }
-  }
-  return !repeated.empty();
-}
-
 }  // namespace
 
+// No further pass is needed: a fan is open at two sides at most, one running towards its vertex and one away from it, and all
+// its other sides are glued in pairs, so no two faces run through an edge of the new numbers in the same direction.
 void cut_to_manifold(std::vector<Triangle>& triangles, std::vector<uint32_t>& original_vertex) {
-  do {
-    UnionFind corners = fans(triangles, sorted_sides(triangles));
-    split_fans(triangles, corners, original_vertex);
-  } while (isolate_repeated_sides(triangles, original_vertex));
+  UnionFind corners = fans(triangles, sorted_sides(triangles));
+  split_fans(triangles, corners, original_vertex);
 }
 
 }  // namespace echopath

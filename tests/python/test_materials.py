@@ -1,0 +1,122 @@
+"""Materials and the library of them."""
+import math
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+
+def debye_skin(frequency):
+    """Dry skin after Gabriel, Lau, Gabriel 1996 (the terms that matter above 1 GHz)."""
+    omega, eps0 = 2 * math.pi * frequency, 8.8541878128e-12
+    fast = 32.0 / (1 + 1j * omega * 7.234e-12)
+    slow = 1100.0 / (1 + (1j * omega * 32.481e-9) ** 0.8)
+    return 4.0 + fast + slow + 0.0002 / (1j * omega * eps0)
+
+
+def itu_p2040(a, c, d):
+    """Relative permittivity at 77 GHz from the coefficients of Recommendation ITU-R P.2040, table 3 (b = 0)."""
+    return a - 1j * 17.98 * c * 77.0**d / 77.0
+
+
+def test_library_has_the_promised_names():
+    assert set(ep.materials) >= {"metal", "concrete", "asphalt", "glass", "skin", "clothing", "wood", "plastic"}
+    assert len(ep.materials) == len(list(ep.materials))
+    assert "metal" in ep.materials and "metl" not in ep.materials
+
+
+TOLERANCE = 0.1  # the library rounds; published values scatter more
+
+
+@pytest.mark.parametrize("name, permittivity", [
+    ("skin", debye_skin(77e9)),
+    ("wood", itu_p2040(1.99, 0.0047, 1.0718)),
+    ("concrete", itu_p2040(5.24, 0.0462, 0.7822)),
+    ("glass", (2.51 - 0.085j) ** 2),
+    ("plastic", 1.48**2),
+])
+def test_library_agrees_with_published_models(name, permittivity):
+    assert abs(ep.materials[name].permittivity - permittivity) < TOLERANCE * abs(permittivity)
+
+
+def test_clothing_reflects_like_skin_behind_a_decibel():
+    index = np.sqrt(debye_skin(77e9))
+    skin = abs((1 - index) / (1 + index)) ** 2
+    assert ep.materials["clothing"].reflectivity == pytest.approx(skin * 10**-0.1, abs=0.005)
+
+
+def test_bodies_are_rough_and_everything_has_a_source():
+    for name in ("skin", "clothing"):
+        assert ep.materials[name].scattering == 1.0
+    for name in ep.materials:
+        assert len(ep.materials.source(name)) > 20
+
+
+def test_library_is_read_only_and_keeps_its_objects():
+    assert ep.materials["metal"] is ep.materials["metal"]
+    assert ep.materials["metal"] == ep.Material.metal()
+    with pytest.raises(TypeError):
+        ep.materials["metal"] = ep.Material.metal()
+
+
+def test_unknown_names_bring_the_nearest():
+    with pytest.raises(KeyError, match="concrete"):
+        ep.materials["concret"]
+    with pytest.raises(KeyError):
+        ep.materials[3]
+
+
+def test_fields_are_what_was_given():
+    material = ep.Material(permittivity=4 - 0.2j, conductivity=0.1, roughness_height=1e-3, mirror=True)
+    assert material.permittivity == 4 - 0.2j
+    assert material.conductivity == 0.1
+    assert material.roughness_height == 1e-3
+    assert material.mirror and not material.conductor
+    assert material.reflectivity is None and material.scattering is None
+    with pytest.raises(AttributeError):
+        material.mirror = False
+
+
+def test_replace_changes_a_copy():
+    metal = ep.Material.metal()
+    mirror = metal.replace(mirror=True)
+    assert mirror.mirror and mirror.conductor and not metal.mirror
+    assert mirror == ep.Material.metal(mirror=True)
+    assert mirror != metal
+    assert ep.materials["skin"].replace(scattering=0.5).scattering == 0.5
+
+
+def test_equal_materials_are_one_key():
+    assert len({ep.Material(permittivity=4), ep.Material(permittivity=4 + 0j), ep.Material(permittivity=5)}) == 2
+    assert ep.Material(permittivity=4) != "metal"
+
+
+@pytest.mark.parametrize("arguments, word", [
+    ({}, "exactly one"),
+    ({"conductor": True, "permittivity": 4}, "exactly one"),
+    ({"permittivity": 4 + 1j}, "permittivity"),
+    ({"reflectivity": 1.5}, "reflectivity"),
+    ({"permittivity": 4, "scattering": 2.0}, "scattering"),
+    ({"permittivity": 4, "roughness_height": -1.0}, "roughness_height"),
+    ({"permittivity": 4, "roughness_height": 1e-3, "scattering": 0.4}, "scattering"),
+])
+def test_bad_values_are_refused_by_name(arguments, word):
+    with pytest.raises(ValueError, match=word):
+        ep.Material(**arguments)
+
+
+@pytest.mark.parametrize("arguments, word", [
+    ({"permitivity": 4}, "'permittivity'"),
+    ({"permittivity": "four"}, "permittivity"),
+    ({"conductor": 1}, "conductor"),
+])
+def test_bad_kinds_are_refused_by_name(arguments, word):
+    with pytest.raises(TypeError, match=word):
+        ep.Material(**arguments)
+
+
+def test_reprs_are_short():
+    assert repr(ep.Material.metal(mirror=True)) == "Material(conductor=True, mirror=True)"
+    assert repr(ep.Material(permittivity=5 - 0.3j, scattering=0.4)) == "Material(permittivity=(5-0.3j), scattering=0.4)"
+    assert repr(ep.materials).startswith("materials(asphalt, ")

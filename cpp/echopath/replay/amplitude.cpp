@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/em/footprint.h"
 
 namespace echopath {
 namespace {
@@ -58,12 +59,10 @@ InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
 }
 
 double footprint_filter(const LocalPath& path, const PosedHit& hit, const Vec3& mismatch, double wavenumber) {
-  double sum = 0.0;
-  for (const Eigen::Vector2d& tangent : path.footprint) {
-    const double gradient = wavenumber * mismatch.dot(tangent[0] * hit.edge_u + tangent[1] * hit.edge_v);
-    sum += gradient * gradient;
-  }
-  return std::exp(-sum / 24.0);
+  const auto gradient = [&](const Eigen::Vector2d& tangent) {
+    return wavenumber * mismatch.dot(tangent[0] * hit.edge_u + tangent[1] * hit.edge_v);
+  };
+  return first_order_footprint({gradient(path.footprint[0]), gradient(path.footprint[1])});
 }
 
 double coherent_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,

@@ -1,0 +1,35 @@
+#include "echopath/em/footprint.h"
+
+#include <cmath>
+
+namespace echopath {
+
+double first_order_footprint(const FootprintPhase& phase) {
+  return std::exp(-(phase.g1 * phase.g1 + phase.g2 * phase.g2) / 24.0);
+}
+
+std::complex<double> second_order_footprint(const FootprintPhase& phase, double spread) {
+  const double variance = spread * spread;
+  const double a11 = variance * phase.h11, a12 = variance * phase.h12, a22 = variance * phase.h22;
+  const double det = a11 * a22 - a12 * a12, trace = a11 + a22;
+  // D_F = det(I + jA) = (1 - det) + j trace. Its root without cancellation: m + 1 - det >= 2 always, as m >= |1 - det|
+  // and for det > 1 the matrix is definite, so trace^2 >= 4 det.
+  const double m = std::hypot(1.0 - det, trace);
+  const double root_real = std::sqrt(0.5 * (m + 1.0 - det));
+  const double root_imag = trace / (2.0 * root_real);
+  const std::complex<double> inverse_root = std::complex<double>(root_real, -root_imag) / m;
+  const double g_squared = phase.g1 * phase.g1 + phase.g2 * phase.g2;
+  const double form = a11 * phase.g1 * phase.g1 + 2.0 * a12 * phase.g1 * phase.g2 + a22 * phase.g2 * phase.g2;
+  const std::complex<double> numerator(g_squared, trace * g_squared - form);
+  return inverse_root * std::exp(-0.5 * variance * numerator / std::complex<double>(1.0 - det, trace));
+}
+
+double flat_top_footprint(const FootprintPhase& phase) {
+  const auto axis = [](double g) {
+    const double loss = -std::expm1(-g * g / 8.0);
+    return 1.0 - loss * loss * loss;
+  };
+  return axis(phase.g1) * axis(phase.g2);
+}
+
+}  // namespace echopath

@@ -1,0 +1,25 @@
+#pragma once
+// The footprint of one ray on a surface: what the phase does across the launch cell that the ray stands for.
+#include <complex>
+
+namespace echopath {
+
+// Phase of the path across the footprint, g.x + x.h.x / 2, with x in units of launch cells along the two footprint axes.
+struct FootprintPhase {
+  double g1 = 0.0, g2 = 0.0;              // rad per cell
+  double h11 = 0.0, h12 = 0.0, h22 = 0.0;  // rad per cell^2
+};
+
+// First order: F = exp(-(g1^2 + g2^2) / 24), the Gaussian fit of a square cell's shape factor sinc(g1/2) sinc(g2/2)
+// (ray-tube integration of Ling, Chou, Lee 1989). In (0, 1].
+double first_order_footprint(const FootprintPhase& phase);
+
+// Second order: the exact mean of e^{-j(g.x + x.h.x/2)} over a Gaussian of covariance spread^2 (cells^2). |F| <= 1, F -> 1
+// for small cells. spread: 0.6 for spherical Fibonacci points.
+std::complex<double> second_order_footprint(const FootprintPhase& phase, double spread);
+
+// Flat surface on a flat chain: product over both axes of 1 - (1 - exp(-g^2/8))^3, flatter near g = 0 than the Gaussian, so
+// that plates lose nothing in their main lobe. In [0, 1].
+double flat_top_footprint(const FootprintPhase& phase);
+
+}  // namespace echopath

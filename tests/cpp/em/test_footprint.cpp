@@ -1,0 +1,70 @@
+// Footprint filters against numerical integrals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/footprint.h"
+
+namespace echopath {
+namespace {
+
+// Trapezoidal sum over +-9 standard deviations: exact to rounding for a Gaussian times a resolved phase.
+std::complex<double> gaussian_mean(const FootprintPhase& phase, double spread) {
+  constexpr int kSteps = 400;
+  const double reach = 9.0 * spread, step = 2.0 * reach / kSteps;
+  std::complex<double> sum = 0.0;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const double x = -reach + i * step, y = -reach + j * step;
+      const double angle = phase.g1 * x + phase.g2 * y + 0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y);
+      sum += std::exp(-0.5 * (x * x + y * y) / (spread * spread)) * std::polar(1.0, -angle);
+    }
+  }
+  return sum * step * step / (kTwoPi * spread * spread);
+}
+
+TEST(Footprint, SecondOrderIsTheGaussianIntegral) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> slope(-4.0, 4.0), curvature(-6.0, 6.0);
+  for (int i = 0; i < 40; ++i) {
+    const FootprintPhase phase{slope(random), slope(random), curvature(random), curvature(random), curvature(random)};
+    EXPECT_LT(std::abs(second_order_footprint(phase, 0.6) - gaussian_mean(phase, 0.6)), 1e-12);
+  }
+}
+
+TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
+  for (const double sign : {-1.0, 1.0}) {
+    std::complex<double> before = 1.0;
+    for (double h = 0.0; h < 2000.0; h = h * 1.02 + 1e-3) {
+      const std::complex<double> now = second_order_footprint({0.3, -0.2, sign * h, 0.1 * h, sign * 0.7 * h}, 0.6);
+      EXPECT_LE(std::abs(now), 1.0 + 1e-15);
+      EXPECT_LT(std::abs(now - before), 0.05);
+      before = now;
+    }
+  }
+}
+
+TEST(Footprint, AllTendToOneForSmallCells) {
+  const FootprintPhase small{1e-5, -2e-5, 1e-5, 3e-6, -1e-5};
+  EXPECT_NEAR(first_order_footprint(small), 1.0, 1e-9);
+  EXPECT_NEAR(flat_top_footprint(small), 1.0, 1e-15);
+  EXPECT_LT(std::abs(second_order_footprint(small, 0.6) - 1.0), 1e-5);
+}
+
+// sinc(g/2) = 1 - g^2/24 + ... : the Gaussian is its fit.
+TEST(Footprint, FirstOrderFitsTheShapeFactorOfASquareCell) {
+  for (const double g : {0.1, 0.5, 1.0}) {
+    const double sinc = std::sin(0.5 * g) / (0.5 * g);
+    EXPECT_NEAR(first_order_footprint({g, 0, 0, 0, 0}), sinc, 4e-4 * std::pow(g, 4));
+  }
+}
+
+TEST(Footprint, FlatTopIsFlat) {
+  EXPECT_GT(flat_top_footprint({0.5, 0.5, 0, 0, 0}), 1.0 - 1e-4);
+  EXPECT_LT(flat_top_footprint({12.0, 0, 0, 0, 0}), 1e-6);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -72,7 +72,7 @@ Raises ValueError naming the argument.)");
   m.def("window", [](const std::string& name, int n, double sidelobe_db) {
     return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
   }, py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
-        "Samples [n] of a window. Cosine windows are periodic; \"chebyshev\" is symmetric, sidelobes `sidelobe_db` dB down.");
+        "Samples [n] of a window: cosines periodic; \"chebyshev\" symmetric, sidelobes `sidelobe_db` dB down.");
 }
 
 }  // namespace echopath::bindings

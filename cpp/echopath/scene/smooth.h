@@ -1,0 +1,31 @@
+#pragma once
+// The curved surface that a triangle mesh stands for: vertex normals, and per triangle a normal, a position and a curvature.
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "echopath/scene/mesh.h"
+
+namespace echopath {
+
+// Unit vertex normals [V] by the weights of Max 1999 ("Weights for computing vertex normals from facet normals"), exact for
+// vertices on a sphere at any tessellation. Zero where no triangle meets.
+std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+
+// A triangle may be taken as smooth where each vertex normal lies within 30 degrees of the facet's (crease guard: a box
+// taken as smooth errs by tens of dB).
+bool is_smooth_facet(const Vec3& facet_normal, const std::array<Vec3, 3>& normals);
+
+// The curved surface at a barycentric point. Curvature is positive on the side of `normal` for a convex surface:
+// a step x in the tangent plane turns the normal by `curvature * x` (1/m, symmetric, curvature * normal = 0).
+struct SmoothPoint {
+  Vec3 position;  // m: on the curved surface, not on the facet
+  Vec3 normal;    // unit
+  Mat3 curvature;
+};
+
+// corners and unit normals of a triangle; u, v barycentric. The position is p + (1/2) sum b_i [(p_i - p).n_i] n_i; the
+// curvature is that of the linear field of normals over the triangle, symmetrised.
+SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals, double u, double v);
+
+}  // namespace echopath

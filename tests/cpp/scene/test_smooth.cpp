@@ -1,0 +1,72 @@
+// The curved surface behind a mesh, on surfaces whose normals and curvatures are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "echopath/scene/smooth.h"
+
+namespace echopath {
+namespace {
+
+// A triangle on a surface of revolution or sphere, from a map of two parameters.
+template <class Map>
+std::array<Vec3, 3> triangle(const Map& map, double a, double b, double size) {
+  return {map(a, b), map(a + size, b + 0.2 * size), map(a - 0.1 * size, b + size)};
+}
+
+Vec3 on_sphere(double a, double b) { return {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)}; }
+
+TEST(VertexNormals, AreExactOnASphereOfAnyTessellation) {
+  // An irregular fan of points on a sphere around the pole.
+  std::vector<Vec3> vertices = {{0, 0, 1}};
+  std::vector<Triangle> triangles;
+  const double angles[] = {0.0, 0.9, 2.0, 2.7, 4.4, 5.1}, reach[] = {0.3, 0.5, 0.2, 0.6, 0.4, 0.35};
+  for (int i = 0; i < 6; ++i) {
+    vertices.push_back({std::sin(reach[i]) * std::cos(angles[i]), std::sin(reach[i]) * std::sin(angles[i]), std::cos(reach[i])});
+  }
+  for (uint32_t i = 0; i < 6; ++i) triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
+  EXPECT_LT((vertex_normals(vertices, triangles)[0] - Vec3::UnitZ()).norm(), 1e-14);
+}
+
+TEST(SmoothPoint, PositionOnASphereErrsWithTheFourthPower) {
+  double errors[2];
+  for (int i = 0; i < 2; ++i) {
+    const double size = i == 0 ? 0.2 : 0.1;
+    const auto corners = triangle(on_sphere, 0.3, 0.4, size);
+    errors[i] = std::abs(smooth_point(corners, corners, 0.3, 0.25).position.norm() - 1.0);
+  }
+  EXPECT_LT(errors[0], 1e-4);
+  EXPECT_GT(errors[0] / errors[1], 12.0);
+}
+
+TEST(SmoothPoint, CurvatureIsThatOfTheSphere) {
+  constexpr double kRadius = 2.5;
+  auto normals = triangle(on_sphere, 0.3, 0.4, 0.02);
+  auto corners = normals;
+  for (Vec3& corner : corners) corner *= kRadius;
+  const SmoothPoint point = smooth_point(corners, normals, 0.3, 0.3);
+  const Mat3 expected = (Mat3::Identity() - point.normal * point.normal.transpose()) / kRadius;
+  EXPECT_LT((point.curvature - expected).norm(), 1e-3 / kRadius);
+  EXPECT_LT((point.curvature * point.normal).norm(), 1e-12);
+}
+
+TEST(SmoothPoint, CylinderIsFlatAlongItsAxis) {
+  constexpr double kRadius = 0.5;
+  const auto on_cylinder = [](double a, double b) -> Vec3 { return {kRadius * std::cos(a), kRadius * std::sin(a), b}; };
+  const auto corners = triangle(on_cylinder, 0.7, 0.0, 0.02);
+  std::array<Vec3, 3> normals;
+  for (size_t i = 0; i < 3; ++i) normals[i] = Vec3(corners[i].x(), corners[i].y(), 0).normalized();
+  const SmoothPoint point = smooth_point(corners, normals, 0.2, 0.4);
+  const Vec3 around = Vec3::UnitZ().cross(point.normal);
+  EXPECT_LT(std::abs(Vec3::UnitZ().dot(point.curvature * Vec3::UnitZ())), 1e-12);
+  EXPECT_NEAR(around.dot(point.curvature * around), 1.0 / kRadius, 1e-3);
+}
+
+TEST(SmoothPoint, CreaseGuardRefusesABox) {
+  const Vec3 facet = Vec3::UnitZ(), corner_normal = Vec3::Ones().normalized();
+  EXPECT_TRUE(is_smooth_facet(facet, {facet, facet, Vec3(0.1, 0.2, 1.0).normalized()}));
+  EXPECT_FALSE(is_smooth_facet(facet, {facet, facet, corner_normal}));
+}
+
+}  // namespace
+}  // namespace echopath

@@ -95,7 +95,7 @@ void bind_sim(py::module_& m) {
         R"(The noise-free IF signal of paths.
 
 radar: another waveform, array or motion than that of the trace, or None
-tolerance: largest error of a sample relative to the sum of all |amplitudes|, 1e-13 to 0.1
+tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
 method: "auto", "direct" (the reference), "recurrence" or "nufft"
 replay: "interpolated" (lengths and amplitudes by polynomials in time, to phase_tolerance in rad) or "exact" at each chirp
 progress: callable(stage, fraction) or None

@@ -19,8 +19,8 @@ namespace {
 
 using NamedSelections = std::vector<std::pair<std::string, Selection>>;
 
-// Text becomes a Selection wherever one is asked for. Unlike py::implicitly_convertible, which would turn a fault in the
-// text into "incompatible arguments", this lets the message with the caret through.
+// Text becomes a Selection wherever one is asked for. Unlike py::implicitly_convertible, which would turn a fault in
+// the text into "incompatible arguments", this lets the message with the caret through.
 PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
   if (!PyUnicode_Check(value)) return nullptr;
   PyObject* made = PyObject_CallOneArg(reinterpret_cast<PyObject*>(selection_type), value);
@@ -73,12 +73,13 @@ Selection between(int64_t min, int64_t max) {
 }
 
 void bind_selection(py::module_& m) {
-  py::class_<Selection> selection(m, "Selection", R"(Which paths are meant: a path expression, or several joined by & | ~.
+  py::class_<Selection> selection(m, "Selection", R"(Which paths are meant: path expressions joined by & | ~.
 
-text: a regular expression over the hits of a path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or
-    that of a group above it), S or D (specular, diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators * + ? | ( ) {m,n}.
-Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a
-glob takes no mesh of the scene.)");
+text: a regular expression over the hits of a path between T and R. A hit is . (any), 'glob' (a mesh, by its full name
+    or that of a group above it), S or D (specular, diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are
+    * + ? | ( ) {m,n}.
+Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when
+a glob takes no mesh of the scene.)");
   selection.def(py::init<const std::string&>(), py::arg("text"))
       .def(py::init<const Selection&>(), py::arg("selection"))
       .def_static("path_expression", [](const std::string& text) { return Selection(text); }, py::arg("text"),
@@ -124,8 +125,8 @@ void bind_label(py::module_& m) {
         R"(The part of each path in a partition.
 
 parts: [(name, selection), ...]; the first that takes a path has it
-Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty, "other"
-or given twice.)");
+Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty,
+"other" or given twice.)");
 }
 
 }  // namespace echopath::bindings

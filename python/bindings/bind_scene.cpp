@@ -275,7 +275,8 @@ void bind_nodes(py::module_& m) {
       .def_property_readonly("name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
       .def_property_readonly("mesh", [](const MeshEntry& self) { return shared(self.node.mesh); }, "the Mesh")
       .def_property_readonly(
-          "triangles", [](const MeshEntry& self) { return py::cast(shared(self.node.mesh)).attr("triangles"); },
+          "triangles",
+          [](const MeshEntry& self) -> py::object { return py::cast(shared(self.node.mesh)).attr("triangles"); },
           "[F, 3] indices of vertices")
       .def_property_readonly("material", [](const MeshEntry& self) { return shared(self.node.material); }, "the Material")
       .def_property_readonly("material_name", [](const MeshEntry& self) { return self.node.material_name; },

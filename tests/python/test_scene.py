@@ -167,6 +167,16 @@ def test_material_is_a_name_or_an_object(square):
     assert scene.nodes[2].mesh is square
 
 
+def test_arrays_of_a_scene_outlive_it():
+    scene = ep.Scene()
+    scene.add(ep.Mesh(CORNERS, SQUARE), name="wall", material=ep.Material(permittivity=3))
+    triangles, material = scene.meshes[0].triangles, scene.meshes[0].material
+    del scene
+    gc.collect()
+    assert np.array_equal(triangles, SQUARE)
+    assert material.permittivity == 3
+
+
 def test_breakpoints_of_all_motions_are_joined(square):
     scene = ep.Scene()
     for name, times in (("a", [0, 0.5, 1]), ("b", [0, 0.25, 0.5, 1])):

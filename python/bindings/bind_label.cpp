@@ -68,8 +68,9 @@ Selection between(int64_t min, int64_t max) {
 }
 
 [[noreturn]] void refuse_truth(const char* what) {
-  throw py::type_error(std::string(what) + " has no truth value: combine with & | ~ instead of and, or, not, and write " +
-                       "(2 <= ep.num_bounces) & (ep.num_bounces <= 4) instead of 2 <= ep.num_bounces <= 4");
+  throw py::type_error(std::string(what) +
+                       " has no truth value: combine with & | ~ instead of and, or, not, and write (2 <= "
+                       "ep.num_bounces) & (ep.num_bounces <= 4) instead of 2 <= ep.num_bounces <= 4");
 }
 
 void bind_selection(py::module_& m) {

@@ -1,12 +1,13 @@
 """The street demo: a pedestrian walks between two walls; what every ray touched, by route and by body part."""
 from __future__ import annotations
 
-from importlib.resources import as_file, files
+from importlib.resources import as_file
 from pathlib import Path
 
 import echopath as ep
 
 from . import report
+from .materials import data_folder
 from .run import simulate_file, write_outputs
 from .scene_file import load_scene
 from .simulate import Frame
@@ -23,7 +24,7 @@ def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, progress=None, say
     say: takes each line of the report.
     """
     out = Path(out)
-    with as_file(files("echopath.data") / "scenes" / "street.toml") as path:
+    with as_file(data_folder("scenes") / "street.toml") as path:
         street = load_scene(path)
     frame = simulate_file(street, num_rays=num_rays, seed=seed, extra_parts=limb_partitions(street.parts["route"]),
                           progress=progress)

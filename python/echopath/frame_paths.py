@@ -58,7 +58,7 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
     meshes = list(scene.meshes)
     if len(hits) and hits["mesh_id"].max() >= len(meshes):
         raise ep.FileError(f"{group.name}/hits/mesh_id: must be below {len(meshes)}, the number of meshes")
-    num_triangles = np.array([len(mesh.triangles) for mesh in meshes] or [0])
+    num_triangles = np.array([len(mesh.mesh.triangles) for mesh in meshes] or [0])
     if len(hits) and np.any(hits["triangle_id"] >= num_triangles[hits["mesh_id"]]):
         raise ep.FileError(f"{group.name}/hits/triangle_id: must be below the number of triangles of its mesh")
 
@@ -73,16 +73,16 @@ def _write_frame(group, frame) -> None:
     strata = list(frame.strata)
     write_texts(group, "stratum_name", [stratum.name for stratum in strata])
     write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
-    write_array(group, "stratum_cos_half_angle", np.array([stratum.cos_half_angle for stratum in strata], np.float64))
+    write_array(group, "stratum_versine", np.array([stratum.versine for stratum in strata], np.float64))
     write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
 
 
 def _read_frame(group):
     names = read_texts(group, "stratum_name")
     axis = read_array(group, "stratum_axis", np.float64, (len(names), 3))
-    cos_half_angle = read_array(group, "stratum_cos_half_angle", np.float64, (len(names),))
+    versine = read_array(group, "stratum_versine", np.float64, (len(names),))
     num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
-    strata = [ep.Stratum(axis=axis[i], cos_half_angle=float(cos_half_angle[i]), num_rays=int(num_rays[i]),
+    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
                          name=names[i]) for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(

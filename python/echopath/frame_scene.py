@@ -79,7 +79,7 @@ def _read_shared(group, kind: str, count: int) -> list:
 
 
 def _write_mesh(group, mesh) -> None:
-    """As it was before vertices were duplicated: vertex sequences go by those, and the same repair follows on reading."""
+    """As before vertices were duplicated: vertex sequences go by those, and the same repair follows on reading."""
     vertices = np.zeros((mesh.num_input_vertices, 3))
     vertices[mesh.original_vertex] = mesh.vertices
     write_array(group, "vertices", vertices, unit="m", compress=True)

@@ -45,7 +45,7 @@ def _describe_scene_file(scene_file) -> list[str]:
 def _describe_scene(scene) -> list[str]:
     meshes = list(scene.meshes)
     lines = ["scene", report.line("meshes", str(len(meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
-    lines += [report.line(f"  {mesh.name}", f"{len(mesh.triangles):,} triangles{_material(mesh)}")
+    lines += [report.line(f"  {mesh.name}", f"{len(mesh.mesh.triangles):,} triangles{_material(mesh)}")
               for mesh in meshes[:MAX_LISTED]]
     return lines + ([f"    and {len(meshes) - MAX_LISTED} more"] if len(meshes) > MAX_LISTED else [])
 

@@ -38,11 +38,8 @@ def subset(paths, keep):
 
 
 def part_of_path(paths, selections: dict):
-    """The part of each path in a partition {name: selection}: [P] u16, index of a name, or their number for "other"."""
-    part = np.full(paths.num_paths, len(selections), np.uint16)
-    for index, selection in reversed(list(enumerate(selections.values()))):
-        part[np.asarray(ep.Selection(selection).matches(paths), dtype=bool)] = index
-    return part
+    """The part of each path in a partition {name: selection}: u16 [P], index of a name, or their number for "other"."""
+    return ep._core.partition_groups(paths, list(selections.items()))[1].astype(np.uint16)
 
 
 def power_of_strongest(power, max_paths: int) -> float:
@@ -56,16 +53,14 @@ def power_of_strongest(power, max_paths: int) -> float:
     return float(threshold)
 
 
-def strongest_by_bounces(paths, count: int):
-    """Indices of at most `count` paths: the strongest of each number of bounces, in equal shares, strongest first."""
+def strongest(paths, count: int, among=None):
+    """Indices of the `count` strongest paths, of those where `among` [P] is true, strongest first; never those of no power."""
     power = path_power(paths)
-    bounces = paths.num_bounces
-    present = np.unique(bounces)
-    share = count // max(1, len(present))
-    chosen = [_strongest(np.flatnonzero((bounces == number) & (power > 0)), power, share) for number in present]
-    indices = np.concatenate([np.zeros(0, np.int64), *chosen])
-    return indices[np.argsort(-power[indices], kind="stable")]
+    candidates = np.flatnonzero(power > 0.0 if among is None else among & (power > 0.0))
+    return candidates[np.argsort(-power[candidates], kind="stable")[:count]]
 
 
-def _strongest(indices, power, count: int):
-    return indices[np.argsort(-power[indices], kind="stable")[:count]]
+def paths_with(hit_is_meant, offsets, num_bounces):
+    """Which paths have a hit that is meant: bool [P] from bool [H]."""
+    before = np.concatenate([[0], np.cumsum(hit_is_meant)])
+    return before[offsets + num_bounces] > before[offsets]

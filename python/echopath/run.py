@@ -11,7 +11,7 @@ from .scene_file import SceneFile
 from .simulate import Frame, simulate
 from .stages import StageClock
 
-RECORD_BYTES = 300e6  # of paths and hits in a frame file, at most
+RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
 PATH_BYTES, HIT_BYTES = 31, 16
 
 

@@ -84,7 +84,7 @@ def _blame(key: str):
     """Prefixes what the core refuses with the dotted path of the key it came from."""
     try:
         yield
-    except (ValueError, KeyError) as error:
+    except (ValueError, TypeError, KeyError) as error:
         text = str(error.args[0]) if error.args else str(error)
         raise ValueError(f"{key}: {text}") from None
 
@@ -100,7 +100,8 @@ def _build_radar(table: RadarTable):
                 antennas[side].append(_antenna(antenna, table))
     with _blame("radar"):
         return ep.Radar(waveform, **antennas, transmit_power=table.transmit_power,
-                        noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing, motion=_motion(table.motion, "radar.motion"))
+                        noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
+                        motion=_motion(table.motion, "radar.motion"))
 
 
 def _antenna(antenna, radar: RadarTable):
@@ -140,19 +141,13 @@ def _material(value, key: str):
         return None
     with _blame(key):
         if isinstance(value, str):
-            return _known_material(value)
+            return ep.materials[value]
         given = value.model_dump(exclude_unset=True)
         base = given.pop("base", None)
         if isinstance(given.get("permittivity"), list):
             real, loss = given["permittivity"]
             given["permittivity"] = complex(real, -loss)
-        return _known_material(base).replace(**given) if base is not None else ep.Material(**given)
-
-
-def _known_material(name: str):
-    if name not in ep.materials:
-        raise ValueError(f"unknown material '{name}'; {nearest_key(name, ep.materials).replace('keys', 'materials')}")
-    return ep.materials[name]
+        return ep.materials[base].replace(**given) if base is not None else ep.Material(**given)
 
 
 def _build_scene(settings: SceneTable, folder: Path):
@@ -203,17 +198,7 @@ def _actor_factory(name: str, key: str):
 
 
 def _parameter_table(name: str, factory) -> type[Table]:
-    """The keywords of an actor as a table: its signature is their only home."""
-    hints = typing.get_type_hints(factory)
-    fields = {}
-    for parameter in inspect.signature(factory).parameters.values():
-        if parameter.name == "material" or parameter.kind is parameter.VAR_KEYWORD:
-            continue
-        default = ... if parameter.default is parameter.empty else parameter.default
-        fields[parameter.name] = (_toml_type(hints.get(parameter.name, typing.Any)), default)
+    """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
+    fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
+              for parameter in inspect.signature(factory).parameters.values() if parameter.name != "material"}
     return create_model(f"{name}_parameters", __base__=Table, **fields)
-
-
-def _toml_type(hint):
-    """Types that TOML can hold are checked strictly, all others by the actor itself."""
-    return hint if hint in (int, float, bool, str) else typing.Any

@@ -48,7 +48,8 @@ class Frame:
 
 
 def simulate(scene, radar, *, num_rays=1_000_000, max_bounces=4, seed=1, start_time=0.0, footprint_filter=True,
-             parts=None, tolerance=1e-7, method="auto", noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
+             parts=None, tolerance=1e-7, method="auto", noise_seed=1, window="hann", zero_pad=1,
+             progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), footprint_filter: as in `trace`

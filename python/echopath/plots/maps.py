@@ -10,7 +10,9 @@ from .style import MAP_COLOURS, new_figure
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
-CROP_MARGIN = 0.08           # of the signal's extent, left free around it
+STATIC_CELLS = 4             # velocity cells on both sides of zero that what stands still fills
+RANGE_MARGIN = 3.0           # m, shown around the signal
+VELOCITY_MARGIN = 0.5        # m/s
 SMALLEST_POWER = 1e-300      # W, stands for zero on a logarithmic scale
 
 
@@ -54,9 +56,9 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None)
     """
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
-    columns = min(len(spectra), 2)
+    columns = len(spectra) if len(spectra) <= 3 else 2
     rows = -(-len(spectra) // columns)
-    with new_figure(4.4 * columns + 0.8, 3.0 * rows + 0.5) as figure:
+    with new_figure(3.4 * columns + 1.2, 3.2 * rows + 0.5) as figure:
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels = list(grid.flat)
         for axes, (name, spectrum) in zip(panels, spectra.items()):
@@ -64,7 +66,7 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None)
             axes.set_title(name)
         for axes in panels[len(spectra):]:
             axes.remove()
-        _crop(panels[:len(spectra)], _extent(spectra.values(), vmin))
+        _crop(panels[:len(spectra)], _extent(list(spectra.values()), vmin))
         figure.supxlabel("Range in m", fontsize=9)
         figure.supylabel("Radial velocity in m/s", fontsize=9)
         figure.suptitle(title, fontsize=11)
@@ -91,24 +93,24 @@ def _half_step(axis) -> float:
 
 
 def _extent(spectra, floor: float):
-    """Smallest box (range, velocity) with all cells above `floor` in dBm, and a margin; None when there is none."""
-    boxes = []
-    for spectrum in spectra:
-        level = power_dbm(spectrum)
-        velocity, distance = np.nonzero(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB))
-        if len(velocity):
-            boxes.append((spectrum.range[distance.min()], spectrum.range[distance.max()],
-                          spectrum.velocity[velocity.min()], spectrum.velocity[velocity.max()]))
-    if not boxes:
+    """Box (range, velocity) around all moving cells above `floor` in dBm, or all still ones when none moves, or None."""
+    cells = [_cells(spectrum, floor) for spectrum in spectra]
+    distance, velocity = (np.concatenate(values) for values in zip(*cells))
+    step = max(2.0 * _half_step(spectrum.velocity) for spectrum in spectra)
+    is_moving = np.abs(velocity) > STATIC_CELLS * step
+    if is_moving.any():
+        distance = distance[is_moving]
+    if not len(distance):
         return None
-    nearest, _, lowest, _ = np.min(boxes, axis=0)
-    _, farthest, _, highest = np.max(boxes, axis=0)
-    return (*_widened(nearest, farthest, 1.0), *_widened(lowest, highest, 0.5))
+    return (distance.min() - RANGE_MARGIN, distance.max() + RANGE_MARGIN,
+            velocity.min() - VELOCITY_MARGIN, velocity.max() + VELOCITY_MARGIN)
 
 
-def _widened(begin: float, end: float, smallest_margin: float):
-    margin = max(CROP_MARGIN * (end - begin), smallest_margin)
-    return begin - margin, end + margin
+def _cells(spectrum, floor: float):
+    """Range and velocity of the cells that stand out of the noise and of the floor of the colour scale, [N] each."""
+    level = power_dbm(spectrum)
+    velocity, distance = np.nonzero(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB))
+    return spectrum.range[distance], spectrum.velocity[velocity]
 
 
 def _crop(panels, extent) -> None:

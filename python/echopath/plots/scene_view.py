@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..path_subset import strongest_by_bounces, subset
+from ..path_subset import paths_with, strongest, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
@@ -30,10 +30,10 @@ class _Drawing:
     high: np.ndarray
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and strongest rays"):
+def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and the strongest rays that reach an object"):
     """A scene with its strongest rays.
 
-    paths: of `trace`; num_rays: drawn at most, in equal shares of each number of bounces, the strongest of each
+    paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
     time: of the picture in s, None: the time of the trace. Mirrors are drawn translucent.
     Returns a matplotlib figure with three views in metres.
     """
@@ -51,7 +51,7 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and strong
 
 
 def _collect(scene, paths, num_rays: int, time: float) -> _Drawing:
-    shown = subset(paths, strongest_by_bounces(paths, num_rays))
+    shown = subset(paths, strongest(paths, num_rays, among=_reach_objects(scene, paths)))
     transmitter, receiver = np.asarray(paths.frame.transmitter), np.asarray(paths.frame.receiver)
     points = np.asarray(shown.points(time)).reshape(-1, 3)
     segments = {int(count): _segments(shown, points, count, transmitter, receiver)
@@ -61,8 +61,15 @@ def _collect(scene, paths, num_rays: int, time: float) -> _Drawing:
     drawing = _Drawing([], [], [], [], segments, 0.5 * (transmitter + receiver), low, high)
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
-        _add_mesh(drawing, vertices[np.asarray(mesh.triangles)], mesh.material.mirror)
+        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh.material.mirror)
     return drawing
+
+
+def _reach_objects(scene, paths):
+    """Paths that hit a mesh that is no mirror, bool [P]; None when there is none."""
+    is_object = np.array([not mesh.material.mirror for mesh in scene.meshes], bool)
+    chosen = paths_with(is_object[paths.mesh_id], paths.offsets, paths.num_bounces)
+    return chosen if chosen.any() else None
 
 
 def _segments(paths, points, count: int, transmitter, receiver):
@@ -110,15 +117,15 @@ def _ray_opacity(segments) -> float:
 def _draw_perspective(axes, drawing: _Drawing) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-    axes.add_collection3d(Poly3DCollection(drawing.mirrors, facecolors=(*MIRROR_COLOUR, 0.25), edgecolors="none",
-                                           zorder=1, clip_on=False))
-    axes.add_collection3d(Line3DCollection(drawing.mirror_edges, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7, zorder=1,
-                                           clip_on=False))
+    def add(kind, items, order: int, **look) -> None:
+        if len(items):  # matplotlib fails on empty 3-D collections
+            axes.add_collection3d(kind(items, zorder=order, clip_on=False, **look))
+
+    add(Poly3DCollection, drawing.mirrors, 1, facecolors=(*MIRROR_COLOUR, 0.25), edgecolors="none")
+    add(Line3DCollection, drawing.mirror_edges, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7)
     for count, segments in reversed(drawing.segments.items()):
-        axes.add_collection3d(Line3DCollection(segments, colors=_colour(count), linewidths=0.6,
-                                               alpha=_ray_opacity(segments), zorder=2, clip_on=False))
-    axes.add_collection3d(Poly3DCollection(drawing.bodies, facecolors=drawing.body_colours, edgecolors="none",
-                                           zorder=3, clip_on=False))
+        add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
+    add(Poly3DCollection, drawing.bodies, 3, facecolors=drawing.body_colours, edgecolors="none")
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
     axes.text(*drawing.radar, f"  {RADAR_LABEL}", zorder=5)
     _frame_box(axes, drawing)

@@ -1,0 +1,157 @@
+"""The command line as a user meets it: exit codes, one line for each fault, Ctrl-C."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import echopath as ep
+
+STOP_SECONDS = 2.0  # half a second is promised; the rest is for a machine with other work
+MANY_RAYS = "50_000_000"  # more than a machine traces while the test waits
+SCENE = """
+title = "a plate"
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 64
+sampling_rate = 20e6
+num_chirps = 8
+chirp_interval = 100e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 0.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 0.0]
+[[objects]]
+name = "plate"
+mesh = "plate.obj"
+material = "clothing"
+position = [5.0, 0.0, 0.0]
+motion = {kind = "linear", velocity = [-2.0, 0.0, 0.0]}
+[trace]
+num_rays = 2000
+[parts.route]
+direct = "T . R"
+"""
+PLATE = "v 0 -0.5 -0.5\nv 0 0.5 -0.5\nv 0 0.5 0.5\nv 0 -0.5 0.5\nf 1 2 3 4\n"
+
+
+@pytest.fixture
+def scene_path(tmp_path):
+    (tmp_path / "plate.obj").write_text(PLATE)
+    path = tmp_path / "plate.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def command(*arguments) -> list:
+    return [sys.executable, "-m", "echopath", *map(str, arguments)]
+
+
+def call(*arguments):
+    return subprocess.run(command(*arguments), capture_output=True, text=True, timeout=120)
+
+
+def test_version_is_that_of_the_package():
+    assert call("--version").stdout == f"echopath {ep.__version__}\n"
+
+
+def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["frame.h5", "map.png", "route.png", "scene.png"]
+    assert all((tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG") for name in ("map.png", "route.png", "scene.png"))
+    assert ep.Paths.load(tmp_path / "out" / "frame.h5").frame.statistics.num_rays == 500
+    assert "rays                              500" in done.stdout and done.stderr == ""
+
+
+def test_run_twice_gives_the_same_bytes(scene_path, tmp_path):
+    for out in ("one", "two"):
+        assert call("run", scene_path, "--out", tmp_path / out).returncode == 0
+    for name in ("frame.h5", "map.png", "route.png", "scene.png"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+def test_info_tells_scenes_frames_and_meshes_apart(scene_path, tmp_path):
+    call("run", scene_path, "--out", tmp_path / "out")
+    assert "a plate" in call("info", scene_path).stdout
+    assert "paths" in call("info", tmp_path / "out" / "frame.h5").stdout
+    assert "1 m^2, open" in call("info", tmp_path / "plate.obj").stdout
+
+
+def test_info_of_a_record_without_signals_is_told(scene_path, tmp_path):
+    scene_file = ep.load_scene(scene_path)
+    ep.trace(scene_file.scene, scene_file.radar, num_rays=100).save(tmp_path / "paths.h5")
+    done = call("info", tmp_path / "paths.h5")
+    assert done.returncode == 0 and "cube" not in done.stdout
+
+
+BAD = {
+    "missing scene": (("run", "nowhere.toml", "--out", "out"), "nowhere.toml: cannot be read"),
+    "missing frame": (("info", "nowhere.h5"), "nowhere.h5: no such file"),
+    "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
+    "unknown kind of file": (("info", "notes.txt"), "must be a .toml, .h5, .obj or .ply file"),
+    "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
+    "no command": ((), "required: COMMAND"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_gives_one_clear_line_and_code_2(name):
+    arguments, message = BAD[name]
+    done = call(*arguments)
+    assert done.returncode == 2 and done.stdout == ""
+    assert message in done.stderr.splitlines()[-1] and "Traceback" not in done.stderr
+
+
+def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):
+    scene_path.write_text(SCENE.replace("bandwidth", "bandwith"))
+    done = call("run", scene_path, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr == f"echopath: {scene_path}: radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?\n"
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.7])
+def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path, delay):
+    leader, follower = os.openpty()
+    process = subprocess.Popen(command("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS), stderr=follower,
+                               preexec_fn=heed_ctrl_c)
+    os.close(follower)
+    try:
+        drawn = b""
+        while b"trace" not in drawn:
+            drawn += os.read(leader, 4096)
+        time.sleep(delay)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=30) == 130
+        assert time.monotonic() - begin < STOP_SECONDS
+    finally:
+        process.kill()
+    assert os.read(leader, 65536).decode().strip().endswith("echopath: stopped; no file was left half written")
+    os.close(leader)
+    assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
+
+
+def heed_ctrl_c() -> None:
+    """Programs started in the background, as tests often are, inherit that Ctrl-C is ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def test_no_bar_is_drawn_without_a_terminal(scene_path, tmp_path):
+    assert call("run", scene_path, "--out", tmp_path / "out").stderr == ""
+
+
+def test_bars_are_drawn_on_a_terminal(scene_path, tmp_path):
+    leader, follower = os.openpty()
+    done = subprocess.run(command("run", scene_path, "--out", tmp_path / "out"), stdout=subprocess.PIPE, stderr=follower,
+                          timeout=120)
+    os.close(follower)
+    drawn = os.read(leader, 65536).decode()
+    os.close(leader)
+    assert done.returncode == 0 and "trace" in drawn and "%" in drawn

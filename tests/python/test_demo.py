@@ -1,0 +1,113 @@
+"""The street demo: its files, its figures, and the physics that its pictures must show."""
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import report
+from echopath.demo import run_demo
+
+NUM_RAYS = 20_000
+SUM_TOLERANCE = 1e-12
+BODY_RADIUS = 0.6    # m, from the torso to what reflects: its front, an arm, a foot in front
+WALKING_SPEED = 1.4  # m/s
+WALL = 3.0           # m, distance of the side walls from the middle
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    out = tmp_path_factory.mktemp("demo")
+    lines = []
+    frame = run_demo(out, num_rays=NUM_RAYS, say=lines.append)
+    return out, frame, lines
+
+
+def torso(frame):
+    """Centre of the torso [3] in m at the trace time."""
+    mesh = next(mesh for mesh in frame.scene.meshes if mesh.name == "pedestrian/torso")
+    return frame.scene.world_vertices(mesh.id, frame.paths.frame.trace_time).mean(axis=0)
+
+
+def image_distance(point, side: float) -> float:
+    """Distance from the radar to the mirror image of a point in the wall y = side, in m."""
+    radar = np.array([0.0, 0.005, 1.0])
+    return math.dist(radar, (point[0], 2.0 * side - point[1], point[2]))
+
+
+def moving_peak(spectrum):
+    """(range in m, velocity in m/s) of the strongest cell that moves faster than 0.3 m/s."""
+    power = np.abs(spectrum.values[0, 0]) ** 2 * (np.abs(spectrum.velocity) > 0.3)[:, None]
+    velocity, distance = np.unravel_index(power.argmax(), power.shape)
+    return spectrum.range[distance], spectrum.velocity[velocity]
+
+
+def test_all_files_are_written(demo):
+    out, _, _ = demo
+    assert sorted(path.name for path in out.iterdir()) == ["body.png", "frame.h5", "map.png", "route.png", "scene.png"]
+
+
+def test_the_report_tells_what_was_asked_for(demo):
+    _, frame, lines = demo
+    text = "\n".join(lines)
+    for word in ("rays", "hits", "paths", "trace", "synthesis", "MiB", "received power, route", "received power, body",
+                 "arms", "legs", "received power, legs by route", "|whole - sum of parts|", "frame.h5"):
+        assert word in text
+    assert f"{NUM_RAYS:,}" in text and f"{frame.paths.num_paths:,}" in text
+
+
+def test_parts_add_up_to_a_whole_synthesised_on_its_own(demo):
+    _, frame, _ = demo
+    whole = ep.synthesize(frame.paths, frame.radar)
+    assert np.abs(whole).max() > 0.0
+    for cubes in frame.parts.values():
+        assert report.residual(whole, cubes) < SUM_TOLERANCE
+
+
+def test_the_direct_echo_is_at_the_person_and_walks_with_it(demo):
+    _, frame, _ = demo
+    distance, velocity = moving_peak(frame.part_spectra["route"]["direct"])
+    assert distance == pytest.approx(math.dist(torso(frame), (0.0, 0.0, 1.0)), abs=BODY_RADIUS)
+    assert velocity == pytest.approx(-WALKING_SPEED, abs=0.7)  # the torso speeds up and slows down within a step
+
+
+def test_side_wall_ghosts_are_farther_than_the_person_by_image_theory(demo):
+    _, frame, _ = demo
+    direct, _ = moving_peak(frame.part_spectra["route"]["direct"])
+    ghost, velocity = moving_peak(frame.part_spectra["route"]["side wall"])
+    person = torso(frame)
+    one_way = [0.5 * (math.dist(person, (0.0, 0.0, 1.0)) + image_distance(person, side)) for side in (-WALL, WALL)]
+    assert min(one_way) - BODY_RADIUS < ghost < max(one_way) + BODY_RADIUS
+    assert ghost > direct and velocity < 0.0
+
+
+def test_limbs_are_faster_and_slower_than_the_walk(demo):
+    _, frame, _ = demo
+    for limb in ("arms", "legs"):
+        lowest, highest = report.velocity_extent(frame.part_spectra["limbs"][limb])
+        assert lowest < -1.3 * WALKING_SPEED or highest > -0.7 * WALKING_SPEED
+    lowest, _ = report.velocity_extent(frame.part_spectra["limbs"]["legs"])
+    assert lowest > -4.5 * WALKING_SPEED  # no foot is faster
+
+
+def test_noise_is_on_the_whole_only(demo):
+    _, frame, _ = demo
+    far = frame.spectrum.range > 70.0  # behind everything
+    noise = np.mean(np.abs(frame.spectrum.values[..., far]) ** 2)
+    parts = [np.mean(np.abs(spectrum.values[..., far]) ** 2) for spectrum in frame.part_spectra["route"].values()]
+    assert noise > 100.0 * sum(parts)
+
+
+def test_velocity_extent_finds_the_lines_of_a_made_up_map():
+    velocity = np.linspace(-5.0, 5.0, 101)
+    values = np.zeros((1, 1, 101, 4), complex)
+    values[0, 0, 50, 0] = 100.0   # stands still
+    values[0, 0, 20, 1] = 1.0     # -3 m/s
+    values[0, 0, 70, 2] = 0.04    # +2 m/s, 28 dB below
+    values[0, 0, 90, 2] = 0.02    # +4 m/s, 34 dB below
+    assert report.velocity_extent(SimpleNamespace(values=values, velocity=velocity)) == pytest.approx((-3.0, 2.0))
+    still = SimpleNamespace(values=values * (np.abs(velocity) < 0.05)[:, None], velocity=velocity)
+    assert report.velocity_extent(still) is None

@@ -1,0 +1,283 @@
+"""Frame files: what is written is what is read, whole or not at all, and damage is noticed."""
+from __future__ import annotations
+
+import h5py
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import frame_file, frame_paths
+from echopath.path_subset import power_of_strongest, subset, used_hits
+
+SUM_TOLERANCE = 1e-12  # sums of doubles in another order
+PATH_COLUMNS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
+HIT_COLUMNS = ("mesh_id", "triangle_id", "u", "v")
+PARTS = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"fan": "T .* 'fan' .* R"}}
+
+
+def quad(*corners):
+    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
+
+
+def fan():
+    """Three sheets on one edge: a non-manifold mesh that waves."""
+    vertices = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0.0]])
+    frames = np.stack([vertices, vertices * [1, 1, 1.1], vertices * [1, 1.2, 1], vertices])
+    sequence = ep.VertexSequence(times=[-1.0, 0.0, 1.0, 2.0], vertices=frames, interpolation="linear")
+    return ep.Mesh(vertices, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]), sequence
+
+
+def make_scene():
+    """A wall that is a mirror, a deforming fan, two turning plates of one mesh, under a moving parent."""
+    scene = ep.Scene()
+    wall = quad((-5, 3, -5), (40, 3, -5), (40, 3, 6), (-5, 3, 6))
+    scene.add(wall, name="wall", material=ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True))
+    mesh, sequence = fan()
+    scene.add(mesh, name="fan", material="clothing", motion=sequence, position=(6, 0, 0))
+    keys = ep.KeyframeMotion(times=[-1.0, 0.0, 1.0, 2.0], translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
+    scene.add(None, name="carrier", motion=keys, position=(8, 1, 0), yaw=0.3)
+    plate = quad((0, -0.5, -0.5), (0, 0.5, -0.5), (0, 0.5, 0.5), (0, -0.5, 0.5))
+    spin = ep.LinearMotion(velocity=(-1, 0, 0), angular_velocity=(0, 0, 0.5))
+    for index in range(2):
+        scene.add(plate, name=f"plate{index}", material=ep.Material.metal(), motion=spin, parent="carrier",
+                  position=(0, 0, index))
+    return scene
+
+
+def make_radar():
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=16,
+                                chirp_interval=1e-4)
+    receivers = [ep.Antenna((0, 0.01 * (i + 1), 0), pattern=ep.CosinePower(2.0)) for i in range(2)]
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0), polarization=(0, 1, 0))], receivers=receivers,
+                    transmit_power=0.02, noise_figure_db=9.0, motion=ep.LinearMotion(velocity=(1, 0, 0)))
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return ep.simulate(make_scene(), make_radar(), num_rays=4000, seed=7, parts=PARTS, noise_seed=3, window=("chebyshev", 60))
+
+
+@pytest.fixture
+def saved(frame, tmp_path):
+    path = tmp_path / "frame.h5"
+    ep.save_frame(frame, path)
+    return path
+
+
+def assert_same_bits(one, other):
+    one, other = np.asarray(one), np.asarray(other)
+    assert one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+
+
+def test_paths_read_back_give_the_same_bits(frame, tmp_path):
+    frame.paths.save(tmp_path / "paths.h5")
+    paths = ep.Paths.load(tmp_path / "paths.h5")
+    assert paths.num_paths > 1000
+    for name in PATH_COLUMNS + HIT_COLUMNS:
+        assert_same_bits(getattr(frame.paths, name), getattr(paths, name))
+    assert_same_bits(frame.paths.amplitude, paths.amplitude)
+    times = [0.0, 1e-3]
+    assert_same_bits(frame.paths.lengths(times), paths.lengths(times))
+
+
+def test_paths_read_back_synthesise_the_same_bits(frame, saved):
+    paths = ep.Paths.load(saved)
+    assert_same_bits(ep.synthesize(frame.paths), ep.synthesize(paths))
+
+
+def test_a_scene_read_back_has_the_same_vertices_at_all_times(frame, saved):
+    scene = ep.Paths.load(saved).scene
+    assert [(mesh.id, mesh.name, mesh.material_name) for mesh in scene.meshes] == [
+        (mesh.id, mesh.name, mesh.material_name) for mesh in frame.scene.meshes]
+    for mesh, other in zip(frame.scene.meshes, scene.meshes):
+        assert mesh.material == other.material
+        assert_same_bits(mesh.triangles, other.triangles)
+        for time in (0.0, 0.3, 1.7):
+            assert_same_bits(frame.scene.world_vertices(mesh.id, time), scene.world_vertices(mesh.id, time))
+
+
+def test_a_mesh_of_several_nodes_is_written_once(saved):
+    with h5py.File(saved) as file:
+        assert len(file["scene/meshes"]) == 3 and len(file["scene/name"]) == 5
+        assert len(file["scene/motions"]) == 2
+
+
+def test_a_radar_read_back_is_the_same(frame, saved):
+    radar, expected = ep.Paths.load(saved).radar, frame.radar
+    assert (radar.transmit_power, radar.noise_figure_db, radar.multiplexing) == (0.02, 9.0, expected.multiplexing)
+    assert radar.waveform.bandwidth == expected.waveform.bandwidth
+    for antenna, other in zip(expected.receivers, radar.receivers, strict=True):
+        assert_same_bits(antenna.position, other.position)
+        assert (antenna.pattern.exponent, antenna.pattern.peak_gain) == (other.pattern.exponent, other.pattern.peak_gain)
+    assert_same_bits(expected.transmitters[0].polarization, radar.transmitters[0].polarization)
+    assert_same_bits(expected.motion.velocity, radar.motion.velocity)
+
+
+def test_a_frame_read_back_is_the_same(frame, saved):
+    other = ep.load_frame(saved)
+    assert_same_bits(frame.cube, other.cube)
+    assert_same_bits(frame.noisy_cube, other.noisy_cube)
+    assert_same_bits(frame.spectrum.values, other.spectrum.values)
+    assert (frame.selections, frame.spectrum_settings) == (other.selections, other.spectrum_settings)
+    assert {name: list(cubes) for name, cubes in other.parts.items()} == {"route": ["direct", "wall", "other"],
+                                                                        "body": ["fan", "other"]}
+    for partition, cubes in frame.parts.items():
+        assert_same_bits(frame.part_of_path[partition], other.part_of_path[partition])
+        for part, cube in cubes.items():
+            assert_same_bits(cube, other.parts[partition][part])
+
+
+def test_labels_say_which_part_a_path_is_in(frame):
+    for part, selection in enumerate(PARTS["route"].values()):
+        chosen = np.flatnonzero(frame.part_of_path["route"] == part)
+        assert_same_bits(frame.paths.partition(PARTS["route"])[list(PARTS["route"])[part]].offsets, frame.paths.offsets[chosen])
+
+
+def test_paths_left_out_are_counted_with_their_power(frame, tmp_path):
+    power = np.abs(frame.paths.amplitude) ** 2
+    min_power = float(np.median(power))
+    missing = frame.paths.save(tmp_path / "strong.h5", min_power=min_power)
+    kept = ep.Paths.load(tmp_path / "strong.h5")
+    assert missing == frame_file.left_out(tmp_path / "strong.h5")
+    assert missing.num_paths == np.count_nonzero(power < min_power) > 0
+    assert kept.num_paths + missing.num_paths == frame.paths.num_paths
+    kept_power = np.abs(kept.amplitude) ** 2
+    assert kept_power.min() >= min_power
+    assert kept_power.sum() + missing.power == pytest.approx(power.sum(), rel=SUM_TOLERANCE)
+
+
+def test_labels_of_a_file_are_those_of_the_paths_it_holds(frame, tmp_path):
+    min_power = float(np.median(np.abs(frame.paths.amplitude) ** 2))
+    ep.save_frame(frame, tmp_path / "strong.h5", min_power=min_power)
+    other = ep.load_frame(tmp_path / "strong.h5")
+    expected = other.paths.partition(PARTS["route"])["wall"].num_paths
+    assert np.count_nonzero(other.part_of_path["route"] == 1) == expected
+
+
+def random_paths(rng, num_rays):
+    """Offsets and numbers of bounces of rays whose prefixes are paths, [P] each, and the number of hits."""
+    lengths = rng.integers(1, 5, num_rays)
+    starts = np.concatenate([[0], np.cumsum(lengths)])
+    pairs = [(start, count) for start, length in zip(starts, lengths) for count in range(1, length + 1)]
+    offsets, num_bounces = np.array(pairs).T
+    return offsets.astype(np.int64), num_bounces.astype(np.uint8), int(starts[-1])
+
+
+def test_compaction_keeps_exactly_the_hits_in_use():
+    rng = np.random.default_rng(5)
+    offsets, num_bounces, num_hits = random_paths(rng, 300)
+    keep = rng.random(len(offsets)) < 0.3
+    offsets, num_bounces = offsets[keep], num_bounces[keep]
+    used, new_offsets = used_hits(offsets, num_bounces, num_hits)
+    in_use = {int(hit) for begin, count in zip(offsets, num_bounces) for hit in range(begin, begin + count)}
+    assert used.tolist() == sorted(in_use)
+    for begin, new_begin, count in zip(offsets, new_offsets, num_bounces):
+        assert used[new_begin:new_begin + count].tolist() == list(range(begin, begin + count))
+
+
+def test_a_subset_has_the_lengths_and_amplitudes_of_its_paths(frame):
+    keep = np.arange(frame.paths.num_paths) % 3 == 0
+    some = subset(frame.paths, keep)
+    assert_same_bits(some.amplitude, frame.paths.amplitude[keep])
+    assert_same_bits(some.lengths([0.0]), frame.paths.lengths([0.0])[:, keep])
+    assert len(some.mesh_id) < len(frame.paths.mesh_id)
+
+
+def test_the_strongest_paths_fill_the_budget_but_never_exceed_it():
+    power = np.array([1.0, 5.0, 3.0, 3.0, 2.0])
+    assert np.count_nonzero(power >= power_of_strongest(power, 5)) == 5
+    assert np.count_nonzero(power >= power_of_strongest(power, 3)) == 3
+    assert np.count_nonzero(power >= power_of_strongest(power, 2)) == 1  # the two equal ones go together
+
+
+def refuse(path, reason):
+    with pytest.raises(ep.FileError, match=reason):
+        ep.load_frame(path)
+
+
+def test_other_files_are_refused(tmp_path):
+    refuse(tmp_path / "nowhere.h5", "no such file")
+    (tmp_path / "text.h5").write_text("no HDF5 at all")
+    refuse(tmp_path / "text.h5", "damaged or not an HDF5 file")
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["data"] = np.arange(3)
+    refuse(tmp_path / "other.h5", "no frame file of echopath")
+
+
+def change(path, edit):
+    with h5py.File(path, "r+") as file:
+        edit(file)
+
+
+def replace(file, name, values):
+    del file[name]
+    file[name] = values
+
+
+EDITS = {
+    "newer layout": (lambda file: file.attrs.modify("schema_version", 99), "schema version 99"),
+    "no weights": (lambda file: file.__delitem__("record/paths/weight"), "record/paths/weight: no such dataset"),
+    "wrong type": (lambda file: replace(file, "record/hits/u", np.zeros(file["record/hits/u"].shape)), "must hold float32"),
+    "short column": (lambda file: replace(file, "record/hits/u", np.zeros(3, np.float32)), "must have the shape"),
+    "wild offset": (lambda file: file["record/paths/offsets"].__setitem__(0, 10**9), "must lie within"),
+    "wild mesh": (lambda file: file["record/hits/mesh_id"].__setitem__(0, 77), "must be below"),
+    "wild triangle": (lambda file: file["record/hits/triangle_id"].__setitem__(0, 7777), "must be below"),
+    "wild parent": (lambda file: file["scene/parent"].__setitem__(0, 3), "must name an earlier node"),
+    "bad material": (lambda file: file["scene/materials/0"].attrs.modify("scattering", 7.0), "scattering"),
+    "cube of another radar": (lambda file: file["radar/waveform"].attrs.modify("num_chirps", 5), "must have the shape"),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_files_that_contradict_themselves_are_refused(saved, name):
+    edit, reason = EDITS[name]
+    change(saved, edit)
+    refuse(saved, reason)
+
+
+@pytest.mark.parametrize("name", ["record/paths/weight", "record/hits/u", "signal/cube"])
+def test_a_flipped_bit_is_noticed(saved, name):
+    with h5py.File(saved) as file:
+        position = file[name].id.get_chunk_info(0).byte_offset
+    content = bytearray(saved.read_bytes())
+    content[position + 100] ^= 0x10
+    saved.write_bytes(content)
+    refuse(saved, "damaged")
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
+def test_a_truncated_file_is_refused(saved, share):
+    content = saved.read_bytes()
+    saved.write_bytes(content[:int(share * len(content))])
+    refuse(saved, "damaged")
+
+
+def test_an_interrupted_write_leaves_the_old_file_alone(frame, saved, monkeypatch):
+    before = saved.read_bytes()
+
+    def interrupt(*arguments, **keywords):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(frame_paths, "write_texts", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        ep.save_frame(frame, saved)
+    assert saved.read_bytes() == before
+    assert [path.name for path in saved.parent.iterdir()] == ["frame.h5"]
+
+
+def test_a_folder_that_cannot_be_made_is_a_file_error(frame, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(ep.FileError, match="cannot be written"):
+        frame.paths.save(tmp_path / "file" / "frame.h5")
+
+
+def test_a_negative_power_is_refused(frame, tmp_path):
+    with pytest.raises(ValueError, match="min_power: must be at least 0 W, got -1.0"):
+        frame.paths.save(tmp_path / "frame.h5", min_power=-1.0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_empty_scene_is_written_and_read(tmp_path):
+    paths = ep.trace(ep.Scene(), make_radar(), num_rays=100)
+    paths.save(tmp_path / "empty.h5")
+    assert ep.Paths.load(tmp_path / "empty.h5").num_paths == 0

@@ -1,0 +1,229 @@
+"""Scene files: what they mean and how their faults are named."""
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import scene_schema
+
+RADAR = """
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 64
+sampling_rate = 20e6
+num_chirps = 8
+chirp_interval = 100e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 1.0]
+"""
+QUAD = "v 0 0 0\nv 1000 0 0\nv 1000 500 0\nv 0 500 0\nf 1 2 3 4\n"
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Writes a scene file with that text after a small radar and returns its path; quad.obj lies beside it."""
+    (tmp_path / "quad.obj").write_text(QUAD)
+
+    def write_text(text: str, radar: str = RADAR):
+        path = tmp_path / "scene.toml"
+        path.write_text(radar + text)
+        return path
+
+    return write_text
+
+
+def mesh_object(text: str) -> str:
+    return f'[[objects]]\nname = "quad"\nmesh = "quad.obj"\n{text}\n'
+
+
+def fault_of(path) -> str:
+    with pytest.raises(ValueError) as fault:
+        ep.load_scene(path)
+    return str(fault.value)
+
+
+def test_waveform_and_antennas_are_those_of_the_file(write):
+    radar = ep.load_scene(write("")).radar
+    assert (radar.waveform.start_frequency, radar.waveform.bandwidth) == (77e9, 1e9)
+    assert (radar.waveform.num_samples, radar.waveform.num_chirps) == (64, 8)
+    assert [antenna.position.tolist() for antenna in radar.transmitters] == [[0.0, 0.0, 1.0]]
+    assert [antenna.position.tolist() for antenna in radar.receivers] == [[0.0, 0.01, 1.0]]
+
+
+def test_antennas_take_what_they_lack_from_the_radar(write):
+    text = """
+[[radar.receivers]]
+position = [0.0, 0.02, 1.0]
+polarization = [0.0, 1.0, 0.0]
+pattern = {kind = "isotropic", gain = 3.0}
+[radar.pattern]
+kind = "cosine_power"
+exponent = 2.0
+"""
+    first, second = ep.load_scene(write(text)).radar.receivers
+    assert first.pattern.exponent == 2.0 and first.pattern.peak_gain == pytest.approx(6.0)  # lossless: 2 (exponent + 1)
+    assert second.pattern.peak_gain == 3.0
+    assert first.polarization.tolist() == [0.0, 0.0, 1.0] and second.polarization.tolist() == [0.0, 1.0, 0.0]
+
+
+def test_mesh_files_are_found_beside_the_scene_file_and_placed(write):
+    scene = ep.load_scene(write(mesh_object(
+        'unit = 0.001\nmaterial = "concrete"\nposition = [10.0, 0.0, 0.0]\nyaw_deg = 90.0'))).scene
+    corners = scene.world_vertices(0, 0.0)
+    assert sorted(np.round(corners, 12).tolist()) == sorted([[10.0, 0.0, 0.0], [10.0, 1.0, 0.0], [9.5, 1.0, 0.0], [9.5, 0.0, 0.0]])
+    assert scene.meshes[0].name == "quad"
+    assert scene.meshes[0].material.permittivity == ep.materials["concrete"].permittivity
+
+
+def test_groups_of_a_mesh_file_are_meshes_of_their_own(write, tmp_path):
+    (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 2 3\ng wall\nf 1 2 4\n")
+    scene = ep.load_scene(write(mesh_object('material = "metal"'))).scene
+    assert [mesh.name for mesh in scene.meshes] == ["quad/floor", "quad/wall"]
+
+
+def test_linear_motion_moves_the_object(write):
+    scene = ep.load_scene(write(mesh_object(
+        'material = "metal"\nmotion = {kind = "linear", velocity = [-1.5, 0.0, 0.0]}'))).scene
+    assert np.allclose(scene.world_vertices(0, 2.0) - scene.world_vertices(0, 0.0), [-3.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_keyframes_move_the_object_through_their_points(write):
+    scene = ep.load_scene(write(mesh_object("""material = "metal"
+[objects.motion]
+kind = "keyframes"
+times = [0.0, 1.0, 2.0, 3.0]
+translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.0]]"""))).scene
+    rest = scene.world_vertices(0, 0.0)
+    assert np.allclose(scene.world_vertices(0, 2.0) - rest, [1.0, 1.0, 0.0], atol=1e-12)
+
+
+def test_a_material_table_changes_a_named_material(write):
+    material = ep.load_scene(write(mesh_object(
+        'material = {base = "concrete", scattering = 0.3, mirror = true}'))).scene.meshes[0].material
+    assert material.permittivity == ep.materials["concrete"].permittivity
+    assert (material.scattering, material.mirror) == (0.3, True)
+
+
+def test_a_loss_is_a_negative_imaginary_part(write):
+    material = ep.load_scene(write(mesh_object("material = {permittivity = [5.0, 0.3]}"))).scene.meshes[0].material
+    assert material.permittivity == 5.0 - 0.3j
+
+
+def test_settings_are_those_of_the_file_or_the_defaults(write):
+    scene_file = ep.load_scene(write("""
+[trace]
+num_rays = 1234
+[spectrum]
+window = ["chebyshev", 80]
+[parts.route]
+direct = "T . R"
+[parts.body]
+quad = "T 'quad' R"
+"""))
+    assert scene_file.trace_settings() == {"num_rays": 1234, "max_bounces": 4, "seed": 1, "start_time": 0.0,
+                                           "footprint_filter": True}
+    assert scene_file.spectrum_settings() == {"window": ("chebyshev", 80), "zero_pad": 1}
+    assert scene_file.partitions() == {"route": {"direct": "T . R"}, "body": {"quad": "T 'quad' R"}}
+
+
+def test_one_flat_table_of_parts_is_one_partition(write):
+    assert ep.load_scene(write('[parts]\ndirect = "T . R"\n')).partitions() == {"parts": {"direct": "T . R"}}
+
+
+FAULTS = [
+    (RADAR.replace("bandwidth", "bandwith"), "radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"),
+    (RADAR.replace("bandwidth = 1e9", ""), "radar.waveform.bandwidth: is missing"),
+    (RADAR.replace("1e9", "'1e9'"), "radar.waveform.bandwidth: must be a number, got '1e9'"),
+    (RADAR.replace("1e9", "-1.0"), "radar.waveform.bandwidth: must be greater than 0, got -1.0"),
+    (RADAR.replace("1e9", "nan"), "radar.waveform.bandwidth: must be finite, got nan"),
+    (RADAR.replace("num_chirps = 8", "num_chirps = 8.5"), "radar.waveform.num_chirps: must be an integer, got 8.5"),
+    (RADAR.replace("[0.0, 0.01, 1.0]", "[0.0, 1.0]"), "radar.receivers[0].position: must have at least 3 entries"),
+    (RADAR + "[tracer]\nnum_rays = 3", "tracer: unknown key; did you mean 'trace'?"),
+    (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
+    (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
+    (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be one of rect, hann"),
+    (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}", "parts: must be all expressions (one partition) or all tables (several)"),
+    (RADAR + mesh_object("material = 'concret'"), "objects[0].material: unknown material 'concret'"),
+    (RADAR + mesh_object("material = {scatering = 0.3}"), "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
+    (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),
+    (RADAR + mesh_object(""), "objects[0]"),
+    (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linaer'}"), "objects[0].motion: has an unknown kind"),
+    (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linear', speed = 3}"), "objects[0].motion.speed: unknown key"),
+    (RADAR + mesh_object("material = 'metal'\nactor = 'plate'"), "objects[0].mesh: exactly one of mesh and actor must be given"),
+    (RADAR + mesh_object("material = 'metal'\nparent = 'nobody'"), "objects[0]: parent: must be the full name of a node"),
+    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrain'", "objects[0].actor: unknown actor 'pedestrain'; did you mean 'pedestrian'?"),
+    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {heigth = 2.0}",
+     "objects[0].parameters.heigth: unknown key; did you mean 'height'?"),
+    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {height = 'tall'}",
+     "objects[0].parameters: height must be a finite number, got 'tall'"),
+]
+
+
+@pytest.mark.parametrize("text, message", FAULTS, ids=[message[:40] for _, message in FAULTS])
+def test_faults_name_the_file_the_dotted_path_and_the_rule(write, text, message):
+    path = write(text, radar="")
+    assert fault_of(path).startswith(f"{path}: {message}")
+
+
+def test_every_fault_is_named_at_once(write):
+    path = write(RADAR.replace("bandwidth", "bandwith") + "[trace]\nseed = -1", radar="")
+    assert [line.split(": ")[1] for line in fault_of(path).splitlines()] == ["radar.waveform.bandwith", "trace.seed"]
+
+
+def test_syntax_errors_name_the_file_and_the_line(write):
+    path = write("[trace\n", radar="title = 'ok'\n")
+    assert str(path) in fault_of(path) and "line 2" in fault_of(path)
+
+
+def test_a_missing_scene_file_is_a_file_error(tmp_path):
+    with pytest.raises(ep.FileError, match="nowhere.toml"):
+        ep.load_scene(tmp_path / "nowhere.toml")
+
+
+def test_a_missing_mesh_file_is_a_file_error(write):
+    with pytest.raises(ep.FileError, match="quid.obj"):
+        ep.load_scene(write(mesh_object('material = "metal"').replace("quad.obj", "quid.obj")))
+
+
+def test_the_street_is_that_of_its_description():
+    street = ep.load_scene(DATA / "scenes" / "street.toml")
+    waveform = street.radar.waveform
+    assert (waveform.start_frequency, waveform.bandwidth) == (77e9, 1e9)
+    assert (waveform.num_samples, waveform.sampling_rate) == (512, 20e6)
+    assert (waveform.num_chirps, waveform.chirp_interval) == (256, 100e-6)
+    corners = {mesh.name: street.scene.world_vertices(mesh.id, 0.0) for mesh in street.scene.meshes if mesh.material.mirror}
+    ys = sorted({round(float(y), 9) for name, points in corners.items() if "wall" in name for y in points[:, 1]})
+    assert ys == [-3.0, 3.0]
+    assert np.ptp(corners["floor"][:, 2]) == 0.0
+    names = [mesh.name for mesh in street.scene.meshes]
+    assert sum(name.startswith("pedestrian/") for name in names) >= 16
+
+
+def test_the_pedestrian_of_the_street_walks_towards_the_radar():
+    street = ep.load_scene(DATA / "scenes" / "street.toml")
+    mesh = next(mesh for mesh in street.scene.meshes if mesh.name == "pedestrian/torso")
+    begin, end = (street.scene.world_vertices(mesh.id, time).mean(axis=0) for time in (0.0, 2.0))
+    speed = math.dist(begin[:2], end[:2]) / 2.0
+    assert 10.0 <= begin[0] <= 12.0 and end[0] < begin[0]
+    assert speed == pytest.approx(1.4, rel=0.05)  # the torso sways by a few centimetres within a step
+
+
+def tables() -> dict:
+    return {name: value for name, value in vars(scene_schema).items()
+            if isinstance(value, type) and issubclass(value, scene_schema.Table) and value is not scene_schema.Table}
+
+
+@pytest.mark.parametrize("name", tables())
+def test_every_key_is_written_down_in_the_data_readme(name):
+    readme = (DATA / "README.md").read_text()
+    missing = [key for key, field in tables()[name].model_fields.items()
+               if f"`{key}`" not in readme and f"{key} =" not in readme and f".{key}]" not in readme and f"[{key}]" not in readme]
+    assert missing == []

@@ -1,0 +1,105 @@
+"""Long work of the core beside Python: Ctrl-C, progress, exceptions. `_wait` is such work that only sleeps."""
+import os
+import signal
+import threading
+import time
+
+import pytest
+
+import echopath as ep
+from echopath import _core
+
+LONG = 20.0  # s, longer than any test waits
+HALF_A_SECOND = 0.5  # s, the promise for Ctrl-C
+
+
+def test_ctrl_c_stops_a_job_within_half_a_second():
+    sent = []
+
+    def interrupt():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(0.2, interrupt).start()
+    with pytest.raises(KeyboardInterrupt):
+        _core._wait(LONG)
+    assert time.perf_counter() - sent[0] < HALF_A_SECOND
+
+
+def test_exception_of_progress_stops_the_job_and_is_raised():
+    def progress(stage, fraction):
+        raise LookupError("enough")
+
+    start = time.perf_counter()
+    with pytest.raises(LookupError, match="enough"):
+        _core._wait(LONG, progress)
+    assert time.perf_counter() - start < HALF_A_SECOND
+
+
+def test_progress_rises_to_one():
+    seen = []
+    _core._wait(0.4, lambda stage, fraction: seen.append((stage, fraction)))
+    fractions = [fraction for _, fraction in seen]
+    assert {stage for stage, _ in seen} == {"wait"}
+    assert len(seen) >= 3
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+    assert 0.0 < fractions[len(fractions) // 2] < 1.0
+
+
+def test_progress_must_be_callable():
+    with pytest.raises(TypeError, match="progress: must be None or a callable .* got int"):
+        _core._wait(0.0, 3)
+
+
+def test_exception_of_the_work_is_raised_with_its_python_type():
+    with pytest.raises(ValueError, match="seconds: must lie in 0 to 3600, got -1"):
+        _core._wait(-1.0)
+
+
+def test_other_python_threads_go_on_while_a_job_runs():
+    counts = [0]
+    stop = threading.Event()
+
+    def count():
+        while not stop.wait(0.005):
+            counts[0] += 1
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    _core._wait(0.3)
+    stop.set()
+    counter.join()
+    assert counts[0] >= 10  # of 60; a held lock gives 0
+
+
+def test_jobs_run_off_the_main_thread():
+    done = []
+    worker = threading.Thread(target=lambda: done.append(_core._wait(0.1)))
+    worker.start()
+    worker.join(5.0)
+    assert done == [None]
+
+
+@pytest.mark.parametrize(("name", "base"), [("FileError", OSError), ("DeviceError", RuntimeError)])
+def test_errors_of_the_core_have_builtin_bases(name, base):
+    error = getattr(ep, name)
+    assert issubclass(error, base)
+    assert f"{error.__module__}.{error.__qualname__}" == f"echopath.{name}"
+
+
+def test_a_missing_file_is_an_os_error(tmp_path):
+    with pytest.raises(ep.FileError, match="nothing.obj"):
+        ep.load_mesh(str(tmp_path / "nothing.obj"))
+
+
+def test_number_of_threads_is_what_was_set():
+    before = ep.num_threads()
+    try:
+        ep.set_num_threads(3)
+        assert ep.num_threads() == 3
+        with pytest.raises(ValueError, match="num_threads: must be 0 .* got -1"):
+            ep.set_num_threads(-1)
+    finally:
+        ep.set_num_threads(0)
+    assert ep.num_threads() == before

@@ -24,7 +24,8 @@ const char* name_of(Interpolation interpolation) { return interpolation == Inter
 py::tuple as_tuple(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TimeSpan whole;
-  return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin, span.end >= whole.end ? kInfinity : span.end);
+  return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin,
+                        span.end >= whole.end ? kInfinity : span.end);
 }
 
 std::string description(const char* kind, const TimeSpan& span, size_t num_times, Interpolation interpolation) {
@@ -78,14 +79,16 @@ angular_velocity: [3] in rad/s, right-handed about its own direction
 Raises ValueError for values that are not finite.)")
       .def(py::init(&linear_motion), py::arg("velocity") = py::make_tuple(0.0, 0.0, 0.0),
            py::arg("angular_velocity") = py::make_tuple(0.0, 0.0, 0.0))
-      .def_property_readonly("velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
-      .def_property_readonly("angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); },
-                             "[3] in rad/s")
+      .def_property_readonly(
+          "velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
+      .def_property_readonly(
+          "angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); },
+          "[3] in rad/s")
       .def("__repr__", [](const LinearMotion& self) {
         std::ostringstream text;
         const Vec3 &v = self.velocity(), &w = self.angular_velocity();
-        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=(" << w.x()
-             << ", " << w.y() << ", " << w.z() << ") rad/s)";
+        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=("
+             << w.x() << ", " << w.y() << ", " << w.z() << ") rad/s)";
         return text.str();
       });
 }

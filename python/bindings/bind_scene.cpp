@@ -28,7 +28,9 @@ double as_number(const py::object& value, const char* argument) {
   return *checked_array<double>(value, argument, "[]").data();
 }
 
-bool as_bool(const py::object& value, const char* argument) { return *checked_array<bool>(value, argument, "[]").data(); }
+bool as_bool(const py::object& value, const char* argument) {
+  return *checked_array<bool>(value, argument, "[]").data();
+}
 
 std::optional<double> as_optional_number(const py::object& value, const char* argument) {
   return value.is_none() ? std::nullopt : std::optional<double>(as_number(value, argument));
@@ -190,9 +192,10 @@ Returns a Mesh; its original_triangle counts the faces of the file from 0.
 Raises FileError naming the file, and the line where it is text.)");
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, R"(The groups of a mesh file.
 
-path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file; unit: metres per file
-unit. Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are
-left out. Raises FileError naming the file, and the line where it is text.)");
+path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file
+unit: metres per file unit
+Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
+out. Raises FileError naming the file, and the line where it is text.)");
 }
 
 // --- Scene ---
@@ -222,7 +225,8 @@ struct MeshEntry {
 uint32_t checked_mesh_id(const Scene& scene, int64_t mesh_id) {
   const auto count = static_cast<int64_t>(scene.meshes().size());
   if (mesh_id >= 0 && mesh_id < count) return static_cast<uint32_t>(mesh_id);
-  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " + std::to_string(mesh_id));
+  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " +
+                          std::to_string(mesh_id));
 }
 
 // All nodes or none.
@@ -249,8 +253,8 @@ py::array_t<double> world_vertices_of(const Scene& scene, int64_t mesh_id, doubl
 }
 
 std::string scene_text(const Scene& self) {
-  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) + " meshes, " +
-         std::to_string(self.num_triangles()) + " triangles)";
+  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) +
+         " meshes, " + std::to_string(self.num_triangles()) + " triangles)";
 }
 
 void bind_nodes(py::module_& m) {
@@ -260,27 +264,36 @@ void bind_nodes(py::module_& m) {
            py::arg("material") = py::none(), py::arg("material_name") = "")
       .def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
-      .def_property_readonly("placement", [](const Node& self) { return to_numpy(self.placement); },
-                             "[4, 4] at rest, relative to the parent, m")
-      .def_property_readonly("motion", [](const Node& self) { return shared(self.motion); }, "a motion or None")
-      .def_property_readonly("mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
-      .def_property_readonly("sequence", [](const Node& self) { return shared(self.sequence); }, "a VertexSequence or None")
-      .def_property_readonly("material", [](const Node& self) { return shared(self.material); }, "a Material or None")
+      .def_property_readonly(
+          "placement", [](const Node& self) { return to_numpy(self.placement); },
+          "[4, 4] at rest, relative to the parent, m")
+      .def_property_readonly(
+          "motion", [](const Node& self) { return shared(self.motion); }, "a motion or None")
+      .def_property_readonly(
+          "mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
+      .def_property_readonly(
+          "sequence", [](const Node& self) { return shared(self.sequence); }, "a VertexSequence or None")
+      .def_property_readonly(
+          "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
 
   py::class_<MeshEntry>(m, "SceneMesh", "A mesh of a scene with its mesh ID.")
       .def_readonly("id", &MeshEntry::id, "mesh ID")
       .def_readonly("node", &MeshEntry::node_index, "index into scene.nodes")
-      .def_property_readonly("name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
-      .def_property_readonly("mesh", [](const MeshEntry& self) { return shared(self.node.mesh); }, "the Mesh")
+      .def_property_readonly(
+          "name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
+      .def_property_readonly(
+          "mesh", [](const MeshEntry& self) { return shared(self.node.mesh); }, "the Mesh")
       .def_property_readonly(
           "triangles",
           [](const MeshEntry& self) -> py::object { return py::cast(shared(self.node.mesh)).attr("triangles"); },
           "[F, 3] indices of vertices")
-      .def_property_readonly("material", [](const MeshEntry& self) { return shared(self.node.material); }, "the Material")
-      .def_property_readonly("material_name", [](const MeshEntry& self) { return self.node.material_name; },
-                             "as given, \"\" for a material without a name")
+      .def_property_readonly(
+          "material", [](const MeshEntry& self) { return shared(self.node.material); }, "the Material")
+      .def_property_readonly(
+          "material_name", [](const MeshEntry& self) { return self.node.material_name; },
+          "as given, \"\" for a material without a name")
       .def("__repr__", [](const MeshEntry& self) {
         const std::string count = std::to_string(self.node.mesh->triangles().size());
         return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";

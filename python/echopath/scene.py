@@ -23,11 +23,11 @@ class Scene(_core.Scene):
             parent=None, smooth=False, **unknown) -> str:
         """Adds an object and returns its full name, "street/pedestrian".
 
-        mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part (a '/' in
-            a part's name makes a group, a node at rest, in between); or None for an empty node to hang others on
+        mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part
+            (a '/' in a part's name makes a group, a node at rest, in between); None: an empty node to hang others on
         name: without '/', '*', '?' and quotes, unique among its siblings
-        material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given here
-            replaces them)
+        material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given
+            here replaces them)
         motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence; None: at rest
         position [3] in m, yaw in rad about z (left positive): placement at rest relative to the parent
         transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
@@ -101,10 +101,15 @@ def _parts_of(content, material) -> list:
         return [(part.name, part.mesh, part.material if material is None else material, part.motion,
                  _placement(part.position, 0.0, None)) for part in content.parts]
     if isinstance(content, (list, tuple)):
-        if not all(isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], _core.Mesh) for item in content):
+        if not all(_is_named_mesh(item) for item in content):
             raise TypeError("mesh_or_actor: a list must hold pairs (name, Mesh)")
         return [(name, mesh, material, None, None) for name, mesh in content]
-    raise TypeError(f"mesh_or_actor: must be a Mesh, an Actor, a list of (name, Mesh) or None, got {type(content).__name__}")
+    kind = type(content).__name__
+    raise TypeError(f"mesh_or_actor: must be a Mesh, an Actor, a list of (name, Mesh) or None, got {kind}")
+
+
+def _is_named_mesh(item) -> bool:
+    return isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], _core.Mesh)
 
 
 def _material(material, mesh, name: str):

@@ -81,7 +81,7 @@ def test_vertex_sequence_of_a_rotating_point_follows_the_circle():
     (lambda: ep.KeyframeMotion(times=[0, 1], translations=np.zeros((3, 3))), ["translations", "got 3"]),
     (lambda: ep.KeyframeMotion(times=[0, 1], translations=np.zeros((2, 2))), ["translations", "[N, 3]"]),
     (lambda: ep.KeyframeMotion(times=[0, 1], rotations=[[1, 0, 0, 0], [1, 1, 0, 0]]), ["rotations", "1.41"]),
-    (lambda: ep.KeyframeMotion(times=[0, 1], translations=np.zeros((2, 3)), interpolation="cubi"), ["interpolation", "cubi"]),
+    (lambda: ep.KeyframeMotion(times=[0, 1], translations=np.zeros((2, 3)), interpolation="cubi"), ["interpolation"]),
     (lambda: ep.KeyframeMotion(times=[0, 1], translations=np.zeros((2, 3))).at(1.5), ["time", "1.5"]),
     (lambda: ep.VertexSequence(times=[0, 1], vertices=np.zeros((3, 4, 3))), ["vertices", "got 3"]),
     (lambda: ep.VertexSequence(times=[0, 1], vertices=np.zeros((2, 4))), ["vertices", "[T, V, 3]"]),
@@ -105,6 +105,7 @@ def test_unknown_keywords_name_the_nearest_right_one(call, nearest):
 
 def test_reprs_are_short():
     assert repr(ep.LinearMotion((1, 0, 0))) == "LinearMotion(velocity=(1, 0, 0) m/s, angular_velocity=(0, 0, 0) rad/s)"
-    assert repr(ep.KeyframeMotion(times=[0, 2], translations=np.zeros((2, 3)))) == "KeyframeMotion(2 times, 0 to 2 s, cubic)"
+    motion = ep.KeyframeMotion(times=[0, 2], translations=np.zeros((2, 3)))
+    assert repr(motion) == "KeyframeMotion(2 times, 0 to 2 s, cubic)"
     assert repr(ep.VertexSequence(times=[0, 2], vertices=np.zeros((2, 5, 3)))) == \
         "VertexSequence(5 vertices, 2 times, 0 to 2 s, cubic)"

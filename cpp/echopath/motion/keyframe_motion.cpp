@@ -15,7 +15,8 @@ constexpr double kUnitRounding = 1e-14;
 void check_translations(const std::vector<Vec3>& translations, size_t num_times) {
   if (translations.empty()) return;
   require(translations.size() == num_times, "translations", "must be as many as times", translations.size());
-  for (const Vec3& value : translations) require(value.allFinite(), "translations", "must be finite", value.transpose());
+  for (const Vec3& value : translations)
+    require(value.allFinite(), "translations", "must be finite", value.transpose());
 }
 
 // Unit length, and neighbours in the same half space: q and -q are one rotation, but not to an interpolation.

@@ -42,13 +42,13 @@ class LinearMotion : public Motion {
 };
 
 // Translations [T] in m and unit quaternions [T] at ascending times [T] in s, T >= 2.
-// kCubic: C2 not-a-knot cubic splines through the translations and through the sign-continuous quaternions (then normalised);
+// kCubic: C2 not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised);
 // kLinear: piecewise linear and slerp, with a breakpoint at each inner time.
 // q and -q are one rotation: between keys it goes the shorter way, so neighbours should be less than 180 degrees apart.
 class KeyframeMotion : public Motion {
  public:
-  // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit length by
-  // 1e-6. Raises invalid_argument.
+  // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit
+  // length by 1e-6. Raises invalid_argument.
   KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations, std::vector<Quaternion> rotations,
                  Interpolation interpolation = Interpolation::kCubic);
   ~KeyframeMotion() override;
@@ -66,8 +66,9 @@ class KeyframeMotion : public Motion {
 };
 
 // Deforming mesh: time -> vertices. Replaces the vertices of the mesh of its node, in the node's own frame.
-// vertices: T frames of V vertices each, [T][V] in m, in the order of the vertices the mesh was made from. Interpolation as
-// in KeyframeMotion; cubic ones keep the second derivatives too, so they take twice the memory of their frames.
+// vertices: T frames of V vertices each, [T][V] in m, in the order of the vertices the mesh was made from.
+// Interpolation as in KeyframeMotion; cubic ones keep the second derivatives too, so they take twice the memory of
+// their frames.
 class VertexSequence {
  public:
   VertexSequence(std::vector<double> times, std::vector<std::vector<Vec3>> vertices,

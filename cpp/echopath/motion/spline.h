@@ -9,8 +9,9 @@ namespace echopath {
 
 // Knot times with the factors of the spline equations: made once, used for any number of columns. Immutable.
 //
-// kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two and the
-// last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the parabola.
+// kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two
+// and the last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the
+// parabola.
 class SplineKnots {
  public:
   // `times` [T] in s. Raises invalid_argument naming `times` unless T >= 2, finite and strictly ascending.
@@ -21,8 +22,8 @@ class SplineKnots {
   TimeSpan span() const { return {times_.front(), times_.back()}; }
   std::vector<double> breakpoints() const;  // inner knots where the interpolation is linear
 
-  // The value at a time is value[0] y[k] + value[1] y[k+1] + curvature[0] m[k] + curvature[1] m[k+1], with the samples y
-  // and their second derivatives m; the curvature weights are 0 where `has_curvature` is false.
+  // The value at a time is value[0] y[k] + value[1] y[k+1] + curvature[0] m[k] + curvature[1] m[k+1], with the samples
+  // y and their second derivatives m; the curvature weights are 0 where `has_curvature` is false.
   struct Weights {
     size_t k;
     double value[2];

@@ -95,8 +95,9 @@ void split_fans(std::vector<Triangle>& triangles, UnionFind& corners, std::vecto
 
 }  // namespace
 
-// No further pass is needed: a fan is open at two sides at most, one running towards its vertex and one away from it, and all
-// its other sides are glued in pairs, so no two faces run through an edge of the new numbers in the same direction.
+// No further pass is needed: a fan is open at two sides at most, one running towards its vertex and one away from it,
+// and all its other sides are glued in pairs, so no two faces run through an edge of the new numbers in the same
+// direction.
 void cut_to_manifold(std::vector<Triangle>& triangles, std::vector<uint32_t>& original_vertex) {
   UnionFind corners = fans(triangles, sorted_sides(triangles));
   split_fans(triangles, corners, original_vertex);

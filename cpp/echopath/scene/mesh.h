@@ -15,16 +15,18 @@ using Triangle = std::array<uint32_t, 3>;
 // vertices of their own there, so that faces keep their place and order. Vertices that no kept face uses are left out.
 class Mesh {
  public:
-  // vertices [V] in m, triangles [F] of vertex indices; source_triangle [F]: what original_triangle() shall name instead of
-  // the index in `triangles`. Triangles with a non-finite vertex or without area (height at most 1e-12 of the longest edge)
-  // are removed and counted. Raises invalid_argument for an index out of range or when no triangle is left.
+  // vertices [V] in m, triangles [F] of vertex indices; source_triangle [F]: what original_triangle() shall name
+  // instead of the index in `triangles`. Triangles with a non-finite vertex or without area (height at most 1e-12 of
+  // the longest edge) are removed and counted. Raises invalid_argument for an index out of range or when no triangle is
+  // left.
   Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle = {});
   ~Mesh();
 
-  const std::vector<Vec3>& vertices() const { return vertices_; }                        // [V]
-  const std::vector<Triangle>& triangles() const { return triangles_; }                  // [F]
-  const std::vector<uint32_t>& original_triangle() const { return original_triangle_; }  // [F] face of the input or file
-  const std::vector<uint32_t>& original_vertex() const { return original_vertex_; }      // [V] index in the input, copies last
+  const std::vector<Vec3>& vertices() const { return vertices_; }        // [V] m, copies last
+  const std::vector<Triangle>& triangles() const { return triangles_; }  // [F]
+  // [F] face of the input or file, [V] vertex of the input.
+  const std::vector<uint32_t>& original_triangle() const { return original_triangle_; }
+  const std::vector<uint32_t>& original_vertex() const { return original_vertex_; }
   int64_t num_removed_triangles() const { return num_removed_triangles_; }
   int64_t num_input_vertices() const { return num_input_vertices_; }  // what a VertexSequence must have
   int64_t num_duplicated_vertices() const { return num_duplicated_vertices_; }

@@ -21,8 +21,8 @@ static_assert(std::is_same_v<tinyobj::real_t, double>, "coordinates in float los
   throw FileError(path + ", line " + std::to_string(line) + ": " + what);
 }
 
-// Hands a file to the parser line by line, so that the line in work is known; refuses vertices and faces that the parser
-// would read as zeros, and mends what it does not know: continued lines, comments behind values, a bare `g`.
+// Hands a file to the parser line by line, so that the line in work is known; refuses vertices and faces that the
+// parser would read as zeros, and mends what it does not know: continued lines, comments behind values, a bare `g`.
 class ObjLines : public std::streambuf {
  public:
   explicit ObjLines(std::string path) : path_(std::move(path)), file_(path_, std::ios::binary) {
@@ -66,9 +66,11 @@ class ObjLines : public std::streambuf {
     const std::string_view values = std::string_view(text_).substr(begin + 2);
     const bool is_vertex = statement[0] == 'v';
     const std::string_view allowed = is_vertex ? "0123456789+-.eE \t" : "0123456789-/ \t";
-    if (values.find_first_not_of(allowed) != std::string_view::npos) fail(path_, line_, "not a number in '" + text_ + "'");
+    if (values.find_first_not_of(allowed) != std::string_view::npos)
+      fail(path_, line_, "not a number in '" + text_ + "'");
     if (count_words(values) < 3) {
-      fail(path_, line_, std::string(is_vertex ? "a vertex needs 3 numbers" : "a face needs 3 corners") + ": '" + text_ + "'");
+      fail(path_, line_,
+           std::string(is_vertex ? "a vertex needs 3 numbers" : "a face needs 3 corners") + ": '" + text_ + "'");
     }
   }
 
@@ -88,7 +90,8 @@ class ObjLines : public std::streambuf {
   int64_t line_ = 0;
 };
 
-// The parser's callbacks fill a soup. A face belongs to its group, without one to its object; equal names are one group.
+// The parser's callbacks fill a soup. A face belongs to its group, without one to its object; equal names are one
+// group.
 class ObjBuilder {
  public:
   ObjBuilder(const std::string& path, const ObjLines& lines) : path_(path), lines_(lines) {}

@@ -12,10 +12,10 @@ struct NamedMesh {
   MeshPtr mesh;
 };
 
-// Reads OBJ (each group `g`, or object `o` where there is no group, is a mesh; equal names are one; polygons are cut into
-// triangles) or PLY (ASCII, binary little and big endian; any number type) by the file's extension. `unit`: metres per file
-// unit. original_triangle() of the meshes counts the faces of the file from 0. A group without any area is left out.
-// Raises FileError naming the file and, in text formats, the line; invalid_argument for unit <= 0.
+// Reads OBJ (each group `g`, or object `o` where there is no group, is a mesh; equal names are one; polygons are cut
+// into triangles) or PLY (ASCII, binary little and big endian; any number type) by the file's extension. `unit`: metres
+// per file unit. original_triangle() of the meshes counts the faces of the file from 0. A group without any area is
+// left out. Raises FileError naming the file and, in text formats, the line; invalid_argument for unit <= 0.
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit = 1.0);
 
 // All groups as one mesh.

@@ -35,9 +35,10 @@ struct SceneMesh {
 
 class Scene {
  public:
-  // Adds a node and returns its index. `node.name` is its own name without the parent's; it must be non-empty, unique among
-  // its siblings and free of '/', '*', '?', quotes and white space at the ends. A mesh needs a material; a sequence needs a
-  // mesh and as many vertices as the mesh was made from. Raises invalid_argument, and then adds nothing.
+  // Adds a node and returns its index. `node.name` is its own name without the parent's; it must be non-empty, unique
+  // among its siblings and free of '/', '*', '?', quotes and white space at the ends. A mesh needs a material; a
+  // sequence needs a mesh and as many vertices as the mesh was made from. Raises invalid_argument, and then adds
+  // nothing.
   int add(Node node);
 
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -66,7 +67,8 @@ bool glob_takes(std::string_view glob, std::string_view full_name);
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
 
 // World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh. The scene must outlive it.
-// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement): a motion turns a node about its own origin.
+// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement): a motion turns a node about its own
+// origin.
 class Pose {
  public:
   Pose(const Scene& scene, double time);

@@ -20,8 +20,8 @@ struct Soup {
   void add_polygon(const std::vector<uint32_t>& corners, uint32_t group_index);
 };
 
-// Cuts a simple polygon `corners` (indices into `vertices`) into triangles of the same direction: a fan where it is convex,
-// else ear by ear. A polygon that crosses itself is cut into a fan.
+// Cuts a simple polygon `corners` (indices into `vertices`) into triangles of the same direction: a fan where it is
+// convex, else ear by ear. A polygon that crosses itself is cut into a fan.
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners);
 
 // Each raises FileError naming the file, and the line where the format is text.

@@ -68,8 +68,8 @@ TEST(KeyframeMotion, SplinesPassThroughTheirKeys) {
   }
 }
 
-// Velocity and acceleration do not jump at a key. Differences of step d see a jump as it is and a smooth curve as d times its
-// next derivative, so halving the step must halve what they see.
+// Velocity and acceleration do not jump at a key. Differences of step d see a jump as it is and a smooth curve as d
+// times its next derivative, so halving the step must halve what they see.
 TEST(KeyframeMotion, SplinesAreTwiceContinuouslyDifferentiable) {
   std::vector<Vec3> values;
   for (const double time : kTimes) values.push_back(Vec3(std::cos(9.0 * time), 0, 0));
@@ -173,7 +173,8 @@ TEST(KeyframeMotion, RefusesBadInputByName) {
   expect_error<Invalid>([&] { KeyframeMotion({1, 0}, two, {}); }, {"times", "ascending"});
   expect_error<Invalid>([&] { KeyframeMotion({0, nan}, two, {}); }, {"times", "finite"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1, 2}, two, {}); }, {"translations", "got 2"});
-  expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {Vec3::Zero(), Vec3(nan, 0, 0)}, {}); }, {"translations", "finite"});
+  expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {Vec3::Zero(), Vec3(nan, 0, 0)}, {}); },
+                        {"translations", "finite"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {identity}); }, {"rotations", "got 1"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {identity, too_long}); }, {"rotations", "unit", "got 1.0009"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {}); }, {"translations"});

@@ -15,7 +15,8 @@ namespace {
 using test::expect_error;
 using Invalid = std::invalid_argument;
 
-const std::vector<Vec3> kCube = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+const std::vector<Vec3> kCube = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 const std::vector<Triangle> kCubeFaces = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                                           {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
 
@@ -36,7 +37,8 @@ void expect_manifold(const Mesh& mesh) {
   std::map<uint32_t, std::vector<std::pair<uint32_t, uint32_t>>> opposite_sides;  // of each vertex
   for (const Triangle& t : mesh.triangles()) {
     for (size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(++sides[std::make_pair(t[k], t[(k + 1) % 3])], 1) << "two faces run through an edge in the same direction";
+      EXPECT_EQ(++sides[std::make_pair(t[k], t[(k + 1) % 3])], 1)
+          << "two faces run through an edge in the same direction";
       opposite_sides[t[k]].push_back({t[(k + 1) % 3], t[(k + 2) % 3]});
     }
   }
@@ -154,7 +156,8 @@ TEST(Mesh, KeepsAllOfARandomSoup) {
 
 TEST(Mesh, RemovesAndCountsTrianglesWithoutArea) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Vec3> vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {nan, 0, 0}, {0.5, 1e-13, 0}, {0.5, 1e-9, 0}};
+  const std::vector<Vec3> vertices = {{0, 0, 0},   {1, 0, 0},       {0, 1, 0},     {2, 0, 0},
+                                      {nan, 0, 0}, {0.5, 1e-13, 0}, {0.5, 1e-9, 0}};
   // two corners equal; three in a line; not finite; flatter than 1e-12; thin but a triangle
   const std::vector<Triangle> triangles = {{0, 0, 1}, {0, 1, 3}, {0, 1, 2}, {0, 1, 4}, {0, 1, 5}, {0, 1, 6}};
   const Mesh mesh(vertices, triangles);

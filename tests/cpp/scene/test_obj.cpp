@@ -92,8 +92,9 @@ TEST(Obj, ScalesByTheUnit) {
 }
 
 TEST(Obj, PassesOverWhatItDoesNotNeed) {
-  const auto meshes = read("# comment\r\nmtllib none.mtl\r\n  v 0 0 0 # origin\r\nvn 0 0 1\r\nvt 0 0\r\nv 1 0 \\\r\n 0\r\n"
-                           "usemtl steel\r\ns off\r\nv 0 1 0 1.0\r\nl 1 2\r\n\r\nf 1/1/1 2/1/1 3/1/1 # face\r\n");
+  const auto meshes = read(
+      "# comment\r\nmtllib none.mtl\r\n  v 0 0 0 # origin\r\nvn 0 0 1\r\nvt 0 0\r\nv 1 0 \\\r\n 0\r\n"
+      "usemtl steel\r\ns off\r\nv 0 1 0 1.0\r\nl 1 2\r\n\r\nf 1/1/1 2/1/1 3/1/1 # face\r\n");
   EXPECT_EQ(meshes[0].mesh->vertices(), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
@@ -127,7 +128,8 @@ TEST(Obj, RefusesFilesWithoutFaces) {
 }
 
 TEST(Readers, RefuseWhatIsNoMeshFile) {
-  expect_error<FileError>([] { load_mesh(testing::TempDir() + "echopath_missing.obj"); }, {"echopath_missing.obj", "opened"});
+  expect_error<FileError>([] { load_mesh(testing::TempDir() + "echopath_missing.obj"); },
+                          {"echopath_missing.obj", "opened"});
   expect_error<FileError>([] { load_mesh("mesh.stl"); }, {"mesh.stl", ".obj and .ply"});
   expect_error<std::invalid_argument>([] { load_mesh("mesh.obj", 0.0); }, {"unit", "positive"});
   expect_error<std::invalid_argument>([] { load_mesh("mesh.obj", std::nan("")); }, {"unit"});

@@ -105,7 +105,7 @@ run_tests() {
   run_pytest "$@" 2>&1 | tee "$build_dir/pytest.log" || python_status=$?
   say "results"
   printf 'ctest:  %s\n' "$(grep 'tests passed' "$build_dir/ctest.log" || echo "ended with $cpp_status")"
-  printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log")"
+  printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log" | sed 's/^=* *//; s/ *=*$//')"
   [ "$cpp_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
 }
 

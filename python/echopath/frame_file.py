@@ -52,7 +52,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     The cubes hold all paths, also those that the record leaves out.
     """
     with _new_file(path) as file:
-        missing, is_kept = _write_record(file, frame.paths, min_power)
+        missing, is_kept = _write_record(file, frame.paths, min_power, frame.path_power)
         _write_signal(file, frame)
         _write_spectra(file, frame)
         _write_partitions(file, frame, is_kept)
@@ -103,13 +103,13 @@ def _our_file(path):
         yield file
 
 
-def _write_record(file, paths, min_power: float):
+def _write_record(file, paths, min_power: float, power=None):
     if not min_power >= 0.0:
         raise ValueError(f"min_power: must be at least 0 W, got {min_power}")
     write_scene(file.create_group("scene"), paths.scene)
     write_radar(file.create_group("radar"), paths.radar)
     group = file.create_group("record")
-    is_kept = write_paths(group, paths, min_power)
+    is_kept = write_paths(group, paths, min_power, power)
     return _left_out(group), is_kept
 
 

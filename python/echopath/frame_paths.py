@@ -16,12 +16,13 @@ HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_false_hits")
 
 
-def write_paths(group, paths, min_power: float = 0.0):
+def write_paths(group, paths, min_power: float = 0.0, power=None):
     """Writes the paths of at least `min_power` (W, at the trace time for the first antennas) and how many it left out.
 
+    power: of the paths [P] in W where it is known already.
     Returns which paths were written: bool [P].
     """
-    power = path_power(paths)
+    power = path_power(paths) if power is None else power
     keep = power >= min_power
     group.attrs["min_power"] = min_power
     group.attrs["num_left_out"] = int(np.count_nonzero(~keep))

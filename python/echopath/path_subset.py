@@ -6,10 +6,20 @@ import numpy as np
 import echopath as ep
 
 
+BLOCK_PATHS = 1 << 21  # whose power is computed at a time: bounds the memory, and Ctrl-C is answered in between
+
+
 def path_power(paths):
     """Power of each path at the trace time for the first antennas, [P] in W."""
-    amplitude = paths.amplitude
-    return amplitude.real**2 + amplitude.imag**2
+    power = np.empty(paths.num_paths)
+    is_meant = np.zeros(paths.num_paths, bool)
+    for begin in range(0, paths.num_paths, BLOCK_PATHS):
+        block = slice(begin, begin + BLOCK_PATHS)
+        is_meant[block] = True
+        amplitude = paths.select(is_meant).amplitude
+        is_meant[block] = False
+        power[block] = amplitude.real**2 + amplitude.imag**2
+    return power
 
 
 def used_hits(offsets, num_bounces, num_hits: int):
@@ -18,12 +28,18 @@ def used_hits(offsets, num_bounces, num_hits: int):
     offsets, num_bounces [P]: as in Paths; num_hits: H.
     Returns used [H'] (ascending indices of hits) and offsets [P] into them. Hits that paths share stay shared.
     """
-    begins = np.bincount(offsets, minlength=num_hits + 1)
-    ends = np.bincount(offsets + num_bounces, minlength=num_hits + 1)
-    is_used = np.cumsum(begins - ends)[:num_hits] > 0
-    position = np.cumsum(is_used) - 1
-    new_offsets = position[offsets] if num_hits else np.zeros(0, np.int64)
-    return np.flatnonzero(is_used), new_offsets.astype(np.int64)
+    is_used = np.zeros(num_hits, bool)
+    for _, hits in _hits_by_order(offsets, num_bounces):
+        is_used[hits] = True
+    used = np.flatnonzero(is_used)
+    return used, np.searchsorted(used, offsets).astype(np.int64)
+
+
+def _hits_by_order(offsets, num_bounces):
+    """For the first, second, ... hits of paths: which paths have one (indices), and which hit it is."""
+    for order in range(int(num_bounces.max(initial=0))):
+        paths = np.flatnonzero(num_bounces > order)
+        yield paths, offsets[paths] + order
 
 
 def subset(paths, keep):
@@ -53,14 +69,17 @@ def power_of_strongest(power, max_paths: int) -> float:
     return float(threshold)
 
 
-def strongest(paths, count: int, among=None):
-    """Indices of the `count` strongest paths, of those where `among` [P] is true, strongest first; never those of no power."""
-    power = path_power(paths)
+def strongest(power, count: int, among=None):
+    """Indices of the `count` strongest paths, strongest first: of those where `among` [P] is true, never those of no power."""
     candidates = np.flatnonzero(power > 0.0 if among is None else among & (power > 0.0))
-    return candidates[np.argsort(-power[candidates], kind="stable")[:count]]
+    if len(candidates) > count:
+        candidates = candidates[np.argpartition(power[candidates], len(candidates) - count)[-count:]]
+    return candidates[np.argsort(-power[candidates], kind="stable")]
 
 
 def paths_with(hit_is_meant, offsets, num_bounces):
     """Which paths have a hit that is meant: bool [P] from bool [H]."""
-    before = np.concatenate([[0], np.cumsum(hit_is_meant)])
-    return before[offsets + num_bounces] > before[offsets]
+    found = np.zeros(len(offsets), bool)
+    for paths, hits in _hits_by_order(offsets, num_bounces):
+        found[paths] |= hit_is_meant[hits]
+    return found

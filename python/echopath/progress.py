@@ -1,8 +1,11 @@
 """Progress bars on a terminal."""
 from __future__ import annotations
 
+import shutil
 import sys
 from contextlib import contextmanager
+
+MAX_WIDTH = 100  # columns
 
 
 @contextmanager
@@ -48,5 +51,7 @@ class _Bars:
 
         self.close()
         self._stage = stage
-        self._bar = tqdm(total=100.0, desc=stage, file=self._stream, leave=False,
+        # Terminals without a size of their own would get no bar at all, hence ncols and nrows.
+        width = min(shutil.get_terminal_size((MAX_WIDTH, 24)).columns, MAX_WIDTH)
+        self._bar = tqdm(total=100.0, desc=stage, file=self._stream, leave=False, ncols=width, nrows=24,
                          bar_format="{desc:<12} {percentage:3.0f} %|{bar}| {elapsed} < {remaining}")

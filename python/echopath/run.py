@@ -6,7 +6,7 @@ from pathlib import Path
 
 from . import plots
 from .frame_file import LeftOut, save_frame
-from .path_subset import path_power, power_of_strongest
+from .path_subset import power_of_strongest
 from .scene_file import SceneFile
 from .simulate import Frame, simulate
 from .stages import StageClock
@@ -45,19 +45,19 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
     clock = StageClock()
     with clock("frame file"):
         frame_path = folder / "frame.h5"
-        left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame.paths))
+        left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
     with clock("pictures"):
         pictures = _write_pictures(frame, folder, partitions)
     frame.stages += clock.stages
     return Written(frame_path, left_out, pictures)
 
 
-def min_power_of_budget(paths, record_bytes: float = RECORD_BYTES) -> float:
+def min_power_of_budget(frame: Frame, record_bytes: float = RECORD_BYTES) -> float:
     """Power in W that a path must have so that the strongest paths that fit into `record_bytes` are kept."""
-    if paths.num_paths == 0:
+    if frame.paths.num_paths == 0:
         return 0.0
-    bytes_per_path = PATH_BYTES + HIT_BYTES * float(paths.num_bounces.mean())
-    return power_of_strongest(path_power(paths), int(record_bytes / bytes_per_path))
+    bytes_per_path = PATH_BYTES + HIT_BYTES * float(frame.paths.num_bounces.mean())
+    return power_of_strongest(frame.path_power, int(record_bytes / bytes_per_path))
 
 
 def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
@@ -67,7 +67,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
         plots.save_png(figure, folder / f"{name}.png")
         written.append(folder / f"{name}.png")
 
-    write("scene", plots.plot_scene(frame.scene, frame.paths))
+    write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
     vmin, vmax = plots.colour_limits(frame.spectrum)
     write("map", plots.plot_range_doppler(frame.spectrum, vmin=vmin, vmax=vmax))
     for partition in partitions:

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import cached_property
 
 import echopath as ep
 
-from .path_subset import part_of_path
+from .path_subset import part_of_path, path_power
 from .stages import Stage, StageClock
 
 
@@ -41,6 +42,11 @@ class Frame:
     def noisy_cube(self):
         """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call."""
         return self.cube if self.noise_seed is None else ep.add_noise(self.cube, self.radar, seed=self.noise_seed)
+
+    @cached_property
+    def path_power(self):
+        """Power of each path at the trace time for the first antennas, [P] in W."""
+        return path_power(self.paths)
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"

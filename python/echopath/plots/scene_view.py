@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..path_subset import paths_with, strongest, subset
+from ..path_subset import path_power, paths_with, strongest, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
@@ -30,15 +30,18 @@ class _Drawing:
     high: np.ndarray
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and the strongest rays that reach an object"):
+def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, title="Scene and the strongest rays that reach an object"):
     """A scene with its strongest rays.
 
     paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
-    time: of the picture in s, None: the time of the trace. Mirrors are drawn translucent.
+    time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
+    Mirrors are drawn translucent.
     Returns a matplotlib figure with three views in metres.
     """
     time = paths.frame.trace_time if time is None else time
-    drawing = _collect(scene, paths, num_rays, time)
+    power = path_power(paths) if power is None else power
+    chosen = strongest(power, num_rays, among=_reach_objects(scene, paths))
+    drawing = _collect(scene, subset(paths, chosen), time)
     with new_figure(10.5, 8.0) as figure:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
         perspective = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
@@ -50,9 +53,8 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, title="Scene and the st
     return figure
 
 
-def _collect(scene, paths, num_rays: int, time: float) -> _Drawing:
-    shown = subset(paths, strongest(paths, num_rays, among=_reach_objects(scene, paths)))
-    transmitter, receiver = np.asarray(paths.frame.transmitter), np.asarray(paths.frame.receiver)
+def _collect(scene, shown, time: float) -> _Drawing:
+    transmitter, receiver = np.asarray(shown.frame.transmitter), np.asarray(shown.frame.receiver)
     points = np.asarray(shown.points(time)).reshape(-1, 3)
     segments = {int(count): _segments(shown, points, count, transmitter, receiver)
                 for count in np.unique(shown.num_bounces)}

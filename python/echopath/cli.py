@@ -60,17 +60,21 @@ def _add_trace_options(parser, default_rays) -> None:
 
 def _positive(text: str) -> int:
     """A number of rays; 2e6 and 2_000_000 will do too."""
-    value = float(text)
-    if value < 1 or value != int(value):
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, got '{text}'")
-    return int(value)
+    return _whole_number(text, 1)
 
 
 def _natural(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must be a whole number of at least 0, got '{text}'")
-    return value
+    return _whole_number(text, 0)
+
+
+def _whole_number(text: str, least: int) -> int:
+    try:
+        value = float(text)
+        if value >= least and value == int(value):
+            return int(value)
+    except (ValueError, OverflowError):
+        pass
+    raise argparse.ArgumentTypeError(f"must be a whole number of at least {least}, got '{text}'")
 
 
 def _demo(options) -> None:
@@ -92,8 +96,7 @@ def _run(options) -> None:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed, progress=progress)
         written = write_outputs(frame, options.out, partitions=scene_file.partitions())
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.stages(frame.stages),
-                 *report.part_powers(frame.parts), f"written to {written.frame_path.parent}",
-                 report.omissions(written.left_out, written.frame_path)]:
+                 *report.powers(frame.cube, frame.parts), *report.files(written)]:
         print(text)
 
 

@@ -57,10 +57,9 @@ def _report(street, frame: Frame, written, residuals: dict) -> list[str]:
     shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != "other"}
     limbs = frame.part_spectra["limbs"]
     return [street.title, *report.counts(frame.paths), *report.stages(frame.stages),
-            *report.part_powers(shown),
+            *report.powers(frame.cube, shown),
             f"radial velocities (receding positive), down to {report.EXTENT_BELOW_PEAK_DB:.0f} dB below the peak",
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",
             *(report.line(partition, f"{value:.1e}") for partition, value in residuals.items()),
-            f"written to {written.frame_path.parent}", report.omissions(written.left_out, written.frame_path),
-            *(report.line(picture.name, "") for picture in written.pictures)]
+            *report.files(written)]

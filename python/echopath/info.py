@@ -78,9 +78,8 @@ def _describe_frame(path: Path) -> list[str]:
              *report.counts(frame.paths), report.omissions(missing, path)]
     if frame.cube is None:
         return lines
-    lines += ["cube", report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape))),
-              report.line("power without noise", f"{report.power_dbm(frame.cube):.2f} dBm")]
-    return lines + report.part_powers(frame.parts)
+    shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
+    return [*lines, "cube", shape, *report.powers(frame.cube, frame.parts)]
 
 
 def _describe_meshes(meshes) -> list[str]:

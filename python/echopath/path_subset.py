@@ -6,7 +6,7 @@ import numpy as np
 import echopath as ep
 
 
-BLOCK_PATHS = 1 << 21  # whose power is computed at a time: bounds the memory, and Ctrl-C is answered in between
+BLOCK_PATHS = 1 << 19  # whose power is computed at a time: bounds the memory, and Ctrl-C is answered in between
 
 
 def path_power(paths):
@@ -70,7 +70,7 @@ def power_of_strongest(power, max_paths: int) -> float:
 
 
 def strongest(power, count: int, among=None):
-    """Indices of the `count` strongest paths, strongest first: of those where `among` [P] is true, never those of no power."""
+    """Indices of the `count` strongest paths where `among` [P] is true, strongest first; never paths of no power."""
     candidates = np.flatnonzero(power > 0.0 if among is None else among & (power > 0.0))
     if len(candidates) > count:
         candidates = candidates[np.argpartition(power[candidates], len(candidates) - count)[-count:]]

@@ -3,15 +3,22 @@ from __future__ import annotations
 
 import numpy as np
 
-STATIC_CELLS = 2.5        # velocity cells on both sides of zero that hold what stands still
+STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
 EXTENT_BELOW_PEAK_DB = 30.0
 LABEL_WIDTH = 34
 
 
 def power_dbm(cube) -> float:
     """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros."""
-    power = float(np.mean(cube.real**2 + cube.imag**2))
+    return _in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
+
+
+def _in_dbm(power: float) -> float:
     return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
+
+
+def _power_text(power: float) -> str:
+    return f"{power:8.2f} dBm" if np.isfinite(power) else "  nothing"
 
 
 def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
@@ -20,8 +27,7 @@ def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
     The power of all ranges and channels must reach `below_peak_db` below that of its strongest moving velocity.
     """
     profile = np.sum(np.abs(spectrum.values) ** 2, axis=(0, 1, 3))
-    step = spectrum.velocity[1] - spectrum.velocity[0] if len(spectrum.velocity) > 1 else 0.0
-    profile = np.where(np.abs(spectrum.velocity) > STATIC_CELLS * step, profile, 0.0)
+    profile = np.where(np.abs(spectrum.velocity) > STATIC_SPEED, profile, 0.0)
     if profile.max() == 0.0:
         return None
     velocities = spectrum.velocity[profile >= profile.max() * 10.0 ** (-below_peak_db / 10.0)]
@@ -51,12 +57,12 @@ def stages(all_stages) -> list[str]:
     return ["time and peak memory", *lines, line("all", f"{sum(stage.seconds for stage in all_stages):8.2f} s")]
 
 
-def part_powers(parts: dict) -> list[str]:
-    """Mean received power of each part of each partition."""
-    lines = []
+def powers(whole, parts: dict) -> list[str]:
+    """Mean received power of the whole and of each part of each partition, without noise."""
+    lines = ["received power, without noise", line("whole", _power_text(power_dbm(whole)))]
     for partition, cubes in parts.items():
         lines.append(f"received power, {partition}")
-        lines += [line(name, f"{power_dbm(cube):8.2f} dBm") for name, cube in cubes.items()]
+        lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
     return lines
 
 
@@ -66,10 +72,16 @@ def extent(label: str, spectrum) -> str:
     return line(label, "does not move" if found is None else f"{found[0]:+6.2f} to {found[1]:+6.2f} m/s")
 
 
-def omissions(missing, path) -> str:
+def files(written) -> list[str]:
+    """What a run wrote, how large the frame file is and what it leaves out."""
+    pictures = ", ".join(picture.name for picture in written.pictures)
+    return [f"written to {written.frame_path.parent}", omissions(written.left_out, written.frame_path), f"  {pictures}"]
+
+
+def omissions(left_out, path) -> str:
     """Size of a frame file and what it leaves out."""
     size = f"{path.stat().st_size / 2**20:,.0f} MiB"
-    if missing.num_paths == 0:
+    if left_out.num_paths == 0:
         return line(path.name, f"{size}, all paths")
-    dbm = 10.0 * np.log10(missing.power * 1e3) if missing.power > 0.0 else -np.inf
-    return line(path.name, f"{size}, {missing.num_paths:,} weak paths of {dbm:.2f} dBm together left out")
+    power = _power_text(_in_dbm(left_out.power)).strip()
+    return line(path.name, f"{size}, without the {left_out.num_paths:,} weakest paths ({power} in sum)")

@@ -63,8 +63,9 @@ def test_version_is_that_of_the_package():
 def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
     done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
     assert done.returncode == 0, done.stderr
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["frame.h5", "map.png", "route.png", "scene.png"]
-    assert all((tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG") for name in ("map.png", "route.png", "scene.png"))
+    files = sorted((tmp_path / "out").iterdir())
+    assert [path.name for path in files] == ["frame.h5", "map.png", "route.png", "scene.png"]
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in files[1:])
     assert ep.Paths.load(tmp_path / "out" / "frame.h5").frame.statistics.num_rays == 500
     assert "rays                              500" in done.stdout and done.stderr == ""
 
@@ -96,6 +97,7 @@ BAD = {
     "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
     "unknown kind of file": (("info", "notes.txt"), "must be a .toml, .h5, .obj or .ply file"),
     "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
+    "rays in words": (("demo", "--rays", "many"), "must be a whole number of at least 1, got 'many'"),
     "no command": ((), "required: COMMAND"),
 }
 
@@ -119,8 +121,8 @@ def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):
 @pytest.mark.parametrize("delay", [0.0, 0.7])
 def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path, delay):
     leader, follower = os.openpty()
-    process = subprocess.Popen(command("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS), stderr=follower,
-                               preexec_fn=heed_ctrl_c)
+    arguments = command("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS)
+    process = subprocess.Popen(arguments, stderr=follower, preexec_fn=heed_ctrl_c)
     os.close(follower)
     try:
         drawn = b""
@@ -149,8 +151,8 @@ def test_no_bar_is_drawn_without_a_terminal(scene_path, tmp_path):
 
 def test_bars_are_drawn_on_a_terminal(scene_path, tmp_path):
     leader, follower = os.openpty()
-    done = subprocess.run(command("run", scene_path, "--out", tmp_path / "out"), stdout=subprocess.PIPE, stderr=follower,
-                          timeout=120)
+    arguments = command("run", scene_path, "--out", tmp_path / "out")
+    done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=follower, timeout=120)
     os.close(follower)
     drawn = os.read(leader, 65536).decode()
     os.close(leader)

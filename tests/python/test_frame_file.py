@@ -34,7 +34,8 @@ def make_scene():
     scene.add(wall, name="wall", material=ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True))
     mesh, sequence = fan()
     scene.add(mesh, name="fan", material="clothing", motion=sequence, position=(6, 0, 0))
-    keys = ep.KeyframeMotion(times=[-1.0, 0.0, 1.0, 2.0], translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
+    keys = ep.KeyframeMotion(times=[-1.0, 0.0, 1.0, 2.0],
+                             translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
     scene.add(None, name="carrier", motion=keys, position=(8, 1, 0), yaw=0.3)
     plate = quad((0, -0.5, -0.5), (0, 0.5, -0.5), (0, 0.5, 0.5), (0, -0.5, 0.5))
     spin = ep.LinearMotion(velocity=(-1, 0, 0), angular_velocity=(0, 0, 0.5))
@@ -54,7 +55,8 @@ def make_radar():
 
 @pytest.fixture(scope="module")
 def frame():
-    return ep.simulate(make_scene(), make_radar(), num_rays=4000, seed=7, parts=PARTS, noise_seed=3, window=("chebyshev", 60))
+    return ep.simulate(make_scene(), make_radar(), num_rays=4000, seed=7, parts=PARTS, noise_seed=3,
+                       window=("chebyshev", 60))
 
 
 @pytest.fixture
@@ -119,8 +121,8 @@ def test_a_frame_read_back_is_the_same(frame, saved):
     assert_same_bits(frame.noisy_cube, other.noisy_cube)
     assert_same_bits(frame.spectrum.values, other.spectrum.values)
     assert (frame.selections, frame.spectrum_settings) == (other.selections, other.spectrum_settings)
-    assert {name: list(cubes) for name, cubes in other.parts.items()} == {"route": ["direct", "wall", "other"],
-                                                                        "body": ["fan", "other"]}
+    names = {partition: list(cubes) for partition, cubes in other.parts.items()}
+    assert names == {"route": ["direct", "wall", "other"], "body": ["fan", "other"]}
     for partition, cubes in frame.parts.items():
         assert_same_bits(frame.part_of_path[partition], other.part_of_path[partition])
         for part, cube in cubes.items():
@@ -128,14 +130,14 @@ def test_a_frame_read_back_is_the_same(frame, saved):
 
 
 def test_labels_say_which_part_a_path_is_in(frame):
-    for part, selection in enumerate(PARTS["route"].values()):
+    for part, paths in enumerate(frame.paths.partition(PARTS["route"]).values()):
         chosen = np.flatnonzero(frame.part_of_path["route"] == part)
-        assert_same_bits(frame.paths.partition(PARTS["route"])[list(PARTS["route"])[part]].offsets, frame.paths.offsets[chosen])
+        assert_same_bits(paths.offsets, frame.paths.offsets[chosen])
 
 
 def test_paths_left_out_are_counted_with_their_power(frame, tmp_path):
     power = np.abs(frame.paths.amplitude) ** 2
-    min_power = float(np.median(power))
+    min_power = float(np.quantile(power, 0.9))
     missing = frame.paths.save(tmp_path / "strong.h5", min_power=min_power)
     kept = ep.Paths.load(tmp_path / "strong.h5")
     assert missing == frame_file.left_out(tmp_path / "strong.h5")
@@ -143,7 +145,7 @@ def test_paths_left_out_are_counted_with_their_power(frame, tmp_path):
     assert kept.num_paths + missing.num_paths == frame.paths.num_paths
     kept_power = np.abs(kept.amplitude) ** 2
     assert kept_power.min() >= min_power
-    assert kept_power.sum() + missing.power == pytest.approx(power.sum(), rel=SUM_TOLERANCE)
+    assert kept_power.sum() + missing.power == pytest.approx(power.sum(), rel=SUM_TOLERANCE, abs=0.0)
 
 
 def test_labels_of_a_file_are_those_of_the_paths_it_holds(frame, tmp_path):
@@ -217,7 +219,7 @@ def replace(file, name, values):
 EDITS = {
     "newer layout": (lambda file: file.attrs.modify("schema_version", 99), "schema version 99"),
     "no weights": (lambda file: file.__delitem__("record/paths/weight"), "record/paths/weight: no such dataset"),
-    "wrong type": (lambda file: replace(file, "record/hits/u", np.zeros(file["record/hits/u"].shape)), "must hold float32"),
+    "wrong type": (lambda file: replace(file, "record/hits/u", np.zeros(3)), "must hold float32"),
     "short column": (lambda file: replace(file, "record/hits/u", np.zeros(3, np.float32)), "must have the shape"),
     "wild offset": (lambda file: file["record/paths/offsets"].__setitem__(0, 10**9), "must lie within"),
     "wild mesh": (lambda file: file["record/hits/mesh_id"].__setitem__(0, 77), "must be below"),

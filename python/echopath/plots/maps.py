@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 
+from ..report import STATIC_SPEED
 from .style import MAP_COLOURS, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
-STATIC_CELLS = 4             # velocity cells on both sides of zero that what stands still fills
 RANGE_MARGIN = 3.0           # m, shown around the signal
 VELOCITY_MARGIN = 0.5        # m/s
 SMALLEST_POWER = 1e-300      # W, stands for zero on a logarithmic scale
@@ -93,11 +93,10 @@ def _half_step(axis) -> float:
 
 
 def _extent(spectra, floor: float):
-    """Box (range, velocity) around all moving cells above `floor` in dBm, or all still ones when none moves, or None."""
+    """Box (range, velocity) around all moving cells above `floor` in dBm; all cells when none moves; None without any."""
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
-    step = max(2.0 * _half_step(spectrum.velocity) for spectrum in spectra)
-    is_moving = np.abs(velocity) > STATIC_CELLS * step
+    is_moving = np.abs(velocity) > STATIC_SPEED
     if is_moving.any():
         distance = distance[is_moving]
     if not len(distance):

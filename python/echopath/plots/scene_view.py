@@ -30,7 +30,8 @@ class _Drawing:
     high: np.ndarray
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, title="Scene and the strongest rays that reach an object"):
+def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
+               title="Scene and the strongest rays that reach an object"):
     """A scene with its strongest rays.
 
     paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)

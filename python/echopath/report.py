@@ -22,15 +22,16 @@ def _power_text(power: float) -> str:
 
 
 def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
-    """(lowest, highest) radial velocity in m/s of what moves in a map; None when nothing does.
+    """(lowest, highest) radial velocity in m/s in a map; None when nothing moves.
 
-    The power of all ranges and channels must reach `below_peak_db` below that of its strongest moving velocity.
+    Counted are velocities whose power over all ranges and channels is at most `below_peak_db` below that of the strongest
+    moving one; a planted foot, which stands still, counts too.
     """
     profile = np.sum(np.abs(spectrum.values) ** 2, axis=(0, 1, 3))
-    profile = np.where(np.abs(spectrum.velocity) > STATIC_SPEED, profile, 0.0)
-    if profile.max() == 0.0:
+    peak = profile[np.abs(spectrum.velocity) > STATIC_SPEED].max(initial=0.0)
+    if peak == 0.0:
         return None
-    velocities = spectrum.velocity[profile >= profile.max() * 10.0 ** (-below_peak_db / 10.0)]
+    velocities = spectrum.velocity[profile >= peak * 10.0 ** (-below_peak_db / 10.0)]
     return float(velocities.min()), float(velocities.max())
 
 

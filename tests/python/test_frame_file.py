@@ -110,7 +110,8 @@ def test_a_radar_read_back_is_the_same(frame, saved):
     assert radar.waveform.bandwidth == expected.waveform.bandwidth
     for antenna, other in zip(expected.receivers, radar.receivers, strict=True):
         assert_same_bits(antenna.position, other.position)
-        assert (antenna.pattern.exponent, antenna.pattern.peak_gain) == (other.pattern.exponent, other.pattern.peak_gain)
+        assert antenna.pattern.exponent == other.pattern.exponent
+        assert antenna.pattern.peak_gain == other.pattern.peak_gain
     assert_same_bits(expected.transmitters[0].polarization, radar.transmitters[0].polarization)
     assert_same_bits(expected.motion.velocity, radar.motion.velocity)
 
@@ -120,7 +121,8 @@ def test_a_frame_read_back_is_the_same(frame, saved):
     assert_same_bits(frame.cube, other.cube)
     assert_same_bits(frame.noisy_cube, other.noisy_cube)
     assert_same_bits(frame.spectrum.values, other.spectrum.values)
-    assert (frame.selections, frame.spectrum_settings) == (other.selections, other.spectrum_settings)
+    assert frame.selections == other.selections
+    assert frame.spectrum_settings == other.spectrum_settings
     names = {partition: list(cubes) for partition, cubes in other.parts.items()}
     assert names == {"route": ["direct", "wall", "other"], "body": ["fan", "other"]}
     for partition, cubes in frame.parts.items():

@@ -93,7 +93,7 @@ def _half_step(axis) -> float:
 
 
 def _extent(spectra, floor: float):
-    """Box (range, velocity) around all moving cells above `floor` in dBm; all cells when none moves; None without any."""
+    """Box (range, velocity) around the moving cells above `floor` in dBm, around all when none moves, or None."""
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
     is_moving = np.abs(velocity) > STATIC_SPEED

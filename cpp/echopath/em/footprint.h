@@ -4,6 +4,12 @@
 
 namespace echopath {
 
+enum class Footprint {
+  kNone,         // every ray is a point: sums alias where phases turn faster than rays are spaced
+  kFirstOrder,   // linear phase across the cell
+  kSecondOrder,  // quadratic phase: few rays suffice on curved surfaces
+};
+
 // Phase of the path across the footprint, g.x + x.h.x / 2, with x in units of launch cells along the two footprint axes.
 struct FootprintPhase {
   double g1 = 0.0, g2 = 0.0;              // rad per cell

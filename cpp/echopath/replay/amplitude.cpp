@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/footprint.h"
+#include "echopath/replay/launch_cell.h"
 
 namespace echopath {
 namespace {
@@ -58,22 +58,16 @@ InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
   return inner;
 }
 
-double footprint_filter(const LocalPath& path, const PosedHit& hit, const Vec3& mismatch, double wavenumber) {
-  const auto gradient = [&](const Eigen::Vector2d& tangent) {
-    return wavenumber * mismatch.dot(tangent[0] * hit.edge_u + tangent[1] * hit.edge_v);
-  };
-  return first_order_footprint({gradient(path.footprint[0]), gradient(path.footprint[1])});
-}
-
-double coherent_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
-                       const AntennaLeg& out, const RadioConstants& radio) {
+std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
+                                     const AntennaLeg& out, const RadioConstants& radio) {
   const PosedHit& hit = hits[path.last_material];
   const Vec3& arrival = path.first_material == path.last_material ? in.travel : inner.last_arrival;
   const double cos_in = -hit.normal.dot(arrival), cos_out = hit.normal.dot(out.travel);
   if (cos_in * cos_out <= 0) return 0.0;
-  const double filter = path.has_footprint ? footprint_filter(path, hit, arrival - out.travel, radio.wavenumber) : 1.0;
-  return std::sqrt(radio.transmit_power * in.gain * out.gain) / kFourPi * std::abs(cos_in) * filter /
-         ((in.length + inner.length) * out.length);
+  const HitGeometry at{hit, arrival, out.travel, in.length + inner.length, out.length, std::abs(cos_in), std::abs(cos_out)};
+  const double spreading = root_tube_area(path.cell, at) * out.length;
+  return std::sqrt(radio.transmit_power * in.gain * out.gain) / kFourPi * at.cos_in / spreading *
+         cell_filter(path.cell, at, radio.wavenumber, radio.footprint);
 }
 
 double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
@@ -124,10 +118,9 @@ void evaluate_path(const LocalPath& path, const Instant& instant, const RadioCon
       const int64_t at = out.stride * channel++;
       out.length[at] = in.length + inner.length + back.length;
       const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
-      const double factor = near                ? 0.0
-                            : path.diffuse == 0 ? coherent_factor(path, hits, inner, in, back, radio)
-                                                : diffuse_factor(path, hits, inner, in, back, radio);
-      out.amplitude[at] = path.weight * factor;
+      if (near) out.amplitude[at] = 0.0;
+      else if (path.diffuse == 0) out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio);
+      else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
     }
   }
 }

@@ -3,14 +3,14 @@
 //
 // Coherent path (regime C), physical optics at its last material point:
 //   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
-//   sqrt(D) = unfolded length TX -> point (flat chain), r = unfolded length point -> RX, obliquity K = cos_i.
+//   sqrt(D) = unfolded length TX -> point on flat chains (else from the launch cell), r = unfolded length point -> RX,
+//   obliquity K = cos_i, F the footprint filter (launch_cell.h).
 // Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:
 //   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in / r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
 //   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert).
 // Mirrors only: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
-// Footprint filter: F = exp(-(g1^2 + g2^2)/24), g_a = k T_a.(u - s), T_a the tangents of the launch cell on the surface,
-// carried along with the triangle (Gaussian fit of the tube's shape factor of Ling, Chou, Lee 1989).
 // A path whose surface is seen from opposite sides has amplitude 0. The phase of the length is not part of the amplitude.
+#include "echopath/em/footprint.h"
 #include "echopath/replay/path_geometry.h"
 
 namespace echopath {
@@ -19,6 +19,7 @@ struct RadioConstants {
   double transmit_power;  // W
   double wavelength;      // m, at the start frequency
   double wavenumber;      // rad/m
+  Footprint footprint = Footprint::kSecondOrder;
 };
 
 // Work space of one thread.

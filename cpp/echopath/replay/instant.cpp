@@ -1,5 +1,7 @@
 #include "echopath/replay/instant.h"
 
+#include "echopath/scene/smooth.h"
+
 namespace echopath {
 namespace {
 
@@ -20,7 +22,12 @@ Instant::Instant(const Scene& scene, const Radar& radar, const Vec3& origin, dou
   receivers = posed(radar.receivers, world_from_radar, origin);
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Transform& world_from_mesh = pose_.world_from_mesh(id);
-    rotation_.push_back(world_from_mesh.linear());
+    const Mat3 linear = world_from_mesh.linear();
+    rotation_.push_back(linear);
+    normal_matrix_.push_back(linear.inverse().transpose() * linear.determinant());
+    const Node& node = scene.node_of(id);
+    const bool bends = node.smooth && node.sequence;
+    deformed_normals_.push_back(bends ? vertex_normals(pose_.local_vertices(id), node.mesh->triangles()) : std::vector<Vec3>());
     translation_.push_back(world_from_mesh.translation() - origin);
   }
 }

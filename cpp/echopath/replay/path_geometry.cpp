@@ -1,5 +1,7 @@
 #include "echopath/replay/path_geometry.h"
 
+#include "echopath/scene/smooth.h"
+
 namespace echopath {
 namespace {
 
@@ -28,6 +30,21 @@ Vec3 direction_behind(Vec3 direction, const PosedHit* hits, int first, int last)
   return direction;
 }
 
+// Moves a posed hit from its facet to the curved surface.
+void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
+  const Vec3 corner = posed.point - hit.u * posed.edge_u - hit.v * posed.edge_v;
+  const std::vector<Vec3>& deformed = instant.deformed_normals(hit.mesh_id);
+  std::array<Vec3, 3> normals;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vec3& local = hit.deformed ? deformed[hit.triangle[i]] : (*hit.normals)[i];
+    normals[i] = (instant.normal_matrix(hit.mesh_id) * local).normalized();
+  }
+  const SmoothPoint smooth = smooth_point({corner, corner + posed.edge_u, corner + posed.edge_v}, normals, hit.u, hit.v);
+  posed.point = smooth.position;
+  posed.normal = smooth.normal;
+  posed.curvature = smooth.curvature;
+}
+
 }  // namespace
 
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
@@ -45,6 +62,8 @@ void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
     out[k].edge_v = rotation * edge_v;
     out[k].point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * out[k].edge_u + hit.v * out[k].edge_v;
     out[k].normal = out[k].edge_u.cross(out[k].edge_v).normalized();
+    out[k].is_smooth = hit.normals != nullptr;
+    if (out[k].is_smooth) curve(hit, instant, out[k]);
   }
 }
 

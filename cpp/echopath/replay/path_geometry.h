@@ -13,11 +13,26 @@ struct LocalHit {
   Triangle triangle{};
   double u = 0.0, v = 0.0;
   Vec3 corner, edge_u, edge_v;  // of its triangle at rest
+  // Unit vertex normals at rest where the triangle is taken as smooth, else null.
+  const std::array<Vec3, 3>* normals = nullptr;
 };
 
 struct PosedHit {
-  Vec3 point, normal;    // relative to the origin; unit normal of the triangle's winding
+  Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
   Vec3 edge_u, edge_v;
+  Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
+  bool is_smooth = false;
+};
+
+// What a launch cell of the path's own stratum becomes on the triangle of the physical-optics hit, at the trace time.
+struct LaunchCell {
+  bool is_known = false;            // else the footprint filter is off
+  Eigen::Vector2d tangent[2];       // T_a in units of the triangle's edges, (du, dv) each
+  // Behind a curved specular bounce: how the direction of arrival turns across the cell, T_a.U_b in m (11, 12, 22), and the
+  // ray density of the stratum in 1/sr, from which sqrt(D) follows. On flat chains both follow from the length.
+  bool is_curved = false;
+  double turn[3] = {0.0, 0.0, 0.0};
+  double ray_density = 0.0;
 };
 
 // What of a path does not depend on time.
@@ -27,10 +42,7 @@ struct LocalPath {
   uint64_t diffuse = 0;
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
   std::complex<double> weight;
-  // Coherent paths with a footprint: the launch cell on the triangle of the physical-optics hit, as two tangents in units of
-  // its edges, (du, dv) each.
-  bool has_footprint = false;
-  Eigen::Vector2d footprint[2];
+  LaunchCell cell;                 // coherent paths only
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

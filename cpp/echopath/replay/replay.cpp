@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/scene/smooth.h"
 
 namespace echopath {
 namespace {
@@ -24,8 +26,16 @@ struct Replayer::Level {
 
 struct Replayer::Block {
   std::vector<LocalHit> hits;
+  std::deque<std::array<Vec3, 3>> normals;  // addresses stay
   std::vector<LocalPath> paths;
   int longest = 0;
+
+  // Null where the crease guard refuses the facet.
+  const std::array<Vec3, 3>* smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices) {
+    const std::array<Vec3, 3> corners = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
+    if (!is_smooth_facet(hit.edge_u.cross(hit.edge_v).normalized(), corners)) return nullptr;
+    return &normals.emplace_back(corners);
+  }
 };
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
@@ -36,9 +46,12 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   radio_.transmit_power = radar.transmit_power;
   radio_.wavelength = kSpeedOfLight / radar.waveform.start_frequency;
   radio_.wavenumber = kTwoPi / radio_.wavelength;
+  radio_.footprint = paths.frame.footprint;
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
     mesh_moves_.push_back(paths.scene->is_moving(id));
-    mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
+    const Node& node = paths.scene->node_of(id);
+    mesh_is_mirror_.push_back(node.material->mirror);
+    smooth_normals_.push_back(node.smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>());
   }
   trace_instant_ = std::make_unique<Instant>(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time);
 }
@@ -108,6 +121,7 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
       local.corner = vertices[local.triangle[0]];
       local.edge_u = vertices[local.triangle[1]] - local.corner;
       local.edge_v = vertices[local.triangle[2]] - local.corner;
+      if (node.smooth) local.normals = block.smooth_normals(local, smooth_normals_[hit.mesh_id]);
       if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
         path.image |= uint64_t{1} << k;
       } else {
@@ -116,18 +130,30 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
       }
     }
   }
-  if (paths_.frame.footprint_filter) {
-    EvaluationScratch scratch;
-    scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
-    for (size_t i = 0; i < indices.size(); ++i) add_footprint(block.paths[i], indices[i], scratch);
-  }
+  EvaluationScratch scratch;
+  scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
+  for (size_t i = 0; i < indices.size(); ++i) add_cell(block.paths[i], indices[i], scratch);
   return block;
 }
 
-// The launch cell of the path's own stratum, projected onto the triangle of the physical-optics hit at the trace time.
-void Replayer::add_footprint(LocalPath& path, int64_t index, EvaluationScratch& scratch) const {
-  const size_t stratum = paths_.stratum[static_cast<size_t>(index)];
+// The launch cell of the path's own stratum on the triangle of the physical-optics hit.
+void Replayer::add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const {
+  const auto p = static_cast<size_t>(index);
+  const size_t stratum = paths_.stratum[p];
   if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
+  LaunchCell& cell = path.cell;
+  cell.ray_density = paths_.frame.strata[stratum].ray_density;
+  if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
+    const std::array<float, 7>& record = paths_.curved_cell[p];
+    cell.is_curved = cell.is_known = true;
+    for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[2 * a], record[2 * a + 1]};
+    std::copy(record.begin() + 4, record.end(), cell.turn);
+    return;
+  }
+  if (paths_.frame.footprint != Footprint::kNone) set_flat_cell(path, scratch);
+}
+
+void Replayer::set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const {
   PosedHit* hits = scratch.hits.data();
   pose_hits(path, *trace_instant_, hits);
   static const AntennaPattern isotropic;
@@ -145,17 +171,13 @@ void Replayer::add_footprint(LocalPath& path, int64_t index, EvaluationScratch& 
   }
   const PosedHit& hit = hits[path.last_material];
   const double cos_in = std::abs(hit.normal.dot(arrival));
-  const double side = length / std::sqrt(paths_.frame.strata[stratum].ray_density());  // of the tube, m
+  const double side = length / std::sqrt(path.cell.ray_density);  // of the tube, m
   Vec3 along = arrival - hit.normal.dot(arrival) * hit.normal;
   along = along.norm() > 1e-9 ? along.normalized() : hit.normal.unitOrthogonal();
   const Vec3 across = hit.normal.cross(along);
-
-  Eigen::Matrix<double, 3, 2> edges;
-  edges << hit.edge_u, hit.edge_v;
-  const Eigen::Matrix2d gram_inverse = (edges.transpose() * edges).inverse();
-  path.footprint[0] = gram_inverse * (edges.transpose() * (along * (side / std::max(cos_in, 1e-3))));
-  path.footprint[1] = gram_inverse * (edges.transpose() * (across * side));
-  path.has_footprint = path.footprint[0].allFinite() && path.footprint[1].allFinite();
+  path.cell.tangent[0] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, along * (side / std::max(cos_in, 1e-3)));
+  path.cell.tangent[1] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, across * side);
+  path.cell.is_known = path.cell.tangent[0].allFinite() && path.cell.tangent[1].allFinite();
 }
 
 // Values [node, channel, path]; false when `check` finds a tail above the tolerance.

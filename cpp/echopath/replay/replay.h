@@ -44,7 +44,8 @@ class Replayer {
   int last_level() const;
   const Level& level(int index) const;
   Block localise(std::span<const int64_t> paths) const;
-  void add_footprint(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;
+  void add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;
+  void set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const;
   bool evaluate_level(const Block& block, const Level& level, bool check, std::vector<double>& lengths,
                       std::vector<std::complex<double>>& amplitudes) const;
 
@@ -54,6 +55,7 @@ class Replayer {
   RadioConstants radio_;
   std::vector<uint8_t> mesh_moves_;       // by mesh ID
   std::vector<uint8_t> mesh_is_mirror_;   // by mesh ID
+  std::vector<std::vector<Vec3>> smooth_normals_;  // by mesh ID, at rest; empty where facets are meant
   std::unique_ptr<const Instant> trace_instant_;
   mutable std::mutex levels_mutex_;
   mutable std::vector<std::unique_ptr<const Level>> levels_;

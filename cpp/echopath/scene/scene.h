@@ -25,6 +25,7 @@ struct Node {
   std::shared_ptr<const VertexSequence> sequence;   // may be null; its frames replace the mesh's vertices
   MaterialPtr material;                             // null where there is no mesh
   std::string material_name;                        // as the user gave it, may be empty
+  bool smooth = false;                              // the mesh stands for a curved surface (scene/smooth.h)
 };
 
 // What a mesh ID names.

@@ -52,4 +52,11 @@ SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Ve
   return point;
 }
 
+Eigen::Vector2d edge_coordinates(const Vec3& edge_u, const Vec3& edge_v, const Vec3& normal, const Vec3& tangent) {
+  const Vec3 u = edge_u - normal.dot(edge_u) * normal, v = edge_v - normal.dot(edge_v) * normal;
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const double along_u = u.dot(tangent), along_v = v.dot(tangent);
+  return Eigen::Vector2d(vv * along_u - uv * along_v, uu * along_v - uv * along_u) / (uu * vv - uv * uv);
+}
+
 }  // namespace echopath

@@ -28,4 +28,7 @@ struct SmoothPoint {
 // curvature is that of the linear field of normals over the triangle, symmetrised.
 SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals, double u, double v);
 
+// A tangent vector as (du, dv) in units of the triangle's edges, these taken in the tangent plane of `normal`.
+Eigen::Vector2d edge_coordinates(const Vec3& edge_u, const Vec3& edge_v, const Vec3& normal, const Vec3& tangent);
+
 }  // namespace echopath

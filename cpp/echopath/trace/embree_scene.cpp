@@ -11,12 +11,15 @@
 #include <limits>
 #include <string>
 
+#include "echopath/scene/smooth.h"
+
 namespace echopath {
 namespace {
 
 // A hit is confirmed when the rebuilt point lies this near the ray: 1 mm plus 1e-5 of the distance.
 constexpr double kFalseHitAbsolute = 1e-3;  // m
 constexpr double kFalseHitRelative = 1e-5;
+constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
@@ -114,7 +117,9 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
       vertex -= origin;
       largest = std::max(largest, vertex.cwiseAbs().maxCoeff());
     }
-    device_->add_mesh(mesh_id, vertices, scene.node_of(mesh_id).mesh->triangles());
+    const Node& node = scene.node_of(mesh_id);
+    device_->add_mesh(mesh_id, vertices, node.mesh->triangles());
+    normals_.push_back(node.smooth ? vertex_normals(vertices, node.mesh->triangles()) : std::vector<Vec3>());
   }
   device_->lift = 4.0 * 0x1.0p-24 * largest;
   rtcCommitScene(device_->scene);
@@ -146,8 +151,27 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direct
   const double miss = (from + out.distance * direction - out.position).norm();
   if (out.distance <= 0 || miss > kFalseHitAbsolute + kFalseHitRelative * out.distance) return Verdict::kFalseHit;
   out.normal = (b - a).cross(c - a).normalized();
-  if (out.normal.dot(direction) > 0) out.normal = -out.normal;
+  out.is_smooth = false;
+  if (!normals_[out.hit.mesh_id].empty()) curve({a, b, c}, direction, out);
+  if (out.normal.dot(direction) > 0) {
+    out.normal = -out.normal;
+    out.curvature = -out.curvature;
+  }
   return Verdict::kHit;
+}
+
+// Moves the hit to the curved surface, unless a crease or a grazing ray forbids it.
+void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const {
+  const Triangle& triangle = scene_->node_of(hit.hit.mesh_id).mesh->triangles()[hit.hit.triangle_id];
+  const std::vector<Vec3>& of_vertices = normals_[hit.hit.mesh_id];
+  const std::array<Vec3, 3> normals = {of_vertices[triangle[0]], of_vertices[triangle[1]], of_vertices[triangle[2]]};
+  if (!is_smooth_facet(hit.normal, normals)) return;
+  const SmoothPoint smooth = smooth_point(corners, normals, hit.hit.u, hit.hit.v);
+  if (std::abs(smooth.normal.dot(direction)) < kSmoothGrazing) return;
+  hit.is_smooth = true;
+  hit.position = smooth.position;
+  hit.normal = smooth.normal;
+  hit.curvature = smooth.curvature;
 }
 
 bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {

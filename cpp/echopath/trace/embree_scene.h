@@ -14,9 +14,11 @@ namespace echopath {
 
 struct RayHit {
   Hit hit;
-  Vec3 position;  // rebuilt in double from (u, v), relative to the origin
-  Vec3 normal;    // unit geometric normal, flipped against the ray
+  Vec3 position;  // rebuilt in double from (u, v), relative to the origin; on the curved surface where it is smooth
+  Vec3 normal;    // unit, flipped against the ray
   double distance = 0.0;  // m, along the ray
+  bool is_smooth = false;
+  Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
 };
 
 // Coordinates are relative to `origin` (world), so that single precision resolves the surroundings of the radar.
@@ -45,7 +47,10 @@ class EmbreeScene {
   struct Device;
   std::unique_ptr<Device> device_;
   const Scene* scene_;
+  void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
+
   std::vector<std::vector<Vec3>> vertices_;  // by mesh ID, relative to the origin
+  std::vector<std::vector<Vec3>> normals_;   // by mesh ID, of vertices; empty where facets are meant
 };
 
 }  // namespace echopath

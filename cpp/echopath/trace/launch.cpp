@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kDefensiveShare = 0.15;
 constexpr size_t kMaxCones = 254;
-constexpr double kGoldenFraction = 0.61803398874989484820;
 
 struct Sphere {
   Vec3 centre = Vec3::Zero();
@@ -104,8 +103,12 @@ void share_rays(LaunchPlan& plan, int64_t num_rays) {
   plan.first_ray.assign(1, 0);
   for (int64_t k = 0; k <= num_cones; ++k) {
     const int64_t share = k < num_cones ? aimed * (k + 1) / num_cones - aimed * k / num_cones : num_rays - aimed;
-    plan.strata[static_cast<size_t>(k)].num_rays = share;
-    plan.first_ray.push_back(plan.first_ray.back() + share);
+    Stratum& stratum = plan.strata[static_cast<size_t>(k)];
+    const auto shift = uniform2(plan.seed, Stream::kLaunchShift, static_cast<uint64_t>(k), 0);
+    plan.points.emplace_back(share, Eigen::Vector2d(shift[0], shift[1]));
+    stratum.num_rays = plan.points.back().size();
+    stratum.ray_density = static_cast<double>(share) / stratum.solid_angle();
+    plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
   }
 }
 
@@ -129,25 +132,21 @@ int LaunchPlan::stratum_of(int64_t ray) const {
 }
 
 Vec3 LaunchPlan::direction(int index, int64_t ray) const {
-  const Stratum& stratum = strata[static_cast<size_t>(index)];
-  const auto shift = uniform2(seed, Stream::kLaunchShift, static_cast<uint64_t>(index), 0);
-  const auto i = static_cast<double>(ray - first_ray[static_cast<size_t>(index)]);
-  const double height = std::fmod((i + 0.5) / static_cast<double>(stratum.num_rays) + shift[0], 1.0);
-  const double turn = std::fmod(i * kGoldenFraction + shift[1], 1.0);
-  const double versine = height * stratum.versine;  // the versine is what is uniform
-  const double sine = std::sqrt(versine * (2.0 - versine));
-  const Vec3 first = stratum.axis.unitOrthogonal();
-  const Vec3 second = stratum.axis.cross(first);
-  const Vec3 direction = (1.0 - versine) * stratum.axis +
-                         sine * (std::cos(kTwoPi * turn) * first + std::sin(kTwoPi * turn) * second);
-  return direction.normalized();
+  const auto k = static_cast<size_t>(index);
+  const Stratum& stratum = strata[k];
+  const Eigen::Vector2d point = points[k].point(ray - first_ray[k]);
+  // In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
+  const double versine = stratum.versine * std::min(1.0, point.squaredNorm());
+  const Eigen::Vector2d across = point * std::sqrt(stratum.versine * (2.0 - versine));
+  const Vec3 first = stratum.axis.unitOrthogonal(), second = stratum.axis.cross(first);
+  return ((1.0 - versine) * stratum.axis + across[0] * first + across[1] * second).normalized();
 }
 
 double LaunchPlan::ray_density(const Vec3& direction, int own) const {
   double density = 0.0;
   for (int k = 0; k < static_cast<int>(strata.size()); ++k) {
     const Stratum& stratum = strata[static_cast<size_t>(k)];
-    if (stratum.num_rays > 0 && (k == own || stratum.contains(direction))) density += stratum.ray_density();
+    if (stratum.num_rays > 0 && (k == own || stratum.contains(direction))) density += stratum.ray_density;
   }
   return density;
 }

@@ -2,6 +2,7 @@
 // Where rays start: strata of directions and the low-discrepancy set inside each.
 #include <vector>
 
+#include "echopath/trace/disc_lattice.h"
 #include "echopath/trace/mirrors.h"
 
 namespace echopath {
@@ -13,12 +14,12 @@ namespace echopath {
 // At most 255 strata: images are left out first, then the objects of the smallest solid angle.
 struct LaunchPlan {
   std::vector<Stratum> strata;
+  std::vector<DiscLattice> points;  // of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc
   std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
   uint64_t seed = 0;
 
   int stratum_of(int64_t ray) const;
-  // Unit direction of a ray: spherical Fibonacci points in the stratum's cone under one random shift per stratum
-  // (Cranley-Patterson).
+  // Unit direction of a ray.
   Vec3 direction(int stratum, int64_t ray) const;
   // Expected rays per sr toward `direction`, of all strata together (balance heuristic). `own`: a stratum that is counted
   // in any case, -1 for none: a ray at the rim of its cone must not fall out of it by rounding.

@@ -25,6 +25,11 @@ void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::c
   add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
 }
 
+void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
+  curved_cell.resize(offsets.size());
+  curved_cell.back() = cell;
+}
+
 void PathBlock::end_ray(const Hit* ray_hits) {
   const auto base = static_cast<int64_t>(hits.size());
   hits.insert(hits.end(), ray_hits, ray_hits + used_depth_);
@@ -71,9 +76,14 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
     append(paths.diffuse, block.diffuse);
     append(paths.weight, block.weight);
     append(paths.stratum, block.stratum);
+    if (!block.curved_cell.empty()) {
+      paths.curved_cell.resize(paths.offsets.size() - block.offsets.size());
+      append(paths.curved_cell, block.curved_cell);
+    }
     add_statistics(paths.frame.statistics, block.statistics);
     block = PathBlock();  // frees it: the peak stays near one copy of the record
   }
+  if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
   paths.batch.assign(num_paths, 0);
   paths.flags.assign(num_paths, 0);
   paths.hits = std::move(hits);

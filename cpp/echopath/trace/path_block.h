@@ -14,12 +14,15 @@ class PathBlock {
   std::vector<uint64_t> diffuse;
   std::vector<std::complex<float>> weight;
   std::vector<uint8_t> stratum;
+  std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
   TraceStatistics statistics;
 
   // A path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // A path over hits [skipped, skipped + count) of the current ray, which all such paths share.
   void add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+  // Gives the last path added a launch cell of its own (Paths::curved_cell).
+  void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.
   void end_ray(const Hit* ray_hits);
 

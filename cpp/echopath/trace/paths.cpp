@@ -19,14 +19,12 @@ std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& ke
 
 double Stratum::solid_angle() const { return kTwoPi * versine; }
 
-double Stratum::ray_density() const { return static_cast<double>(num_rays) / solid_angle(); }
-
 bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - axis).squaredNorm() <= versine; }
 
 void Paths::validate() const {
   const size_t size = offsets.size();
   require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
-              batch.size() == size && flags.size() == size,
+              batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size),
           "paths", "all arrays must have one entry per path, paths", size);
   for (size_t i = 0; i < size; ++i) {
     require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
@@ -52,6 +50,7 @@ Paths Paths::select(const std::vector<uint8_t>& keep) const {
   out.stratum = kept(stratum, keep);
   out.batch = kept(batch, keep);
   out.flags = kept(flags, keep);
+  if (!curved_cell.empty()) out.curved_cell = kept(curved_cell, keep);
   out.scene = scene;
   out.radar = radar;
   out.frame = frame;

@@ -1,11 +1,13 @@
 #pragma once
 // The record of a trace: what every ray touched. Immutable after the trace; selections share the hits.
+#include <array>
 #include <complex>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "echopath/em/footprint.h"
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"
 
@@ -23,10 +25,10 @@ struct Stratum {
   Vec3 axis = Vec3::UnitX();   // unit, world axes
   double versine = 2.0;        // 1 - cos(half angle), exact for narrow cones; 2: whole sphere
   int64_t num_rays = 0;
+  double ray_density = 0.0;    // rays per sr inside the cone, N_k p_k; num_rays may differ from its integral by a few
   std::string name;            // what it aims at
 
   double solid_angle() const;                  // sr
-  double ray_density() const;                  // rays per sr: N_k p_k inside the cone
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
@@ -47,7 +49,7 @@ struct TraceFrame {
   std::vector<Stratum> strata;
   uint64_t seed = 0;
   int max_bounces = 4;
-  bool footprint_filter = true;
+  Footprint footprint = Footprint::kSecondOrder;
   TraceStatistics statistics;
 };
 
@@ -62,6 +64,9 @@ struct Paths {
   std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
   std::vector<uint8_t> batch;
   std::vector<uint32_t> flags;               // reserved, 0
+  // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
+  // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
+  std::vector<std::array<float, 7>> curved_cell;
 
   std::shared_ptr<const Scene> scene;        // snapshot
   Radar radar;                               // snapshot

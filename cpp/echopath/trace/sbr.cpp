@@ -5,6 +5,8 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
+#include "echopath/scene/smooth.h"
+#include "echopath/trace/ray_differential.h"
 
 namespace echopath {
 namespace {
@@ -40,6 +42,8 @@ struct RayShooter::Ray {
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> field = 1.0;        // product of Gamma s / q; regime C
   std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
+  RayDifferential rays;       // regime C, where the scene has smooth meshes
+  bool is_curved = false;     // some bounce so far was on a curved surface
   double area = 1.0;                       // product of the material areas of the diffuse anchors
 };
 
@@ -49,6 +53,7 @@ struct RayShooter::Surface {
   double cos_incidence = 0.0;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
 struct RayShooter::Scratch {
@@ -58,7 +63,9 @@ struct RayShooter::Scratch {
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
     : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), settings_(settings),
-      legs_(geometry, mirrors, settings.frequency, settings.polarization), mirror_of_mesh_(scene.meshes().size(), -1) {
+      legs_(geometry, mirrors, settings.frequency, settings.polarization), mirror_of_mesh_(scene.meshes().size(), -1),
+      wavelength_(kSpeedOfLight / settings.frequency) {
+  for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 
@@ -69,6 +76,7 @@ void RayShooter::shoot(int64_t index, PathBlock& block) const {
   ray.from = settings_.transmitter;
   ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
   ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
+  if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   thread_local Scratch scratch;
   Surface surface;
   while (ray.depth < settings_.max_bounces && advance(ray, surface, block)) {
@@ -91,11 +99,23 @@ bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ++block.statistics.num_hits;
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;
+  if (has_smooth_ && ray.coherent) follow_tube(ray, surface);
   surface.material = scene_.node_of(surface.point.hit.mesh_id).material.get();
   surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence,
                              polarization_mode(settings_.polarization, ray.direction, surface.point.normal));
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
   return true;
+}
+
+// Carries the ray tube to the surface; caustics on the way turn the phase of the field.
+void RayShooter::follow_tube(Ray& ray, Surface& surface) const {
+  const double distance = surface.point.distance;
+  if (ray.is_curved) {
+    for (int n = ray.rays.num_caustics(ray.direction, distance); n > 0; --n) ray.field *= std::complex<double>(0.0, 1.0);
+    // Geometrical optics is singular at a caustic: no tube is narrower than the wave allows.
+    surface.tube_area = std::max(std::abs(ray.rays.area(ray.direction, distance)), wavelength_ * ray.leg_length);
+  }
+  ray.rays.transfer(ray.direction, distance, surface.point.normal);
 }
 
 void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
@@ -122,8 +142,8 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   // `field` holds 1/q for each bounce, the area of the launch alone must not: hence field and not coefficient, and the
   // density without the probabilities.
-  const double launch_area = ray.leg_length * ray.leg_length /
-                             (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
+  const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
+  const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
   const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field * surface.response.gamma *
                                       surface.response.coherent * launch_area;
   std::array<Hit, 65> hits;
@@ -135,7 +155,29 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
       hits[static_cast<size_t>(ray.depth)] = leg.mirror_hit;
       block.add(hits.data(), ray.depth + 1, 0, weight * leg.gain, ray.stratum);
     }
+    if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
   }
+}
+
+// The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
+std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surface& surface) const {
+  const Hit& hit = surface.point.hit;
+  const auto [a, b, c] = geometry_.corners(hit.mesh_id, hit.triangle_id);
+  const double side = 1.0 / std::sqrt(plan_.strata[static_cast<size_t>(ray.stratum)].ray_density);
+  // A tube that the caustic limit widened keeps its proportions.
+  const double widened = std::sqrt(surface.tube_area / std::max(std::abs(ray.rays.area(ray.direction, 0.0)), 1e-30));
+  const double scale = side * std::min(widened, 1e6);
+  std::array<float, 7> cell{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d at = edge_coordinates(b - a, c - a, surface.point.normal, ray.rays.point[axis] * scale);
+    cell[2 * axis] = static_cast<float>(at[0]);
+    cell[2 * axis + 1] = static_cast<float>(at[1]);
+  }
+  const auto turn = [&](int i, int j) { return side * scale * ray.rays.point[i].dot(ray.rays.turn[j]); };
+  cell[4] = static_cast<float>(turn(0, 0));
+  cell[5] = static_cast<float>(0.5 * (turn(0, 1) + turn(1, 0)));
+  cell[6] = static_cast<float>(turn(1, 1));
+  return cell;
 }
 
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
@@ -221,6 +263,11 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
   const Vec3& normal = surface.point.normal;
   ray.from = geometry_.lifted(surface.point.position, normal);
   if (specular) {
+    if (has_smooth_ && ray.coherent) {
+      const Mat3 flat = Mat3::Zero();
+      ray.rays.reflect(ray.direction, normal, surface.point.is_smooth ? surface.point.curvature : flat);
+      ray.is_curved = ray.is_curved || surface.point.is_smooth;
+    }
     ray.direction = (ray.direction + 2.0 * surface.cos_incidence * normal).normalized();
     ray.field *= response.gamma * response.coherent / specular_share;
     ray.coefficient *= response.gamma * response.coherent;

@@ -33,6 +33,8 @@ class RayShooter {
   struct Surface;  // where it is
   struct Scratch;
 
+  void follow_tube(Ray& ray, Surface& surface) const;
+  std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
@@ -50,6 +52,8 @@ class RayShooter {
   SbrSettings settings_;
   LegFinder legs_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
+  double wavelength_;                // m
+  bool has_smooth_ = false;          // differentials are followed only then
 };
 
 }  // namespace echopath

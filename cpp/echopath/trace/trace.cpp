@@ -37,8 +37,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.receiver = mean_position(radar.receivers, world_from_radar);
   frame.seed = settings.seed;
   frame.max_bounces = settings.max_bounces;
-  frame.footprint_filter = settings.footprint_filter;
-  frame.statistics.num_rays = settings.num_rays;
+  frame.footprint = settings.footprint;
   return frame;
 }
 
@@ -97,7 +96,8 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   std::vector<PathBlock> blocks(1);
   add_mirror_paths(geometry, *paths.scene, mirrors, sbr, blocks.front());
   const RayShooter shooter(*paths.scene, geometry, mirrors, plan, sbr);
-  shoot_all(shooter, settings.num_rays, blocks, job);
+  paths.frame.statistics.num_rays = plan.first_ray.back();
+  shoot_all(shooter, plan.first_ray.back(), blocks, job);
   join_blocks(blocks, paths);
   return paths;
 }

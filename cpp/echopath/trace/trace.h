@@ -10,7 +10,7 @@ struct TraceSettings {
   int max_bounces = 4;          // 1 to 64; hits on mirrors count
   uint64_t seed = 1;
   double start_time = 0.0;      // s, first sample of the frame
-  bool footprint_filter = true; // F of the ray tube on coherent contributions, applied in replay
+  Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -202,7 +202,7 @@ out. Raises FileError naming the file, and the line where it is text.)");
 
 Node node(std::string name, int parent, const py::object& placement, std::shared_ptr<Motion> motion,
           std::shared_ptr<Mesh> mesh, std::shared_ptr<VertexSequence> sequence, std::shared_ptr<Material> material,
-          std::string material_name) {
+          std::string material_name, bool smooth) {
   Node made;
   made.name = std::move(name);
   made.parent = parent;
@@ -212,6 +212,7 @@ Node node(std::string name, int parent, const py::object& placement, std::shared
   made.sequence = std::move(sequence);
   made.material = std::move(material);
   made.material_name = std::move(material_name);
+  made.smooth = smooth;
   return made;
 }
 
@@ -261,7 +262,7 @@ void bind_nodes(py::module_& m) {
   py::class_<Node>(m, "Node", "A node of a scene; cannot be changed.")
       .def(py::init(&node), py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
            py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("sequence") = py::none(),
-           py::arg("material") = py::none(), py::arg("material_name") = "")
+           py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false)
       .def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
       .def_property_readonly(
@@ -276,6 +277,7 @@ void bind_nodes(py::module_& m) {
       .def_property_readonly(
           "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
+      .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
 
   py::class_<MeshEntry>(m, "SceneMesh", "A mesh of a scene with its mesh ID.")

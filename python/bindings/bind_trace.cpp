@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -19,24 +20,37 @@ namespace {
 
 using PathsPtr = std::shared_ptr<Paths>;
 
+// By the order of the enum.
+constexpr std::array<const char*, 3> kFootprints = {"none", "first_order", "second_order"};
+
+Footprint as_footprint(const std::string& name) {
+  for (size_t i = 0; i < kFootprints.size(); ++i) {
+    if (name == kFootprints[i]) return static_cast<Footprint>(i);
+  }
+  throw std::invalid_argument("footprint: must be 'second_order', 'first_order' or 'none', got '" + name + "'");
+}
+
 // --- TraceFrame and what it holds ---
 
 void bind_frame(py::module_& m) {
   py::class_<Stratum>(m, "Stratum", "One launch stratum: uniform directions in a cone.")
-      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, std::string name) {
+      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density,
+                       std::string name) {
              Stratum made;
              made.axis = as_vec3(axis, "axis");
              made.versine = versine;
              made.num_rays = num_rays;
+             made.ray_density = ray_density;
              made.name = std::move(name);
              return made;
            }),
-           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("name"))
+           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"),
+           py::arg("name"))
       .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
       .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle; 2 is the whole sphere")
       .def_readonly("num_rays", &Stratum::num_rays)
       .def_readonly("name", &Stratum::name, "what it aims at")
-      .def_property_readonly("ray_density", &Stratum::ray_density, "rays per sr")
+      .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
       .def("__repr__", [](const Stratum& self) {
         return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
       });
@@ -56,13 +70,13 @@ void bind_frame(py::module_& m) {
 
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
-                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, bool footprint_filter,
+                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& footprint,
                        const TraceStatistics& statistics) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, footprint_filter, statistics};
+                               std::move(strata), seed, max_bounces, as_footprint(footprint), statistics};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
-           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint_filter"), py::arg("statistics"))
+           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint"), py::arg("statistics"))
       .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
@@ -72,7 +86,8 @@ void bind_frame(py::module_& m) {
       .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
       .def_readonly("seed", &TraceFrame::seed)
       .def_readonly("max_bounces", &TraceFrame::max_bounces)
-      .def_readonly("footprint_filter", &TraceFrame::footprint_filter)
+      .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprints[static_cast<size_t>(self.footprint)]; },
+                             "\"second_order\", \"first_order\" or \"none\"")
       .def_readonly("statistics", &TraceFrame::statistics);
 }
 
@@ -98,6 +113,11 @@ auto path_column(std::vector<T> Paths::* field) {
 py::array hits_of(const py::object& self) {
   const auto& paths = self.cast<const Paths&>();
   return numpy_view(paths.num_hits() ? paths.hits->data() : nullptr, {static_cast<py::ssize_t>(paths.num_hits())}, self);
+}
+
+py::array curved_cell_of(const py::object& self) {
+  const auto& cells = self.cast<const Paths&>().curved_cell;
+  return numpy_view(cells.empty() ? nullptr : cells.front().data(), {static_cast<py::ssize_t>(cells.size()), 7}, self);
 }
 
 std::vector<int64_t> all_paths(const Paths& paths) {
@@ -220,7 +240,7 @@ py::dict partition_paths(const Paths& paths, const py::dict& parts) {
 
 PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
                            const py::array& diffuse, const py::array& weight, const py::array& stratum,
-                           const py::array& batch, const py::array& flags, const Scene& scene, const Radar& radar,
+                           const py::array& batch, const py::array& flags, const py::object& curved_cell, const Scene& scene, const Radar& radar,
                            const TraceFrame& frame) {
   auto paths = std::make_shared<Paths>();
   const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
@@ -232,6 +252,11 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   paths->stratum = as_vector<uint8_t>(stratum, "stratum", "[P]");
   paths->batch = as_vector<uint8_t>(batch, "batch", "[P]");
   paths->flags = as_vector<uint32_t>(flags, "flags", "[P]");
+  if (!curved_cell.is_none()) {
+    const std::vector<float> cells = as_vector<float>(curved_cell, "curved_cell", "[P, 7]");
+    paths->curved_cell.resize(cells.size() / 7);
+    std::copy(cells.begin(), cells.end(), paths->curved_cell.empty() ? nullptr : paths->curved_cell.front().data());
+  }
   paths->scene = std::make_shared<const Scene>(scene);
   paths->radar = radar;
   paths->frame = frame;
@@ -240,9 +265,9 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
 }
 
 PathsPtr trace_paths(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces, uint64_t seed,
-                     double start_time, bool footprint_filter, const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint_filter", "progress"});
-  const TraceSettings settings{num_rays, max_bounces, seed, start_time, footprint_filter};
+                     double start_time, const std::string& footprint, const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "progress"});
+  const TraceSettings settings{num_rays, max_bounces, seed, start_time, as_footprint(footprint)};
   return std::make_shared<Paths>(
       run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
 }
@@ -271,6 +296,8 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P]")
       .def_property_readonly("flags", path_column(&Paths::flags), "[P] reserved")
+      .def_property_readonly("curved_cell", &curved_cell_of,
+                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
       .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
                              "snapshot of the scene")
       .def_readonly("radar", &Paths::radar, "snapshot of the radar")
@@ -288,17 +315,17 @@ share hits; selections share all hits of their trace.)")
            "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
       .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
                   py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                  py::arg("flags"), py::arg("scene"), py::arg("radar"), py::arg("frame"),
+                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("scene"), py::arg("radar"), py::arg("frame"),
                   "Paths of arrays as the properties give them. Raises ValueError where an index leads nowhere.")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
 
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = 1000000,
-        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint_filter") = true,
+        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint") = "second_order",
         py::arg("progress") = py::none(), R"(Shoots rays through the scene at mid-frame and records what they hit.
 
 num_rays: rays in all; max_bounces: 1 to 64, hits on mirrors count; seed: the same seed gives the same bits
-start_time: s, first sample of the frame; footprint_filter: the ray tube's filter on coherent echoes
+start_time: s, first sample of the frame; footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
 progress: callable(stage, fraction) or None
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
 }

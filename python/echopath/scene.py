@@ -32,13 +32,14 @@ class Scene(_core.Scene):
         position [3] in m, yaw in rad about z (left positive): placement at rest relative to the parent
         transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
         parent: full name of a node; None: the root
-        smooth: False; interpolated normals are not modelled
+        smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
+            across creases of more than 30 degrees
         Raises ValueError or TypeError naming the argument; then nothing has been added.
         """
         _refuse_unknown(unknown)
-        if smooth:
-            raise ValueError("smooth: must be False, interpolated normals are not modelled yet, got True")
-        batch = _Batch(self, self._index_of(parent))
+        if not isinstance(smooth, bool):
+            raise TypeError(f"smooth: must be True or False, got {smooth!r}")
+        batch = _Batch(self, self._index_of(parent), smooth)
         batch.add_object(mesh_or_actor, name, material, motion, _placement(position, yaw, transform))
         self._add_nodes(batch.nodes)
         return f"{parent}/{name}" if parent else name
@@ -57,10 +58,11 @@ class Scene(_core.Scene):
 class _Batch:
     """The nodes of one `add`, made before any of them is added."""
 
-    def __init__(self, scene, parent: int):
+    def __init__(self, scene, parent: int, smooth: bool):
         self.nodes = []
         self._first = scene.num_nodes
         self._parent = parent
+        self._smooth = smooth
 
     def add_object(self, content, name, material, motion, placement) -> None:
         if content is None or isinstance(content, _core.Mesh):
@@ -91,7 +93,8 @@ class _Batch:
         if not (motion is None or sequence or isinstance(motion, _core.Motion)):
             raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion or VertexSequence, got {motion!r}")
         self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if sequence else motion,
-                                     mesh=mesh, sequence=sequence, material=material, material_name=material_name))
+                                     mesh=mesh, sequence=sequence, material=material, material_name=material_name,
+                                     smooth=self._smooth and mesh is not None))
         return self._first + len(self.nodes) - 1
 
 

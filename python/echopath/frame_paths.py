@@ -33,6 +33,8 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
         target = group.create_group(folder)
         for name in fields:
             write_array(target, name, getattr(written, name), compress=name not in _NOISE_LIKE)
+    if len(written.curved_cell):
+        write_array(group["paths"], "curved_cell", written.curved_cell)
     return keep
 
 
@@ -46,6 +48,8 @@ def read_paths(group, scene, radar):
     source = read_group(group, "paths")
     num_paths = len(source["offsets"])
     columns = {name: read_array(source, name, dtype, (num_paths,)) for name, dtype in PATH_FIELDS.items()}
+    if "curved_cell" in source:
+        columns["curved_cell"] = read_array(source, "curved_cell", np.float32, (num_paths, 7))
     _check_indices(group, hits, columns, scene)
     frame = _read_frame(read_group(group, "frame"))
     return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
@@ -65,7 +69,7 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 
 
 def _write_frame(group, frame) -> None:
-    for name in ("start_time", "trace_time", "seed", "max_bounces", "footprint_filter"):
+    for name in ("start_time", "trace_time", "seed", "max_bounces", "footprint"):
         group.attrs[name] = np.uint64(frame.seed) if name == "seed" else getattr(frame, name)
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
@@ -75,6 +79,7 @@ def _write_frame(group, frame) -> None:
     write_texts(group, "stratum_name", [stratum.name for stratum in strata])
     write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
     write_array(group, "stratum_versine", np.array([stratum.versine for stratum in strata], np.float64))
+    write_array(group, "stratum_ray_density", np.array([stratum.ray_density for stratum in strata], np.float64), unit="1/sr")
     write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
 
 
@@ -82,8 +87,9 @@ def _read_frame(group):
     names = read_texts(group, "stratum_name")
     axis = read_array(group, "stratum_axis", np.float64, (len(names), 3))
     versine = read_array(group, "stratum_versine", np.float64, (len(names),))
+    ray_density = read_array(group, "stratum_ray_density", np.float64, (len(names),))
     num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
-    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
+    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]), ray_density=float(ray_density[i]),
                          name=names[i]) for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(
@@ -91,4 +97,4 @@ def _read_frame(group):
         transmitter=read_array(group, "transmitter", np.float64, (3,)),
         receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
         seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
-        footprint_filter=read_attribute(group, "footprint_filter", bool), statistics=statistics)
+        footprint=read_attribute(group, "footprint", str), statistics=statistics)

@@ -31,6 +31,7 @@ def write_scene(group, scene) -> None:
     nodes = list(scene.nodes)
     write_texts(group, "name", [node.name for node in nodes])
     write_texts(group, "material_name", [node.material_name for node in nodes])
+    write_array(group, "smooth", np.array([node.smooth for node in nodes], np.uint8))
     write_array(group, "parent", np.array([node.parent for node in nodes], np.int32))
     placements = np.array([node.placement for node in nodes], np.float64).reshape(-1, 4, 4)
     write_array(group, "placement", placements, unit="m")
@@ -45,6 +46,7 @@ def read_scene(group):
     names = read_texts(group, "name")
     count = len(names)
     material_names = read_texts(group, "material_name", count)
+    smooth = read_array(group, "smooth", np.uint8, (count,))
     parents = read_array(group, "parent", np.int32, (count,))
     placements = read_array(group, "placement", np.float64, (count, 4, 4))
     shared = {kind: _read_shared(group, kind, count) for kind in _SHARED}
@@ -55,7 +57,7 @@ def read_scene(group):
             raise ep.FileError(f"{group.name}/parent: must name an earlier node, is {parent} at node {index}")
         own_name = names[index] if parent == NONE else names[index].removeprefix(names[parent] + "/")
         nodes.append(ep._core.Node(name=own_name, parent=parent, placement=placements[index],
-                                   material_name=material_names[index],
+                                   material_name=material_names[index], smooth=bool(smooth[index]),
                                    **{kind: items[index] for kind, items in shared.items()}))
     scene = ep.Scene()
     scene._add_nodes(nodes)

@@ -50,7 +50,7 @@ def subset(paths, keep):
     return ep.Paths.from_arrays(
         hits=paths.hits[used], offsets=new_offsets, num_bounces=num_bounces, diffuse=paths.diffuse[chosen],
         weight=paths.weight[chosen], stratum=paths.stratum[chosen], batch=paths.batch[chosen],
-        flags=paths.flags[chosen], scene=paths.scene, radar=paths.radar, frame=paths.frame)
+        flags=paths.flags[chosen], curved_cell=paths.curved_cell[chosen] if len(paths.curved_cell) else None, scene=paths.scene, radar=paths.radar, frame=paths.frame)
 
 
 def part_of_path(paths, selections: dict):

@@ -37,7 +37,7 @@ class SceneFile:
     noise_seed: int
 
     def trace_settings(self) -> dict:
-        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint_filter."""
+        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint."""
         return self.trace.model_dump()
 
     def spectrum_settings(self) -> dict:

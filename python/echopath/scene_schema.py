@@ -181,7 +181,7 @@ class ObjectTable(Table):
     transform: Optional[Matrix4] = Field(None, description="4 x 4, instead of position and yaw_deg")
     motion: Optional[MotionTable] = Field(None, description="relative to the placement; none: it stands still")
     parent: Optional[str] = Field(None, description="full name of the node that carries it; none: the scene")
-    smooth: bool = Field(False, description="interpolated normals")
+    smooth: bool = Field(False, description="the mesh stands for a curved surface")
 
     @model_validator(mode="after")
     def _one_shape(self):
@@ -205,7 +205,7 @@ class TraceTable(Table):
     max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
-    footprint_filter: bool = Field(True, description="false only to see what it does")
+    footprint: Literal["second_order", "first_order", "none"] = Field("second_order", description="filter of a ray's footprint")
 
 
 class SpectrumTable(Table):

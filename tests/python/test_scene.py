@@ -203,7 +203,6 @@ def test_breakpoints_of_all_motions_are_joined(square):
     ({"name": "x", "transform": np.eye(4), "yaw": 1.0}, ["transform", "yaw"]),
     ({"name": "x", "transform": np.eye(3)}, ["transform", "[4, 4]"]),
     ({"name": "x", "transform": np.diag([1, 1, 0, 1])}, ["placement", "flatten"]),
-    ({"name": "x", "smooth": True}, ["smooth"]),
     ({"name": "x", "motion": ep.VertexSequence(times=[0, 1], vertices=np.zeros((2, 3, 3)))}, ["sequence", "got 3"]),
 ])
 def test_bad_values_are_refused_by_name_and_add_nothing(square, keywords, words):

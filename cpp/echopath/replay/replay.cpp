@@ -7,6 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
@@ -249,9 +250,23 @@ std::vector<Echoes> Replayer::echoes(std::span<const int64_t> indices, bool movi
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
                         std::vector<std::complex<double>>& amplitudes) const {
+  constexpr size_t kBlock = 8192;
   Level single;
   single.instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
-  evaluate_level(localise(indices), single, false, lengths, amplitudes);
+  const auto channels = static_cast<size_t>(num_channels());
+  lengths.resize(channels * indices.size());
+  amplitudes.resize(channels * indices.size());
+  parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
+    const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
+    std::vector<double> block_lengths;
+    std::vector<std::complex<double>> block_amplitudes;
+    evaluate_level(localise(indices.subspan(begin, size)), single, false, block_lengths, block_amplitudes);
+    for (size_t channel = 0; channel < channels; ++channel) {
+      const auto from = static_cast<ptrdiff_t>(channel * size), to = static_cast<ptrdiff_t>(channel * indices.size() + begin);
+      std::copy_n(block_lengths.begin() + from, size, lengths.begin() + to);
+      std::copy_n(block_amplitudes.begin() + from, size, amplitudes.begin() + to);
+    }
+  });
 }
 
 }  // namespace echopath

@@ -8,13 +8,27 @@ namespace echopath {
 
 DiscLattice::DiscLattice(int64_t num_points, const Eigen::Vector2d& shift) : first_{0} {
   if (num_points <= 0) return;
+  const auto wanted = static_cast<double>(num_points);
+  // The number of points in the disc jumps by one as the cell shrinks: bisect to where it is right.
+  double margin = std::sqrt(wanted) + 2.0, low = std::max(0.25, wanted - margin), high = wanted + margin;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = i == 0 ? wanted : 0.5 * (low + high);
+    fill(std::numbers::pi / middle, shift);
+    if (size() == num_points) return;
+    (size() < num_points ? low : high) = middle;
+  }
+}
+
+void DiscLattice::fill(double cell_area, const Eigen::Vector2d& shift) {
   constexpr double kPhi = std::numbers::phi, kConjugate = 1.0 - std::numbers::phi;
-  // The cell has area sqrt(5) scale^2.
-  const double scale = std::sqrt(std::numbers::pi / (std::sqrt(5.0) * static_cast<double>(num_points)));
+  cell_area_ = cell_area;
+  rows_.clear();
+  first_.assign(1, 0);
+  const double scale = std::sqrt(cell_area / std::sqrt(5.0));  // the lattice itself has cells of sqrt(5)
   step_ = scale * Eigen::Vector2d(1.0, 1.0);
   const Eigen::Vector2d across = scale * Eigen::Vector2d(kPhi, kConjugate);
   const Eigen::Vector2d origin = shift[0] * step_ + shift[1] * across;
-  const double spacing = scale * std::sqrt(2.5);  // of the rows: cell area / |step|
+  const double spacing = cell_area / step_.norm();  // of the rows
   const auto reach = static_cast<int64_t>(1.0 / spacing) + 2;
   for (int64_t n = -reach; n <= reach; ++n) {
     const Eigen::Vector2d base = origin + static_cast<double>(n) * across;
@@ -22,10 +36,10 @@ DiscLattice::DiscLattice(int64_t num_points, const Eigen::Vector2d& shift) : fir
     const double miss = (base + middle * step_).squaredNorm();
     if (miss >= 1.0) continue;
     const double half = std::sqrt((1.0 - miss) / step_.squaredNorm());
-    const double low = std::ceil(middle - half), high = std::floor(middle + half);
-    if (high < low) continue;
-    rows_.push_back(base + low * step_);
-    first_.push_back(first_.back() + static_cast<int64_t>(high - low) + 1);
+    const double first = std::ceil(middle - half), last = std::floor(middle + half);
+    if (last < first) continue;
+    rows_.push_back(base + first * step_);
+    first_.push_back(first_.back() + static_cast<int64_t>(last - first) + 1);
   }
 }
 

@@ -107,7 +107,7 @@ void share_rays(LaunchPlan& plan, int64_t num_rays) {
     const auto shift = uniform2(plan.seed, Stream::kLaunchShift, static_cast<uint64_t>(k), 0);
     plan.points.emplace_back(share, Eigen::Vector2d(shift[0], shift[1]));
     stratum.num_rays = plan.points.back().size();
-    stratum.ray_density = static_cast<double>(share) / stratum.solid_angle();
+    if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back().cell_area() / stratum.solid_angle();
     plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
   }
 }

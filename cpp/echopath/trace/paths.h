@@ -25,7 +25,7 @@ struct Stratum {
   Vec3 axis = Vec3::UnitX();   // unit, world axes
   double versine = 2.0;        // 1 - cos(half angle), exact for narrow cones; 2: whole sphere
   int64_t num_rays = 0;
-  double ray_density = 0.0;    // rays per sr inside the cone, N_k p_k; num_rays may differ from its integral by a few
+  double ray_density = 0.0;    // rays per sr inside the cone, N_k p_k; exact, so that its integral may differ from num_rays
   std::string name;            // what it aims at
 
   double solid_angle() const;                  // sr

@@ -62,6 +62,38 @@ TEST(Sphere, RcsIsItsGeometricCrossSection) {
   EXPECT_NEAR(rcs_dbsm(far_trace(scene, 1 << 16, 1)), -15.03, kMainLobeTolerance);
 }
 
+// Second-order footprint and curved positions: rms error in dB over shifts of the rays and turns of the mesh.
+double smooth_sphere_error_db(double radius, int subdivisions, int64_t num_rays) {
+  constexpr int kTrials = 10;
+  double sum = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Quaternion turn(Eigen::AngleAxisd(0.7 * trial, Vec3(1, trial, 2).normalized()));
+    Surface surface = ellipsoid(Vec3::Zero(), Vec3::Constant(radius), subdivisions);
+    for (Vec3& vertex : surface.vertices) vertex = kCentre * radius / 0.1 + turn * vertex;
+    Node node;
+    node.name = "sphere";
+    node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+    node.material = share(Material::metal());
+    node.smooth = true;
+    Scene scene;
+    scene.add(node);
+    TraceSettings settings;
+    settings.num_rays = num_rays;
+    settings.max_bounces = 1;
+    settings.seed = static_cast<uint64_t>(trial);
+    const Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
+    const double rcs = rcs_of(std::norm(coherent_sum(paths)), kFarRange * radius / 0.1, 77e9);
+    sum += std::pow(decibel(rcs / (kPi * radius * radius)), 2) / kTrials;
+  }
+  return std::sqrt(sum);
+}
+
+TEST(SmoothSphere, FewRaysGiveTheCrossSection) {
+  EXPECT_LT(smooth_sphere_error_db(0.1, 5, 1 << 13), 0.1);   // ka = 161
+  EXPECT_LT(smooth_sphere_error_db(2.0, 6, 1 << 13), 0.1);   // ka = 3228, edges of 0.4 sqrt(a lambda)
+  EXPECT_LT(smooth_sphere_error_db(0.1, 3, 1 << 13), 0.3);   // edges of 0.76 sqrt(a lambda)
+}
+
 // Two squares of 0.1 m at right angles, the bisector toward the radar: 8 pi a^2 b^2 / lambda^2.
 TEST(Dihedral, DoubleBounceIsThatOfTheCorner) {
   Scene scene;

@@ -122,6 +122,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
     normals_.push_back(node.smooth ? vertex_normals(vertices, node.mesh->triangles()) : std::vector<Vec3>());
   }
   device_->lift = 4.0 * 0x1.0p-24 * largest;
+  reach_ = 2.0 * largest;
   rtcCommitScene(device_->scene);
   if (job) job->throw_if_cancelled();
   device_->check("building the scene");
@@ -135,9 +136,22 @@ std::array<Vec3, 3> EmbreeScene::corners(uint32_t mesh_id, uint32_t triangle_id)
   return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
 }
 
+Vec3 EmbreeScene::origin_near(const Scene& scene, const Pose& pose, const Vec3& near) {
+  Eigen::AlignedBox3d box;
+  for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
+    for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
+  }
+  return box.isEmpty() ? near : Vec3(near.cwiseMax(box.min()).cwiseMin(box.max()));
+}
+
+Vec3 EmbreeScene::moved_up(const Vec3& from, const Vec3& direction) const {
+  const double distance = -from.dot(direction);  // to the point of the ray next to the origin
+  return distance > 2.0 * reach_ ? Vec3(from + (distance - 2.0 * reach_) * direction) : from;
+}
+
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
   RTCRayHit query;
-  set_ray(query.ray, from, direction, kInfinity);
+  set_ray(query.ray, moved_up(from, direction), direction, kInfinity);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embree_intersect(device_->scene, query);
@@ -179,7 +193,9 @@ bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
   const double length = segment.norm();
   if (length <= 2.0 * device_->lift) return false;
   RTCRay ray;
-  set_ray(ray, from, segment / length, static_cast<float>(length * (1.0 - 1e-6)));
+  const Vec3 direction = segment / length, start = moved_up(from, direction);
+  const double rest = length - direction.dot(start - from);
+  set_ray(ray, start, direction, static_cast<float>(rest * (1.0 - 1e-6)));
   embree_occluded(device_->scene, ray);
   return ray.tfar < 0;  // Embree marks an occluded ray with -infinity
 }

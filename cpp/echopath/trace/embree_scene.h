@@ -21,7 +21,8 @@ struct RayHit {
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
 };
 
-// Coordinates are relative to `origin` (world), so that single precision resolves the surroundings of the radar.
+// Coordinates are relative to `origin` (world), so that single precision resolves what lies around it. A ray that starts far
+// outside the scene is moved up to it in double precision first.
 // Thread-safe for queries.
 class EmbreeScene {
  public:
@@ -40,13 +41,19 @@ class EmbreeScene {
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const;
 
+  // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
+  static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near);
+
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const;
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return vertices_[mesh_id]; }
 
  private:
+  Vec3 moved_up(const Vec3& from, const Vec3& direction) const;
+
   struct Device;
   std::unique_ptr<Device> device_;
   const Scene* scene_;
+  double reach_ = 0.0;  // m: radius around the origin that holds the scene
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::vector<std::vector<Vec3>> vertices_;  // by mesh ID, relative to the origin

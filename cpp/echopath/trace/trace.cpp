@@ -72,8 +72,9 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   paths.scene = std::make_shared<const Scene>(scene);
   paths.radar = radar;
   paths.frame = make_frame(radar, settings);
-  const Vec3 origin = paths.frame.transmitter;
-  const EmbreeScene geometry(*paths.scene, Pose(*paths.scene, paths.frame.trace_time), origin, job);
+  const Pose pose(*paths.scene, paths.frame.trace_time);
+  const Vec3 origin = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
+  const EmbreeScene geometry(*paths.scene, pose, origin, job);
   const std::vector<Mirror> mirrors = find_mirrors(*paths.scene, geometry);
 
   const Transform world_from_radar = radar.world_from_radar(paths.frame.trace_time);
@@ -81,6 +82,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   launch.num_rays = settings.num_rays;
   launch.seed = settings.seed;
   launch.with_images = settings.max_bounces > 1;
+  launch.transmitter = paths.frame.transmitter - origin;
   set_field_of_view(radar, world_from_radar, launch);
   const LaunchPlan plan = plan_launch(*paths.scene, geometry, mirrors, launch);
   paths.frame.strata = plan.strata;
@@ -89,6 +91,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   sbr.max_bounces = settings.max_bounces;
   sbr.seed = settings.seed;
   sbr.frequency = radar.waveform.start_frequency;
+  sbr.transmitter = launch.transmitter;
   sbr.receiver = paths.frame.receiver - origin;
   const Antenna& first = radar.transmitters.front();
   sbr.polarization = (world_from_radar.linear() * (first.orientation * first.polarization)).normalized();

@@ -8,9 +8,7 @@ namespace {
 
 using namespace testing;
 
-// m: far field of targets up to 0.2 m, and near enough that single precision resolves a corner of 0.1 m (at 2 km rays that
-// bounce on would start half a millimetre off the surface).
-constexpr double kFarRange = 200.0;
+constexpr double kFarRange = 2000.0;         // m: far field of targets up to 0.2 m
 constexpr double kPlateTolerance = 0.1;      // dB, the promise for a plate at broadside
 constexpr double kMainLobeTolerance = 0.3;   // dB
 constexpr double kMultiBounceTolerance = 0.2;  // dB

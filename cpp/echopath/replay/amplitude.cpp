@@ -109,13 +109,16 @@ void evaluate_path(const LocalPath& path, const Instant& instant, const RadioCon
     return;
   }
   const InnerPart inner = inner_part(path, hits);
+  const std::vector<PosedAntenna>& starts = path.is_reversed ? instant.receivers : instant.transmitters;
+  const std::vector<PosedAntenna>& ends = path.is_reversed ? instant.transmitters : instant.receivers;
   scratch.receive.clear();
-  for (const PosedAntenna& receiver : instant.receivers) scratch.receive.push_back(receive_leg(path, hits, receiver));
-  int64_t channel = 0;
-  for (const PosedAntenna& transmitter : instant.transmitters) {
-    const AntennaLeg in = transmit_leg(path, hits, transmitter);
-    for (const AntennaLeg& back : scratch.receive) {
-      const int64_t at = out.stride * channel++;
+  for (const PosedAntenna& antenna : ends) scratch.receive.push_back(receive_leg(path, hits, antenna));
+  for (size_t start = 0; start < starts.size(); ++start) {
+    const AntennaLeg in = transmit_leg(path, hits, starts[start]);
+    for (size_t end = 0; end < ends.size(); ++end) {
+      const AntennaLeg& back = scratch.receive[end];
+      const size_t channel = path.is_reversed ? end * starts.size() + start : start * ends.size() + end;
+      const int64_t at = out.stride * static_cast<int64_t>(channel);
       out.length[at] = in.length + inner.length + back.length;
       const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
       if (near) out.amplitude[at] = 0.0;

@@ -39,6 +39,7 @@ struct LaunchCell {
 struct LocalPath {
   const LocalHit* hits = nullptr;
   int count = 0;
+  bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
   uint64_t diffuse = 0;
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
   std::complex<double> weight;

@@ -106,11 +106,13 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
     LocalPath& path = block.paths.emplace_back();
     path.hits = block.hits.data() + block.hits.size();
     path.count = paths_.num_bounces[p];
-    path.diffuse = paths_.diffuse[p];
+    path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
     path.weight = std::complex<double>(paths_.weight[p]);
     block.longest = std::max(block.longest, path.count);
     for (int k = 0; k < path.count; ++k) {
-      const Hit& hit = paths_.hits_of(index)[k];
+      const int recorded = path.is_reversed ? path.count - 1 - k : k;
+      const Hit& hit = paths_.hits_of(index)[recorded];
+      path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
       const Node& node = paths_.scene->node_of(hit.mesh_id);
       LocalHit& local = block.hits.emplace_back();
       local.mesh_id = hit.mesh_id;

@@ -11,6 +11,7 @@ void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std
   diffuse.push_back(diffuse_bits);
   weight.emplace_back(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
   stratum.push_back(static_cast<uint8_t>(path_stratum));
+  flags.push_back(0);
 }
 
 void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
@@ -23,6 +24,15 @@ void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::c
   pending_.push_back(offsets.size());
   used_depth_ = std::max(used_depth_, skipped + count);
   add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
+}
+
+void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
+                             int path_stratum) {
+  uint64_t reversed_bits = 0;
+  for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
+  add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
+  flags.back() = kReversedPath;
+  for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
 void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
@@ -68,6 +78,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
   paths.diffuse.reserve(num_paths);
   paths.weight.reserve(num_paths);
   paths.stratum.reserve(num_paths);
+  paths.flags.reserve(num_paths);
   for (PathBlock& block : blocks) {
     const auto base = static_cast<int64_t>(hits->size());
     append(*hits, block.hits);
@@ -76,6 +87,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
     append(paths.diffuse, block.diffuse);
     append(paths.weight, block.weight);
     append(paths.stratum, block.stratum);
+    append(paths.flags, block.flags);
     if (!block.curved_cell.empty()) {
       paths.curved_cell.resize(paths.offsets.size() - block.offsets.size());
       append(paths.curved_cell, block.curved_cell);
@@ -85,7 +97,6 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
   }
   if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
   paths.batch.assign(num_paths, 0);
-  paths.flags.assign(num_paths, 0);
   paths.hits = std::move(hits);
 }
 

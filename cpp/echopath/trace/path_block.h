@@ -14,6 +14,7 @@ class PathBlock {
   std::vector<uint64_t> diffuse;
   std::vector<std::complex<float>> weight;
   std::vector<uint8_t> stratum;
+  std::vector<uint32_t> flags;
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
   TraceStatistics statistics;
 
@@ -21,6 +22,8 @@ class PathBlock {
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // A path over hits [skipped, skipped + count) of the current ray, which all such paths share.
   void add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+  // A path over `first` [count], given in the order in which it was traced, that runs the other way (kReversedPath).
+  void add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // Gives the last path added a launch cell of its own (Paths::curved_cell).
   void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.

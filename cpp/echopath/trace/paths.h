@@ -32,12 +32,17 @@ struct Stratum {
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
+// Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
+// it was traced with the antennas exchanged.
+inline constexpr uint32_t kReversedPath = 1;
+
 struct TraceStatistics {
   int64_t num_rays = 0;        // launched
   int64_t num_queries = 0;     // closest-hit and shadow queries
   int64_t num_hits = 0;        // surface points found
   int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
   int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
+  int64_t num_small_mirrors = 0;  // rays ended behind an unflagged mirror smaller than its Fresnel zone
   int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
 };
 
@@ -63,7 +68,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
   std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
   std::vector<uint8_t> batch;
-  std::vector<uint32_t> flags;               // reserved, 0
+  std::vector<uint32_t> flags;               // kReversedPath or 0
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
   std::vector<std::array<float, 7>> curved_cell;

@@ -1,5 +1,7 @@
 #include "echopath/trace/sbr.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -25,7 +27,35 @@ Vec3 cosine_lobe(const Vec3& normal, const std::array<double, 2>& random) {
       .normalized();
 }
 
+// Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
+double curvature_along(const RayHit& point, const Vec3& direction) {
+  if (!point.is_smooth) return 0.0;
+  const Vec3 along = (direction - point.normal.dot(direction) * point.normal).normalized();
+  return along.dot(point.curvature * along);
+}
+
+// The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
+double middle_extent(const std::vector<Vec3>& vertices) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
+  Mat3 covariance = Mat3::Zero();
+  for (const Vec3& vertex : vertices) covariance += (vertex - mean) * (vertex - mean).transpose();
+  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : vertices) box.extend(Vec3(axes.transpose() * (vertex - mean)));
+  std::array<double, 3> extents = {box.sizes()[0], box.sizes()[1], box.sizes()[2]};
+  std::sort(extents.begin(), extents.end());
+  return extents[1];
+}
+
 }  // namespace
+
+// A specular bounce off an unflagged surface.
+struct RayShooter::MirrorBounce {
+  int mesh = -1;               // -1: none
+  double cos_incidence = 1.0;
+  double curvature = 0.0;      // 1/m, in the plane of incidence, positive where convex
+};
 
 struct RayShooter::Ray {
   int64_t index = 0;
@@ -44,6 +74,8 @@ struct RayShooter::Ray {
   std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
   RayDifferential rays;       // regime C, where the scene has smooth meshes
   bool is_curved = false;     // some bounce so far was on a curved surface
+  MirrorBounce mirror;            // the last specular bounce off an unflagged surface since the last anchor
+  bool last_was_mirror = false;   // and it was the last bounce
   double area = 1.0;                       // product of the material areas of the diffuse anchors
 };
 
@@ -65,6 +97,7 @@ RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const st
     : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), settings_(settings),
       legs_(geometry, mirrors, settings.frequency, settings.polarization), mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
@@ -96,6 +129,10 @@ bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
     ++block.statistics.num_grazing;
     return false;
   }
+  if (ray.last_was_mirror && !suffices(ray.mirror, ray.leg_length, surface.point.distance)) {
+    ++block.statistics.num_small_mirrors;
+    return false;
+  }
   ++block.statistics.num_hits;
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;
@@ -105,6 +142,22 @@ bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
                              polarization_mode(settings_.polarization, ray.direction, surface.point.normal));
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
   return true;
+}
+
+// A mirror must hold the first Fresnel zone between what lies `before` and `behind` it (unfolded lengths, m). A point a
+// distance x off the specular one makes the way longer by x^2/2 [cos^2 (1/before + 1/behind) + 2 cos/radius], in the plane
+// of incidence; the zone ends where that is half a wavelength.
+bool RayShooter::suffices(const MirrorBounce& mirror, double before, double behind) const {
+  const double flat = mirror.cos_incidence * mirror.cos_incidence * (1.0 / before + 1.0 / behind);
+  const double bend = std::max(std::abs(flat + 2.0 * mirror.cos_incidence * mirror.curvature), 1e-12);
+  return mesh_width_[static_cast<size_t>(mirror.mesh)] >= 2.0 * std::sqrt(wavelength_ / bend);
+}
+
+// Whether the way back, over this hit as a mirror, would have to be dropped.
+bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const {
+  const MirrorBounce mirror{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
+                            curvature_along(surface.point, direction)};
+  return !suffices(mirror, to_receiver, surface.point.distance);
 }
 
 // Carries the ray tube to the surface; caustics on the way turn the phase of the field.
@@ -146,17 +199,26 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
   const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
   const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field * surface.response.gamma *
                                       surface.response.coherent * launch_area;
+  for (const Leg& leg : scratch.receive) {
+    const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);
+    record(ray, surface, leg, 0, weight * leg.gain, with_reversal, block);
+  }
+}
+
+// One path over the ray's own hits and a receive leg, and its reversal.
+void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
+                        bool with_reversal, PathBlock& block) const {
   std::array<Hit, 65> hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
-  for (const Leg& leg : scratch.receive) {
-    if (leg.mirror < 0) {
-      block.add_prefix(0, ray.depth, 0, weight, ray.stratum);
-    } else {
-      hits[static_cast<size_t>(ray.depth)] = leg.mirror_hit;
-      block.add(hits.data(), ray.depth + 1, 0, weight * leg.gain, ray.stratum);
-    }
-    if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
-  }
+  int count = ray.depth;
+  if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
+  const bool has_cell = ray.is_curved && bits == 0;
+  if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
+  else block.add(hits.data(), count, bits, weight, ray.stratum);
+  if (has_cell) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (!with_reversal) return;
+  block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
+  if (has_cell) block.set_curved_cell(cell_behind_curves(ray, surface));
 }
 
 // The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
@@ -184,16 +246,9 @@ void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const S
   const double magnitude = std::sqrt(ray.area * surface.area) * std::abs(surface.response.gamma) * surface.response.diffuse;
   const std::complex<double> weight = ray.coefficient * magnitude * phase_factor(ray);
   const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
-  std::array<Hit, 65> hits;
-  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
-  for (const Leg& leg : scratch.receive) {
-    if (leg.mirror < 0) {
-      block.add_prefix(0, ray.depth, bits, weight, ray.stratum);
-    } else {
-      hits[static_cast<size_t>(ray.depth)] = leg.mirror_hit;
-      block.add(hits.data(), ray.depth + 1, bits, weight * leg.gain, ray.stratum);
-    }
-  }
+  // Behind a diffuse hit the opposite order is sampled by itself.
+  const bool with_reversal = ray.coherent && ray.mirror.mesh >= 0;
+  for (const Leg& leg : scratch.receive) record(ray, surface, leg, bits, weight * leg.gain, with_reversal, block);
 }
 
 Leg RayShooter::own_leg(const Ray& ray) const {
@@ -263,6 +318,8 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
   const Vec3& normal = surface.point.normal;
   ray.from = geometry_.lifted(surface.point.position, normal);
   if (specular) {
+    const MirrorBounce bounced{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
+                               curvature_along(surface.point, ray.direction)};
     if (has_smooth_ && ray.coherent) {
       const Mat3 flat = Mat3::Zero();
       ray.rays.reflect(ray.direction, normal, surface.point.is_smooth ? surface.point.curvature : flat);
@@ -274,6 +331,8 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     ray.leg_density *= specular_share;
     const int mirror = mirror_of_mesh_[surface.point.hit.mesh_id];
     ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
+    ray.last_was_mirror = mirror < 0;
+    if (mirror < 0) ray.mirror = bounced;
     ray.chain_share = specular_share;
   } else {
     ray.coefficient *= std::abs(response.gamma) * response.diffuse;
@@ -281,6 +340,8 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     ray.diffuse |= uint64_t{1} << (ray.depth - 1);
     ray.coherent = false;
     ray.chain = kOther;
+    ray.mirror = MirrorBounce{};
+    ray.last_was_mirror = false;
     const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension + 1);
     ray.direction = cosine_lobe(normal, random);
     ray.leg_length = 0.0;

@@ -6,6 +6,9 @@
 // reached directly or over one flagged mirror is paired with all its visible transmit and receive legs, under the balance
 // weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only; paths over mirrors alone
 // come from mirror_paths.h.
+// A specular bounce off an unflagged surface smaller than its Fresnel zone is no mirror: the ray ends behind it. What it would
+// have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
+// the opposite order would have to use such a mirror.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include "echopath/trace/launch.h"
 #include "echopath/trace/path_block.h"
@@ -35,6 +38,11 @@ class RayShooter {
 
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
+  struct MirrorBounce;
+  bool suffices(const MirrorBounce& mirror, double before, double behind) const;
+  bool opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const;
+  void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
+              bool with_reversal, PathBlock& block) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
@@ -52,6 +60,7 @@ class RayShooter {
   SbrSettings settings_;
   LegFinder legs_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
+  std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then
 };

@@ -56,16 +56,20 @@ void bind_frame(py::module_& m) {
       });
 
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
-      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t near, int64_t grazing, int64_t false_hits) {
-             return TraceStatistics{rays, queries, hits, near, grazing, false_hits};
+      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t near, int64_t grazing, int64_t small,
+                       int64_t false_hits) {
+             return TraceStatistics{rays, queries, hits, near, grazing, small, false_hits};
            }),
            py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
-           py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_false_hits") = 0)
+           py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
+           py::arg("num_false_hits") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
       .def_readonly("num_near_antenna", &TraceStatistics::num_near_antenna, "dropped: within 1 mm of an antenna")
       .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
+      .def_readonly("num_small_mirrors", &TraceStatistics::num_small_mirrors,
+                    "rays ended behind an unflagged mirror smaller than its Fresnel zone")
       .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision");
 
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
@@ -295,7 +299,7 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P]")
-      .def_property_readonly("flags", path_column(&Paths::flags), "[P] reserved")
+      .def_property_readonly("flags", path_column(&Paths::flags), "[P] 1: recorded as the reversal of another path; else 0")
       .def_property_readonly("curved_cell", &curved_cell_of,
                              "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
       .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },

@@ -13,7 +13,8 @@ PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint6
                "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 HIT = np.dtype(list(HIT_FIELDS.items()))
-STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_false_hits")
+STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_small_mirrors",
+              "num_false_hits")
 
 
 def write_paths(group, paths, min_power: float = 0.0, power=None):

@@ -6,11 +6,15 @@
 #include <array>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <sstream>
 #include <string>
 
 #include "array.h"
 #include "echopath/label/partition.h"
+#include "echopath/replay/received_power.h"
 #include "echopath/replay/replay.h"
+#include "echopath/sim/trace_to_error.h"
 #include "echopath/trace/trace.h"
 #include "keywords.h"
 #include "run_job.h"
@@ -75,12 +79,14 @@ void bind_frame(py::module_& m) {
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
                        std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& footprint,
-                       const TraceStatistics& statistics) {
+                       const TraceStatistics& statistics, int num_batches, double target_error_db, double error_db) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, as_footprint(footprint), statistics};
+                               std::move(strata), seed, max_bounces, as_footprint(footprint), statistics, num_batches,
+                               target_error_db, error_db};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
-           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint"), py::arg("statistics"))
+           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint"), py::arg("statistics"),
+           py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0)
       .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
@@ -92,6 +98,11 @@ void bind_frame(py::module_& m) {
       .def_readonly("max_bounces", &TraceFrame::max_bounces)
       .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprints[static_cast<size_t>(self.footprint)]; },
                              "\"second_order\", \"first_order\" or \"none\"")
+      .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
+      .def_readonly("target_error_db", &TraceFrame::target_error_db,
+                    "dB, standard error of the received power that was asked for; 0: none")
+      .def_readonly("error_db", &TraceFrame::error_db,
+                    "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
       .def_readonly("statistics", &TraceFrame::statistics);
 }
 
@@ -268,12 +279,68 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   return paths;
 }
 
-PathsPtr trace_paths(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces, uint64_t seed,
-                     double start_time, const std::string& footprint, const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "progress"});
-  const TraceSettings settings{num_rays, max_bounces, seed, start_time, as_footprint(footprint)};
-  return std::make_shared<Paths>(
-      run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
+// A target that was not met is said aloud, and may be made an error.
+void warn_of_missed_target(const TraceFrame& frame) {
+  if (frame.error_db <= frame.target_error_db) return;
+  const std::string text = "trace: max_rays was reached at a standard error of " + std::to_string(frame.error_db) +
+                           " dB, target_error_db is " + std::to_string(frame.target_error_db);
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
+                     double start_time, const std::string& footprint, std::optional<int> batches,
+                     std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
+                     const py::kwargs& unknown) {
+  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "batches", "target_error_db",
+                                    "max_rays", "progress"});
+  TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time, as_footprint(footprint),
+                         batches.value_or(1)};
+  if (!target_error_db) {
+    return std::make_shared<Paths>(
+        run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
+  }
+  const ErrorTarget target{*target_error_db, max_rays};
+  settings.batches = batches.value_or(kTargetBatches);
+  settings.num_rays = num_rays.value_or(std::min(kFirstRays, max_rays));
+  auto paths = std::make_shared<Paths>(
+      run_job("trace", progress, [&](Job& job) { return trace_to_error(scene, radar, settings, target, &job); }));
+  warn_of_missed_target(paths->frame);
+  return paths;
+}
+
+ReceivedPower power_of(const Paths& paths, const py::object& progress) {
+  return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job); });
+}
+
+std::string power_text(const ReceivedPower& self) {
+  std::ostringstream text;
+  text << "ReceivedPower(" << self.power << " W, standard_error=" << self.standard_error << " W)";
+  return text.str();
+}
+
+void bind_received_power(py::module_& m) {
+  py::class_<ReceivedPower>(m, "ReceivedPower",
+                            R"(Mean received power of a set of paths and its Monte-Carlo error; all powers in W.
+
+At the trace time, between the first antennas, at the start frequency; the mean is over the random phases of diffuse hits.
+Errors come from the batches of a trace (`trace(batches=8)`) and are NaN for one batch.)")
+      .def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
+      .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
+      .def_readonly("coherent", &ReceivedPower::coherent,
+                    "W, |field|^2 of coherent paths; with batches free of the bias by noise, which can take it below zero")
+      .def_readonly("coherent_error", &ReceivedPower::coherent_error, "W, standard error")
+      .def_readonly("diffuse", &ReceivedPower::diffuse, "W, sum over diffuse hits of |field of all paths over that hit|^2")
+      .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
+      .def_readonly("resolved", &ReceivedPower::resolved, "the power is at least twice its standard error; False for one batch")
+      .def_readonly("num_batches", &ReceivedPower::num_batches)
+      .def_property_readonly("error_db", &ReceivedPower::error_db,
+                             "dB, 10 log10(1 + standard_error / power); infinite where not resolved")
+      .def("__repr__", &power_text);
+  m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("progress") = py::none(),
+        R"(Mean received power of paths with its standard error, for the whole of a trace or any selection of it.
+
+paths: of a trace with batches for errors; progress: callable(stage, fraction) or None
+Returns a ReceivedPower, in W. Raises KeyboardInterrupt on Ctrl-C.)");
 }
 
 std::string paths_text(const Paths& self) {
@@ -298,7 +365,7 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("diffuse", path_column(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
-      .def_property_readonly("batch", path_column(&Paths::batch), "[P]")
+      .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
       .def_property_readonly("flags", path_column(&Paths::flags), "[P] 1: recorded as the reversal of another path; else 0")
       .def_property_readonly("curved_cell", &curved_cell_of,
                              "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
@@ -324,12 +391,17 @@ share hits; selections share all hits of their trace.)")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
 
-  m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = 1000000,
+  m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint") = "second_order",
+        py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays,
         py::arg("progress") = py::none(), R"(Shoots rays through the scene at mid-frame and records what they hit.
 
-num_rays: rays in all; max_bounces: 1 to 64, hits on mirrors count; seed: the same seed gives the same bits
+num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count; seed: the same seed gives the same
+bits
 start_time: s, first sample of the frame; footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
+batches: 1 to 64 independent parts of the rays, from which `received_power` tells standard errors; 1 unless given
+target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, until the standard error of the
+received power is no larger. 8 batches unless given; a RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
 progress: callable(stage, fraction) or None
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
 }
@@ -339,6 +411,7 @@ Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, mo
 void bind_trace(py::module_& m) {
   bind_frame(m);
   bind_paths(m);
+  bind_received_power(m);
 }
 
 }  // namespace echopath::bindings

@@ -145,7 +145,7 @@ void Replayer::add_cell(LocalPath& path, int64_t index, EvaluationScratch& scrat
   const size_t stratum = paths_.stratum[p];
   if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
   LaunchCell& cell = path.cell;
-  cell.ray_density = paths_.frame.strata[stratum].ray_density;
+  cell.ray_density = paths_.frame.lattice_density(stratum);
   if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
     const std::array<float, 7>& record = paths_.curved_cell[p];
     cell.is_curved = cell.is_known = true;

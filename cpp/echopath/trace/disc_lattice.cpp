@@ -6,24 +6,35 @@
 
 namespace echopath {
 
-DiscLattice::DiscLattice(int64_t num_points, const Eigen::Vector2d& shift) : first_{0} {
+DiscLattice::DiscLattice(int64_t num_points, const std::vector<Eigen::Vector2d>& shifts) : first_{0} {
+  end_of_batch_.assign(shifts.size(), 0);
   if (num_points <= 0) return;
-  const auto wanted = static_cast<double>(num_points);
+  const auto wanted = static_cast<double>(num_points), spare = static_cast<double>(shifts.size() - 1);
   // The number of points in the disc jumps by one as the cell shrinks: bisect to where it is right.
-  double margin = std::sqrt(wanted) + 2.0, low = std::max(0.25, wanted - margin), high = wanted + margin;
+  const double margin = std::sqrt(wanted) + 2.0 + spare;
+  double low = std::max(0.25, wanted - margin), high = wanted + margin;
   for (int i = 0; i < 100; ++i) {
     const double middle = i == 0 ? wanted : 0.5 * (low + high);
-    fill(std::numbers::pi / middle, shift);
+    fill(std::numbers::pi / middle, shifts);
     if (size() == num_points) return;
     (size() < num_points ? low : high) = middle;
   }
 }
 
-void DiscLattice::fill(double cell_area, const Eigen::Vector2d& shift) {
-  constexpr double kPhi = std::numbers::phi, kConjugate = 1.0 - std::numbers::phi;
+void DiscLattice::fill(double cell_area, const std::vector<Eigen::Vector2d>& shifts) {
   cell_area_ = cell_area;
   rows_.clear();
   first_.assign(1, 0);
+  end_of_batch_.clear();
+  for (const Eigen::Vector2d& shift : shifts) {
+    add_rows(cell_area * static_cast<double>(shifts.size()), shift);
+    end_of_batch_.push_back(size());
+  }
+}
+
+// Of one batch, whose points have cells of that area.
+void DiscLattice::add_rows(double cell_area, const Eigen::Vector2d& shift) {
+  constexpr double kPhi = std::numbers::phi, kConjugate = 1.0 - std::numbers::phi;
   const double scale = std::sqrt(cell_area / std::sqrt(5.0));  // the lattice itself has cells of sqrt(5)
   step_ = scale * Eigen::Vector2d(1.0, 1.0);
   const Eigen::Vector2d across = scale * Eigen::Vector2d(kPhi, kConjugate);
@@ -46,6 +57,10 @@ void DiscLattice::fill(double cell_area, const Eigen::Vector2d& shift) {
 Eigen::Vector2d DiscLattice::point(int64_t index) const {
   const auto row = static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), index) - first_.begin()) - 1;
   return rows_[row] + static_cast<double>(index - first_[row]) * step_;
+}
+
+int DiscLattice::batch_of(int64_t index) const {
+  return static_cast<int>(std::upper_bound(end_of_batch_.begin(), end_of_batch_.end(), index) - end_of_batch_.begin());
 }
 
 }  // namespace echopath

@@ -97,6 +97,16 @@ std::vector<Stratum> limited(Cones cones) {
   return strata;
 }
 
+// Each batch has a shift of its own in each stratum.
+std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
+  std::vector<Eigen::Vector2d> shifts;
+  for (int batch = 0; batch < batches; ++batch) {
+    const auto shift = uniform2(seed, Stream::kLaunchShift, static_cast<uint64_t>(stratum), static_cast<uint32_t>(batch));
+    shifts.emplace_back(shift[0], shift[1]);
+  }
+  return shifts;
+}
+
 void share_rays(LaunchPlan& plan, int64_t num_rays) {
   const auto num_cones = static_cast<int64_t>(plan.strata.size()) - 1;
   const auto aimed = num_cones > 0 ? static_cast<int64_t>(std::llround((1.0 - kDefensiveShare) * static_cast<double>(num_rays))) : 0;
@@ -104,8 +114,7 @@ void share_rays(LaunchPlan& plan, int64_t num_rays) {
   for (int64_t k = 0; k <= num_cones; ++k) {
     const int64_t share = k < num_cones ? aimed * (k + 1) / num_cones - aimed * k / num_cones : num_rays - aimed;
     Stratum& stratum = plan.strata[static_cast<size_t>(k)];
-    const auto shift = uniform2(plan.seed, Stream::kLaunchShift, static_cast<uint64_t>(k), 0);
-    plan.points.emplace_back(share, Eigen::Vector2d(shift[0], shift[1]));
+    plan.points.emplace_back(share, shifts_of(plan.seed, k, plan.batches));
     stratum.num_rays = plan.points.back().size();
     if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back().cell_area() / stratum.solid_angle();
     plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
@@ -118,6 +127,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
                        const LaunchSettings& settings) {
   LaunchPlan plan;
   plan.seed = settings.seed;
+  plan.batches = settings.batches;
   plan.strata = limited(aim(scene, geometry, mirrors, settings));
   Stratum& defensive = plan.strata.emplace_back();
   defensive.axis = settings.boresight;
@@ -129,6 +139,11 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
 
 int LaunchPlan::stratum_of(int64_t ray) const {
   return static_cast<int>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) - first_ray.begin()) - 1;
+}
+
+int LaunchPlan::batch_of(int stratum, int64_t ray) const {
+  const auto k = static_cast<size_t>(stratum);
+  return points[k].batch_of(ray - first_ray[k]);
 }
 
 Vec3 LaunchPlan::direction(int index, int64_t ray) const {

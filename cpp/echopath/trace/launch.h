@@ -17,8 +17,12 @@ struct LaunchPlan {
   std::vector<DiscLattice> points;  // of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc
   std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
   uint64_t seed = 0;
+  int batches = 1;
 
   int stratum_of(int64_t ray) const;
+  int batch_of(int stratum, int64_t ray) const;
+  // Rays per sr of one batch inside the cone.
+  double lattice_density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density / batches; }
   // Unit direction of a ray.
   Vec3 direction(int stratum, int64_t ray) const;
   // Expected rays per sr toward `direction`, of all strata together (balance heuristic). `own`: a stratum that is counted
@@ -29,6 +33,7 @@ struct LaunchPlan {
 struct LaunchSettings {
   int64_t num_rays = 0;
   uint64_t seed = 0;
+  int batches = 1;  // independent shifts of the set of each stratum, which share its rays
   bool with_images = true;
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();

@@ -12,6 +12,7 @@ void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std
   weight.emplace_back(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
   stratum.push_back(static_cast<uint8_t>(path_stratum));
   flags.push_back(0);
+  batch.push_back(current_batch);
 }
 
 void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
@@ -80,6 +81,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
   paths.weight.reserve(num_paths);
   paths.stratum.reserve(num_paths);
   paths.flags.reserve(num_paths);
+  paths.batch.reserve(num_paths);
   for (PathBlock& block : blocks) {
     const auto base = static_cast<int64_t>(hits->size());
     append(*hits, block.hits);
@@ -89,6 +91,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
     append(paths.weight, block.weight);
     append(paths.stratum, block.stratum);
     append(paths.flags, block.flags);
+    append(paths.batch, block.batch);
     if (!block.curved_cell.empty()) {
       paths.curved_cell.resize(paths.offsets.size() - block.offsets.size());
       append(paths.curved_cell, block.curved_cell);
@@ -97,7 +100,6 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
     block = PathBlock();  // frees it: the peak stays near one copy of the record
   }
   if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
-  paths.batch.assign(num_paths, 0);
   paths.hits = std::move(hits);
 }
 

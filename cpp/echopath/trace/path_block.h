@@ -13,8 +13,9 @@ class PathBlock {
   std::vector<uint8_t> num_bounces;
   std::vector<uint64_t> diffuse;
   std::vector<std::complex<float>> weight;
-  std::vector<uint8_t> stratum;
+  std::vector<uint8_t> stratum, batch;
   std::vector<uint32_t> flags;
+  uint8_t current_batch = kNoBatch;  // of the paths added from now on
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
   TraceStatistics statistics;
 

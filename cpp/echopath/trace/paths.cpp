@@ -29,6 +29,7 @@ void Paths::validate() const {
   for (size_t i = 0; i < size; ++i) {
     require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
     require(offsets[i] >= 0 && offsets[i] + num_bounces[i] <= num_hits(), "offsets", "must lead to hits", offsets[i]);
+    require(batch[i] == kNoBatch || batch[i] < frame.num_batches, "batch", "must be one of the frame's", int{batch[i]});
     require(stratum[i] == 255 || stratum[i] < frame.strata.size(), "stratum", "must be one of the frame's", int{stratum[i]});
   }
   for (int64_t i = 0; i < num_hits(); ++i) {

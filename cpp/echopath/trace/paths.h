@@ -32,6 +32,9 @@ struct Stratum {
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
+// The batch of paths that rays did not find (image method): they stand in each batch's estimate in full.
+inline constexpr uint8_t kNoBatch = 255;
+
 // Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
 // it was traced with the antennas exchanged.
 inline constexpr uint32_t kReversedPath = 1;
@@ -56,6 +59,13 @@ struct TraceFrame {
   int max_bounces = 4;
   Footprint footprint = Footprint::kSecondOrder;
   TraceStatistics statistics;
+  int num_batches = 1;             // independent shifts of the launch directions; each has its share of each stratum's rays
+  double target_error_db = 0.0;    // dB, the standard error of the received power that was asked for; 0: none
+  double error_db = 0.0;           // dB, the one that was reached; 0: not looked at
+
+  // Rays per sr of one batch of a stratum: what its launch cells are made of. Filters for the cells of all batches together
+  // would leave each batch its aliases, and these do not cancel between lattices that know nothing of each other.
+  double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / num_batches; }
 };
 
 struct Paths {
@@ -67,7 +77,7 @@ struct Paths {
   std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
   std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
   std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
-  std::vector<uint8_t> batch;
+  std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
   std::vector<uint32_t> flags;               // kReversedPath or 0
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.

@@ -13,6 +13,7 @@
 namespace echopath {
 namespace {
 
+constexpr int kRouletteBounce = 3;     // rays leave this bounce and later ones by Russian roulette
 constexpr double kGrazing = 1e-3;      // cosine below which a hit is dropped
 constexpr double kNearAntenna = 1e-3;  // m
 constexpr int kDirect = -1;            // transmit chains, besides the index of a mirror
@@ -88,6 +89,10 @@ struct RayShooter::Surface {
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
+struct RayShooter::Odds {
+  double specular = 0.0, diffuse = 0.0;
+};
+
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
 };
@@ -108,6 +113,7 @@ void RayShooter::shoot(int64_t index, PathBlock& block) const {
   ray.stratum = plan_.stratum_of(index);
   ray.from = settings_.transmitter;
   ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
+  block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, index));
   ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   thread_local Scratch scratch;
@@ -225,7 +231,7 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
 std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surface& surface) const {
   const Hit& hit = surface.point.hit;
   const auto [a, b, c] = geometry_.corners(hit.mesh_id, hit.triangle_id);
-  const double side = 1.0 / std::sqrt(plan_.strata[static_cast<size_t>(ray.stratum)].ray_density);
+  const double side = 1.0 / std::sqrt(plan_.lattice_density(ray.stratum));
   // A tube that the caustic limit widened keeps its proportions.
   const double widened = std::sqrt(surface.tube_area / std::max(std::abs(ray.rays.area(ray.direction, 0.0)), 1e-30));
   const double scale = side * std::min(widened, 1e6);
@@ -307,13 +313,26 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
   }
 }
 
+RayShooter::Odds RayShooter::odds_of(const Surface& surface) const {
+  const SurfaceResponse& response = surface.response;
+  const Odds shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
+  const bool is_asked = settings_.specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
+  // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
+  if (!is_asked || surface.material->mirror) return shares;
+  return {settings_.specular_probability, 1.0 - settings_.specular_probability};
+}
+
 bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
   const SurfaceResponse& response = surface.response;
-  const double specular_share = response.coherent * response.coherent, diffuse_share = response.diffuse * response.diffuse;
+  const Odds odds = odds_of(surface);
+  const double survival = ray.depth < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
   const auto dimension = static_cast<uint32_t>(2 * ray.depth);
-  bool specular = diffuse_share == 0;
-  if (specular_share > 0 && diffuse_share > 0) {
-    specular = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension)[0] < specular_share;
+  const bool is_open = odds.specular > 0 && odds.diffuse > 0;
+  bool specular = odds.diffuse == 0;
+  if (is_open || survival < 1) {
+    const auto coin = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
+    if (coin[1] >= survival) return false;
+    if (is_open) specular = coin[0] < odds.specular;
   }
   const Vec3& normal = surface.point.normal;
   ray.from = geometry_.lifted(surface.point.position, normal);
@@ -326,14 +345,14 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
       ray.is_curved = ray.is_curved || surface.point.is_smooth;
     }
     ray.direction = (ray.direction + 2.0 * surface.cos_incidence * normal).normalized();
-    ray.field *= response.gamma * response.coherent / specular_share;
+    ray.field *= response.gamma * response.coherent / (odds.specular * survival);
     ray.coefficient *= response.gamma * response.coherent;
-    ray.leg_density *= specular_share;
+    ray.leg_density *= odds.specular * survival;
     const int mirror = mirror_of_mesh_[surface.point.hit.mesh_id];
     ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
     ray.last_was_mirror = mirror < 0;
     if (mirror < 0) ray.mirror = bounced;
-    ray.chain_share = specular_share;
+    ray.chain_share = odds.specular;
   } else {
     ray.coefficient *= std::abs(response.gamma) * response.diffuse;
     ray.area *= surface.area;
@@ -345,7 +364,7 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension + 1);
     ray.direction = cosine_lobe(normal, random);
     ray.leg_length = 0.0;
-    ray.leg_density = diffuse_share * std::max(normal.dot(ray.direction), 1e-9) / kPi;
+    ray.leg_density = odds.diffuse * survival * std::max(normal.dot(ray.direction), 1e-9) / kPi;
   }
   return std::norm(ray.coefficient) > 0;
 }

@@ -22,6 +22,7 @@ struct SbrSettings {
   Vec3 transmitter = Vec3::Zero();           // relative to the trace origin, as the receiver
   Vec3 receiver = Vec3::Zero();
   Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
+  double specular_probability = 0.0;         // of going on specularly where a surface does both; 0: the specular share of power
 };
 
 class RayShooter {
@@ -35,6 +36,7 @@ class RayShooter {
   struct Ray;      // what the ray carries
   struct Surface;  // where it is
   struct Scratch;
+  struct Odds;     // of going on
 
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
@@ -51,6 +53,7 @@ class RayShooter {
   Leg own_leg(const Ray& ray) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
   bool bounce(Ray& ray, const Surface& surface) const;
+  Odds odds_of(const Surface& surface) const;
   std::complex<double> phase_factor(const Ray& ray) const;
 
   const Scene& scene_;

@@ -38,6 +38,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.seed = settings.seed;
   frame.max_bounces = settings.max_bounces;
   frame.footprint = settings.footprint;
+  frame.num_batches = settings.batches;
   return frame;
 }
 
@@ -61,6 +62,8 @@ void TraceSettings::validate() const {
   require(num_rays >= 1, "num_rays", "must be >= 1", num_rays);
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
   require(std::isfinite(start_time), "start_time", "must be finite", start_time);
+  require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
+  require(specular_probability >= 0 && specular_probability < 1, "specular_probability", "must lie in [0, 1)", specular_probability);
 }
 
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
@@ -81,6 +84,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   LaunchSettings launch;
   launch.num_rays = settings.num_rays;
   launch.seed = settings.seed;
+  launch.batches = settings.batches;
   launch.with_images = settings.max_bounces > 1;
   launch.transmitter = paths.frame.transmitter - origin;
   set_field_of_view(radar, world_from_radar, launch);
@@ -90,6 +94,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   SbrSettings sbr;
   sbr.max_bounces = settings.max_bounces;
   sbr.seed = settings.seed;
+  sbr.specular_probability = settings.specular_probability;
   sbr.frequency = radar.waveform.start_frequency;
   sbr.transmitter = launch.transmitter;
   sbr.receiver = paths.frame.receiver - origin;

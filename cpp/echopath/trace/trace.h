@@ -11,6 +11,8 @@ struct TraceSettings {
   uint64_t seed = 1;
   double start_time = 0.0;      // s, first sample of the frame
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
+  int batches = 1;              // 1 to 64: independent lattices that share the rays and give errors; each filters its own cells
+  double specular_probability = 0.0;  // 0: the specular share; any other leaves the expected echo as it is (for tests)
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

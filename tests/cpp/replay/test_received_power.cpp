@@ -1,0 +1,188 @@
+// Received power and its standard error: against closed forms and against the spread of many independent traces.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "echopath/replay/received_power.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+constexpr int kSeeds = 200;
+constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 200 values is known to 5 %, errors of lattices less well
+constexpr double kFourSigma = 4.0;
+
+Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
+           Footprint footprint = Footprint::kSecondOrder, int max_bounces = 4) {
+  TraceSettings settings;
+  settings.num_rays = num_rays;
+  settings.seed = seed;
+  settings.batches = batches;
+  settings.footprint = footprint;
+  settings.max_bounces = max_bounces;
+  return trace(scene, radar, settings);
+}
+
+Scene metal_sphere() {
+  const Surface surface = ellipsoid({10, 0, 0}, {0.1, 0.1, 0.1}, 4);
+  Node ball;
+  ball.name = "ball";
+  ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
+  ball.material = share(Material::metal());
+  ball.smooth = true;
+  Scene scene;
+  scene.add(ball);
+  return scene;
+}
+
+// 0.1 m, turned by 3 degrees.
+Scene tilted_plate() {
+  const Vec3 edge = 0.1 * Vec3(std::sin(kPi / 60.0), std::cos(kPi / 60.0), 0.0), up(0, 0, 0.1);
+  Scene scene;
+  add_rectangle(scene, "plate", Vec3(10, 0, 0) - 0.5 * (edge + up), edge, up, share(Material::metal()));
+  return scene;
+}
+
+Scene lambert_plate() {
+  Scene scene;
+  add_rectangle(scene, "plate", {20, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.3));
+  return scene;
+}
+
+struct Spread {
+  double mean_power = 0.0, spread = 0.0, rms_error = 0.0;
+};
+
+Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays, Footprint footprint = Footprint::kSecondOrder) {
+  std::vector<double> powers;
+  Spread out;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const ReceivedPower power = received_power(shot(scene, radar, num_rays, seed, 8, footprint, 1));
+    powers.push_back(power.power);
+    out.rms_error += power.standard_error * power.standard_error / kSeeds;
+  }
+  out.rms_error = std::sqrt(out.rms_error);
+  out.mean_power = std::accumulate(powers.begin(), powers.end(), 0.0) / kSeeds;
+  for (const double power : powers) out.spread += (power - out.mean_power) * (power - out.mean_power) / (kSeeds - 1);
+  out.spread = std::sqrt(out.spread);
+  return out;
+}
+
+TEST(ReceivedPower, ErrorOfACoherentEchoIsItsSpread) {
+  const Spread sphere = spread_of(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 4096);
+  EXPECT_LT(sphere.spread / sphere.mean_power, 0.01);
+  EXPECT_NEAR(sphere.rms_error / sphere.spread, 1.0, kErrorOfErrors);
+}
+
+// Off the main lobe of a plate the error is that of its edges, and lies along the field.
+TEST(ReceivedPower, ErrorOfATiltedPlateIsItsSpread) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const Spread plate = spread_of(tilted_plate(), radar, 4096);
+  EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
+  EXPECT_NEAR(decibel(rcs_of(plate.mean_power, 10.0, radar.waveform.start_frequency)), -0.980, 0.1);
+}
+
+TEST(ReceivedPower, ErrorOfADiffuseEchoIsItsSpread) {
+  const Spread plate = spread_of(lambert_plate(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2048);
+  EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
+}
+
+// Without the filter and with few rays the field is mostly noise: |mean|^2 is far too high, the estimate is not.
+TEST(ReceivedPower, HasNoBiasWhereTheFieldIsNoise) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const Spread noisy = spread_of(metal_sphere(), radar, 4096, Footprint::kNone);
+  const double truth = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 20, 1, 1, Footprint::kNone, 1)));
+  EXPECT_NEAR(noisy.mean_power, truth, kFourSigma * noisy.spread / std::sqrt(kSeeds));
+  EXPECT_GT(noisy.spread, truth);
+  // On the safe side: noise feigns some field for its own error to act upon.
+  EXPECT_GT(noisy.rms_error / noisy.spread, 1.0 - kErrorOfErrors);
+  EXPECT_LT(noisy.rms_error / noisy.spread, 1.4 + kErrorOfErrors);
+  double biased = 0.0;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    biased += received_power(shot(metal_sphere(), radar, 4096, seed, 1, Footprint::kNone, 1)).power / kSeeds;
+  }
+  EXPECT_GT(biased, 2.0 * truth);
+}
+
+// sigma = rho A^2-integral of a Lambert plate of 1 m^2 at 20 m: 1.1985 m^2 for rho = 0.3.
+TEST(ReceivedPower, OfALambertPlateIsItsMeanLevel) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const ReceivedPower power = received_power(shot(lambert_plate(), radar, 20000, 1, 8));
+  EXPECT_TRUE(power.resolved);
+  EXPECT_EQ(power.coherent, 0.0);
+  EXPECT_NEAR(rcs_of(power.power, 20.0, radar.waveform.start_frequency), 1.1985, 0.005);
+  EXPECT_LT(power.standard_error, 0.01 * power.power);
+}
+
+// A Lambert sphere beside a metal wall: both orders of the one-way ghost share their phase and add as fields between
+// antennas at one place (power ratios to the direct echo by quadrature).
+TEST(ReceivedPower, OrdersOverAMirrorAddAsFields) {
+  Scene scene;
+  Surface ball = ellipsoid({10, 0, 1}, {0.3, 0.3, 0.3}, 4);
+  add_mesh(scene, "ball", std::move(ball.vertices), std::move(ball.triangles), lambert(1.0));
+  add_rectangle(scene, "wall", {-20, 3, -10}, {60, 0, 0}, {0, 0, 22}, share(Material::metal(true)));
+  const Paths paths = shot(scene, plain_radar({0, 0, 1}, {0, 0, 1}), 100000, 1, 8);
+  const auto of_bounces = [&](int count) {
+    std::vector<uint8_t> keep;
+    for (size_t i = 0; i < paths.offsets.size(); ++i) {
+      keep.push_back(paths.num_bounces[i] == count && paths.diffuse[i] != 0 && (paths.diffuse[i] & (paths.diffuse[i] - 1)) == 0);
+    }
+    return received_power(paths.select(keep));
+  };
+  const ReceivedPower direct = of_bounces(1), pair = of_bounces(2), two_way = of_bounces(3);
+  EXPECT_NEAR(decibel(pair.power / direct.power), 4.053, 0.05);
+  EXPECT_NEAR(decibel(two_way.power / direct.power), -2.700, 0.05);
+  // Paths of the wall alone are known without rays: no error comes from them.
+  std::vector<uint8_t> images;
+  for (const uint8_t batch : paths.batch) images.push_back(batch == kNoBatch);
+  const ReceivedPower wall = received_power(paths.select(images));
+  const double image_field = kSpeedOfLight / 77e9 / (4 * kPi * 6.0);
+  EXPECT_NEAR(wall.power / (image_field * image_field), 1.0, 1e-6);
+  EXPECT_LT(wall.standard_error, 1e-9 * wall.power);
+}
+
+TEST(ReceivedPower, PartsOfDiffusePowerAddUp) {
+  Scene scene = lambert_plate();
+  add_rectangle(scene, "other", {15, 2, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.7));
+  const Paths paths = shot(scene, plain_radar(Vec3::Zero(), {0, 0.1, 0}), 20000, 1, 4);
+  std::vector<uint8_t> first, second;
+  for (int64_t i = 0; i < paths.num_paths(); ++i) {
+    first.push_back(paths.hits_of(i)[0].mesh_id == 0);
+    second.push_back(!first.back());
+  }
+  const double sum = received_power(paths.select(first)).power + received_power(paths.select(second)).power;
+  EXPECT_NEAR(sum / received_power(paths).power, 1.0, 1e-12);
+}
+
+// The sum over all paths is the whole echo for any number of batches: what differs is the error of each lattice.
+TEST(ReceivedPower, BatchesMakeOneEcho) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const double reference = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 17, 1, 1)));
+  for (const int batches : {2, 8, 64}) {
+    const Paths paths = shot(metal_sphere(), radar, 1 << 17, 2, batches);
+    EXPECT_EQ(paths.frame.statistics.num_rays, 1 << 17);
+    EXPECT_NEAR(decibel(std::norm(coherent_sum(paths)) / reference), 0.0, 0.1) << batches;
+    EXPECT_NEAR(decibel(received_power(paths).power / reference), 0.0, 0.1) << batches;
+  }
+}
+
+TEST(ReceivedPower, OfOneBatchHasNoError) {
+  const Paths paths = shot(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2000, 1, 1);
+  const ReceivedPower power = received_power(paths);
+  EXPECT_NEAR(power.power / std::norm(coherent_sum(paths)), 1.0, 1e-9);
+  EXPECT_TRUE(std::isnan(power.standard_error));
+  EXPECT_FALSE(power.resolved);
+}
+
+TEST(ReceivedPower, OfNothingIsZero) {
+  const ReceivedPower power = received_power(shot(Scene(), plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 4));
+  EXPECT_EQ(power.power, 0.0);
+  EXPECT_EQ(power.standard_error, 0.0);
+  EXPECT_FALSE(power.resolved);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,70 @@
+// How rays go on must not show in the echo: Russian roulette and the choice between specular and diffuse.
+#include <gtest/gtest.h>
+
+#include "echopath/replay/received_power.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+constexpr double kSphereTolerance = 0.005;   // relative
+constexpr double kDihedralTolerance = 0.2;   // dB, of the mean of 32 seeds
+constexpr int kSeeds = 32;
+
+// Integrating sphere of radius 3 m with Lambert walls: lambda^2 rho / (4 pi^2 R^2 (1 - rho)) of the transmitted power
+// arrives at any point inside. Most of it after the bounce from which rays go on by roulette.
+TEST(WeightRules, IntegratingSphere) {
+  for (const auto& [reflectivity, truth] : std::vector<std::pair<double, double>>{{0.3, 1.8285e-8}, {0.7, 9.955e-8}}) {
+    Scene scene;
+    Surface wall = ellipsoid(Vec3::Zero(), {3, 3, 3}, 4);
+    add_mesh(scene, "wall", std::move(wall.vertices), std::move(wall.triangles), lambert(reflectivity));
+    TraceSettings settings;
+    settings.num_rays = 100000;
+    settings.max_bounces = 60;
+    settings.batches = 8;
+    const Paths paths = trace(scene, plain_radar(Vec3::Zero(), {0.7, 0.4, -0.3}), settings);
+    const ReceivedPower power = received_power(paths);
+    EXPECT_NEAR(power.power / truth, 1.0, kSphereTolerance) << reflectivity;
+    EXPECT_LT(power.standard_error / truth, kSphereTolerance) << reflectivity;
+    EXPECT_LT(paths.num_paths(), static_cast<int64_t>(100000 * (3.2 + 1.0 / (1.0 - reflectivity)))) << reflectivity;
+  }
+}
+
+// Two faces of 0.1 m at a right angle, seen along the bisector.
+Scene dihedral(double scattering) {
+  Material material;
+  material.reflectivity = 1.0;
+  material.scattering = scattering;
+  Scene scene;
+  const double depth = 0.1 / std::sqrt(2.0);
+  add_rectangle(scene, "left", {10, 0, -0.05}, {-depth, depth, 0}, {0, 0, 0.1}, share(material));
+  add_rectangle(scene, "right", {10, 0, -0.05}, {-depth, -depth, 0}, {0, 0, 0.1}, share(material));
+  return scene;
+}
+
+std::complex<double> double_bounce(double scattering, double specular_probability, uint64_t seed) {
+  TraceSettings settings;
+  settings.num_rays = 1 << 14;
+  settings.max_bounces = 2;
+  settings.seed = seed;
+  settings.specular_probability = specular_probability;
+  const Paths paths = trace(dihedral(scattering), plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
+  std::vector<uint8_t> keep;
+  for (size_t i = 0; i < paths.offsets.size(); ++i) keep.push_back(paths.num_bounces[i] == 2 && paths.diffuse[i] == 0);
+  return coherent_sum(paths.select(keep));
+}
+
+// Half of the power scattered at each face leaves the field 1/sqrt(2) per face: -6.02 dB, however the ray chose.
+TEST(WeightRules, HalfDiffuseDihedralLosesSixDecibelsForAnyBranching) {
+  const double smooth = std::norm(double_bounce(0.0, 0.0, 1));
+  for (const double probability : {0.0, 0.2, 0.3, 0.8}) {
+    double power = 0.0;
+    for (uint64_t seed = 1; seed <= kSeeds; ++seed) power += std::norm(double_bounce(std::sqrt(0.5), probability, seed)) / kSeeds;
+    EXPECT_NEAR(decibel(power / smooth), -6.0206, kDihedralTolerance) << probability;
+  }
+}
+
+}  // namespace
+}  // namespace echopath

@@ -9,9 +9,9 @@
 from . import _core
 from ._core import (
     Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, Isotropic, KeyframeMotion,
-    LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeDoppler, Selection, Stratum, TraceFrame, TraceStatistics,
+    LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeDoppler, ReceivedPower, Selection, Stratum, TraceFrame, TraceStatistics,
     VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes, num_bounces,
-    num_threads, range_doppler, set_num_threads, speed_of_light, synthesize, trace,
+    num_threads, range_doppler, received_power, set_num_threads, speed_of_light, synthesize, trace,
 )
 from .materials import materials
 from .scene import Scene
@@ -32,8 +32,8 @@ def view(*arguments, **keywords):
 __all__ = [
     "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "FileError", "Frame",
     "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar",
-    "RangeDoppler", "Scene", "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics", "VertexSequence",
+    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics", "VertexSequence",
     "actors", "add_noise", "boltzmann", "decompose", "hits", "load_frame", "load_mesh", "load_meshes", "load_scene",
-    "materials", "num_bounces", "num_threads", "range_doppler", "save_frame", "set_num_threads", "simulate",
+    "materials", "num_bounces", "num_threads", "range_doppler", "received_power", "save_frame", "set_num_threads", "simulate",
     "speed_of_light", "synthesize", "trace", "view",
 ]

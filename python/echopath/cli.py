@@ -56,6 +56,8 @@ def _add_trace_options(parser, default_rays) -> None:
                         help=f"number of rays (default: {default})")
     parser.add_argument("--seed", type=_natural, default=None, metavar="N",
                         help="of the rays (default: that of the scene file)")
+    parser.add_argument("--batches", type=_positive, default=None, metavar="N",
+                        help="independent parts of the rays, which give standard errors (default: that of the scene file)")
 
 
 def _positive(text: str) -> int:
@@ -82,7 +84,7 @@ def _demo(options) -> None:
     from .progress import progress_bars
 
     with progress_bars() as progress:
-        run_demo(options.out, num_rays=options.rays, seed=options.seed, progress=progress)
+        run_demo(options.out, num_rays=options.rays, seed=options.seed, batches=options.batches, progress=progress)
 
 
 def _run(options) -> None:
@@ -93,10 +95,11 @@ def _run(options) -> None:
 
     scene_file = load_scene(options.scene)
     with progress_bars() as progress:
-        frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed, progress=progress)
+        frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
+                              batches=options.batches, progress=progress)
         written = write_outputs(frame, options.out, partitions=scene_file.partitions())
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.stages(frame.stages),
-                 *report.powers(frame.cube, frame.parts), *report.files(written)]:
+                 *report.powers(frame.cube, frame.parts), *report.mean_powers(frame), *report.files(written)]:
         print(text)
 
 

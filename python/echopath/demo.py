@@ -17,17 +17,17 @@ NUM_RAYS = 200_000
 ARMS, LEGS = "pedestrian/arm_*", "pedestrian/leg_*"
 
 
-def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, progress=None, say=print) -> Frame:
+def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, batches=None, progress=None, say=print) -> Frame:
     """Simulates data/scenes/street.toml, writes frame.h5 and four pictures to `out` and reports what the rays touched.
 
-    num_rays: launched; seed: None, that of the file; progress: callable (stage, fraction) or None
+    num_rays: launched; seed, batches: None, those of the file; progress: callable (stage, fraction) or None
     say: takes each line of the report.
     """
     out = Path(out)
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = load_scene(path)
-    frame = simulate_file(street, num_rays=num_rays, seed=seed, extra_parts=limb_partitions(street.parts["route"]),
-                          progress=progress)
+    frame = simulate_file(street, num_rays=num_rays, seed=seed, batches=batches,
+                          extra_parts=limb_partitions(street.parts["route"]), progress=progress)
     written = write_outputs(frame, out, partitions=street.parts)
     residuals = _check_sums(frame, progress)
     for text in _report(street, frame, written, residuals):
@@ -57,7 +57,7 @@ def _report(street, frame: Frame, written, residuals: dict) -> list[str]:
     shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != "other"}
     limbs = frame.part_spectra["limbs"]
     return [street.title, *report.counts(frame.paths), *report.stages(frame.stages),
-            *report.powers(frame.cube, shown),
+            *report.powers(frame.cube, shown), *report.mean_powers(frame),
             f"radial velocities (receding positive), down to {report.EXTENT_BELOW_PEAK_DB:.0f} dB below the peak",
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",

@@ -12,6 +12,7 @@ HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
                "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
+FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "footprint", "num_batches", "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits")
@@ -70,7 +71,7 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 
 
 def _write_frame(group, frame) -> None:
-    for name in ("start_time", "trace_time", "seed", "max_bounces", "footprint"):
+    for name in FRAME_VALUES:
         group.attrs[name] = np.uint64(frame.seed) if name == "seed" else getattr(frame, name)
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
@@ -98,4 +99,7 @@ def _read_frame(group):
         transmitter=read_array(group, "transmitter", np.float64, (3,)),
         receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
         seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
-        footprint=read_attribute(group, "footprint", str), statistics=statistics)
+        footprint=read_attribute(group, "footprint", str), statistics=statistics,
+        num_batches=read_attribute(group, "num_batches", int),
+        target_error_db=read_attribute(group, "target_error_db", float),
+        error_db=read_attribute(group, "error_db", float))

@@ -36,6 +36,10 @@ def _describe_scene_file(scene_file) -> list[str]:
     lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene),
              *_describe_radar(scene_file.radar), "trace", report.line("rays", f"{trace.num_rays:,}"),
              report.line("bounces at most", str(trace.max_bounces))]
+    if trace.batches is not None:
+        lines.append(report.line("batches", str(trace.batches)))
+    if trace.target_error_db is not None:
+        lines.append(report.line("until a standard error of", f"{trace.target_error_db:g} dB, {trace.max_rays:,} rays at most"))
     for partition, group in scene_file.partitions().items():
         lines.append(f"parts, {partition}")
         lines += [report.line(name, expression) for name, expression in group.items()]

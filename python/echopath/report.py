@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+import echopath as ep
+
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
 EXTENT_BELOW_PEAK_DB = 30.0
 LABEL_WIDTH = 34
@@ -49,7 +51,14 @@ def line(label: str, value: str) -> str:
 def counts(paths) -> list[str]:
     """Rays, hits and paths of a trace."""
     return [line("rays", f"{paths.frame.statistics.num_rays:,}"), line("hits recorded", f"{len(paths.mesh_id):,}"),
-            line("paths", f"{paths.num_paths:,}")]
+            line("paths", f"{paths.num_paths:,}"), *_target(paths.frame)]
+
+
+def _target(frame) -> list[str]:
+    if frame.target_error_db == 0.0:
+        return []
+    verdict = "met" if frame.error_db <= frame.target_error_db else "NOT met with the most rays allowed"
+    return [line("standard error", f"{frame.error_db:.3g} dB, target {frame.target_error_db:g} dB: {verdict}")]
 
 
 def stages(all_stages) -> list[str]:
@@ -65,6 +74,28 @@ def powers(whole, parts: dict) -> list[str]:
         lines.append(f"received power, {partition}")
         lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
     return lines
+
+
+def mean_powers(frame) -> list[str]:
+    """Mean received power of the whole and of each part with its standard error, for traces with batches."""
+    paths = frame.paths
+    if paths.frame.num_batches < 2:
+        return []
+    lines = [f"mean received power over the random phases, +- standard error of {paths.frame.num_batches} batches",
+             line("whole", power_with_error(ep.received_power(paths)))]
+    for partition, part_of_path in frame.part_of_path.items():
+        lines.append(f"mean received power, {partition}")
+        lines += [line(name, power_with_error(ep.received_power(paths.select(part_of_path == index))))
+                  for index, name in enumerate(frame.parts[partition])]
+    return lines
+
+
+def power_with_error(power) -> str:
+    """An ep.ReceivedPower in dBm +- dB; the bound of two standard errors where it is not resolved."""
+    if power.resolved:
+        return f"{_power_text(_in_dbm(power.power))} +- {power.error_db:.2f} dB"
+    bound = max(power.power, 0.0) + 2.0 * power.standard_error
+    return f"  not resolved, below {_in_dbm(bound):.2f} dBm" if bound > 0.0 else _power_text(-np.inf)
 
 
 def extent(label: str, spectrum) -> str:

@@ -24,16 +24,18 @@ class Written:
     pictures: list
 
 
-def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, extra_parts=None, progress=None) -> Frame:
+def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None, progress=None) -> Frame:
     """The frame that a scene file describes.
 
-    num_rays, seed: instead of those of the file; extra_parts: {partition: {part: selection}} beside those of the file.
+    num_rays, seed, batches: instead of those of the file; extra_parts: {partition: {part: selection}} beside those of the file.
     """
     settings = scene_file.trace_settings()
     if num_rays is not None:
         settings["num_rays"] = num_rays
     if seed is not None:
         settings["seed"] = seed
+    if batches is not None:
+        settings["batches"] = batches
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.spectrum_settings(), progress=progress)

@@ -37,8 +37,11 @@ class SceneFile:
     noise_seed: int
 
     def trace_settings(self) -> dict:
-        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint."""
-        return self.trace.model_dump()
+        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint, batches, target_error_db, max_rays."""
+        settings = self.trace.model_dump()
+        if self.trace.target_error_db is not None and "num_rays" not in self.trace.model_fields_set:
+            settings["num_rays"] = None  # where the search begins is then up to it
+        return settings
 
     def spectrum_settings(self) -> dict:
         """Keywords of `ep.range_doppler`: window, zero_pad."""

@@ -206,6 +206,11 @@ class TraceTable(Table):
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
     footprint: Literal["second_order", "first_order", "none"] = Field("second_order", description="filter of a ray's footprint")
+    batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
+        None, description="independent parts of the rays, which give standard errors; none: 1, with target_error_db 8")
+    target_error_db: Optional[Positive] = Field(
+        None, description="dB, standard error of the received power until which the rays double, from num_rays on")
+    max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
 
 
 class SpectrumTable(Table):

@@ -27,7 +27,7 @@ Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t se
 }
 
 Scene metal_sphere() {
-  const Surface surface = ellipsoid({10, 0, 0}, {0.1, 0.1, 0.1}, 4);
+  const Surface surface = ellipsoid({10, 0, 0}, {0.1, 0.1, 0.1}, 3);
   Node ball;
   ball.name = "ball";
   ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
@@ -38,7 +38,8 @@ Scene metal_sphere() {
   return scene;
 }
 
-// 0.1 m, turned by 3 degrees.
+// 0.1 m, turned by 3 degrees: cos^2 sinc^2 gives -0.980 dBsm.
+constexpr double kTiltedPlate = -0.980;
 Scene tilted_plate() {
   const Vec3 edge = 0.1 * Vec3(std::sin(kPi / 60.0), std::cos(kPi / 60.0), 0.0), up(0, 0, 0.1);
   Scene scene;
@@ -72,7 +73,7 @@ Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays, Footp
 }
 
 TEST(ReceivedPower, ErrorOfACoherentEchoIsItsSpread) {
-  const Spread sphere = spread_of(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 4096);
+  const Spread sphere = spread_of(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2048);
   EXPECT_LT(sphere.spread / sphere.mean_power, 0.01);
   EXPECT_NEAR(sphere.rms_error / sphere.spread, 1.0, kErrorOfErrors);
 }
@@ -82,7 +83,7 @@ TEST(ReceivedPower, ErrorOfATiltedPlateIsItsSpread) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const Spread plate = spread_of(tilted_plate(), radar, 4096);
   EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
-  EXPECT_NEAR(decibel(rcs_of(plate.mean_power, 10.0, radar.waveform.start_frequency)), -0.980, 0.1);
+  EXPECT_NEAR(decibel(rcs_of(plate.mean_power, 10.0, radar.waveform.start_frequency)), kTiltedPlate, 0.1);
 }
 
 TEST(ReceivedPower, ErrorOfADiffuseEchoIsItsSpread) {
@@ -93,16 +94,16 @@ TEST(ReceivedPower, ErrorOfADiffuseEchoIsItsSpread) {
 // Without the filter and with few rays the field is mostly noise: |mean|^2 is far too high, the estimate is not.
 TEST(ReceivedPower, HasNoBiasWhereTheFieldIsNoise) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  const Spread noisy = spread_of(metal_sphere(), radar, 4096, Footprint::kNone);
-  const double truth = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 20, 1, 1, Footprint::kNone, 1)));
+  const Spread noisy = spread_of(metal_sphere(), radar, 2048, Footprint::kNone);
+  const double truth = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 19, 1, 1, Footprint::kNone, 1)));
   EXPECT_NEAR(noisy.mean_power, truth, kFourSigma * noisy.spread / std::sqrt(kSeeds));
   EXPECT_GT(noisy.spread, truth);
   // On the safe side: noise feigns some field for its own error to act upon.
   EXPECT_GT(noisy.rms_error / noisy.spread, 1.0 - kErrorOfErrors);
   EXPECT_LT(noisy.rms_error / noisy.spread, 1.4 + kErrorOfErrors);
   double biased = 0.0;
-  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    biased += received_power(shot(metal_sphere(), radar, 4096, seed, 1, Footprint::kNone, 1)).power / kSeeds;
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    biased += std::norm(coherent_sum(shot(metal_sphere(), radar, 2048, seed, 8, Footprint::kNone, 1))) / 50;
   }
   EXPECT_GT(biased, 2.0 * truth);
 }
@@ -160,12 +161,12 @@ TEST(ReceivedPower, PartsOfDiffusePowerAddUp) {
 // The sum over all paths is the whole echo for any number of batches: what differs is the error of each lattice.
 TEST(ReceivedPower, BatchesMakeOneEcho) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  const double reference = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 17, 1, 1)));
-  for (const int batches : {2, 8, 64}) {
-    const Paths paths = shot(metal_sphere(), radar, 1 << 17, 2, batches);
-    EXPECT_EQ(paths.frame.statistics.num_rays, 1 << 17);
-    EXPECT_NEAR(decibel(std::norm(coherent_sum(paths)) / reference), 0.0, 0.1) << batches;
-    EXPECT_NEAR(decibel(received_power(paths).power / reference), 0.0, 0.1) << batches;
+  const auto level = [&](double power) { return decibel(rcs_of(power, 10.0, radar.waveform.start_frequency)); };
+  for (const int batches : {1, 2, 8, 64}) {
+    const Paths paths = shot(tilted_plate(), radar, 1 << 16, 2, batches);
+    EXPECT_EQ(paths.frame.statistics.num_rays, 1 << 16);
+    EXPECT_NEAR(level(std::norm(coherent_sum(paths))), kTiltedPlate, 0.1) << batches;
+    EXPECT_NEAR(level(received_power(paths).power), kTiltedPlate, 0.1) << batches;
   }
 }
 

@@ -1,0 +1,137 @@
+"""Received power with its standard error against NumPy, and traces that go on until an error is met."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import report
+
+FREQUENCY = 77e9
+WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
+ROUNDING = 1e-6  # relative: phases of lengths of tens of metres, sums in another order
+BATCHES = 6
+
+
+def make_radar():
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=64, sampling_rate=20e6,
+                                num_chirps=4, chirp_interval=60e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+
+
+def street():
+    """A rough ball beside a partly rough mirror wall, and a metal ball: coherent and diffuse echoes, and images."""
+    scene = ep.Scene()
+    wall = ep.Mesh([[-20, 3, -10], [60, 3, -10], [60, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(wall, name="wall", material=ep.Material(permittivity=5 - 0.3j, mirror=True, scattering=0.3))
+    scene.add(ep.actors.sphere(0.3), name="rough", material=ep.Material(reflectivity=0.5, scattering=0.8), position=(10, 0.5, 1))
+    scene.add(ep.actors.sphere(0.1), name="metal", material=ep.Material.metal(), position=(8, -1, 1), smooth=True)
+    return scene
+
+
+@pytest.fixture(scope="module")
+def paths():
+    return ep.trace(street(), make_radar(), num_rays=6000, batches=BATCHES, seed=4)
+
+
+def slow_power(paths):
+    """(coherent, its error, diffuse, its error), from the sums as they are defined."""
+    arriving = paths.amplitude * np.exp(-1j * WAVE_NUMBER * paths.lengths([paths.frame.trace_time])[0])
+    count = paths.frame.num_batches
+    images = arriving[paths.batch == 255].sum()
+    fields = np.array([count * arriving[(paths.batch == b) & (paths.diffuse == 0)].sum() + images for b in range(count)])
+    by_hit = {}
+    for path in np.flatnonzero(paths.diffuse):
+        hits = paths.hits[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
+        scattering = [tuple(hit) for k, hit in enumerate(hits) if int(paths.diffuse[path]) >> k & 1]
+        key = (paths.batch[path], *min(scattering, scattering[::-1]))
+        by_hit[key] = by_hit.get(key, 0.0) + arriving[path]
+    powers = np.zeros(count)
+    for key, field in by_hit.items():
+        powers[key[0]] += count * abs(field) ** 2
+    coherent = (abs(fields.sum()) ** 2 - (abs(fields) ** 2).sum()) / (count * (count - 1))
+    mean = fields.mean()
+    variance = (abs(fields - mean) ** 2).sum() / (count - 1)
+    along = ((fields - mean) * np.conj(mean) / abs(mean)).real.var(ddof=1)
+    error = np.sqrt(4 * max(coherent, 0) * along / count + variance ** 2 / (count * (count - 1)))
+    return coherent, error, powers.mean(), np.sqrt(powers.var(ddof=1) / count)
+
+
+def test_power_is_that_of_its_definition(paths):
+    assert np.count_nonzero(paths.batch == 255) == 1
+    power = ep.received_power(paths)
+    found = (power.coherent, power.coherent_error, power.diffuse, power.diffuse_error)
+    assert found == pytest.approx(slow_power(paths), rel=ROUNDING)
+    assert power.power == power.coherent + power.diffuse and power.num_batches == BATCHES
+    together = np.hypot(power.coherent_error, power.diffuse_error)
+    assert 0.5 * together < power.standard_error < 1.5 * together
+    assert power.error_db == pytest.approx(10 * np.log10(1 + power.standard_error / power.power))
+
+
+def test_power_of_a_selection_is_that_of_its_definition(paths):
+    some = paths.select("T .* 'rough' .* R")
+    power = ep.received_power(some)
+    assert (power.diffuse, power.diffuse_error) == pytest.approx(slow_power(some)[2:], rel=ROUNDING)
+    assert power.resolved and 0 < power.error_db < 1
+
+
+def test_one_batch_has_no_error():
+    power = ep.received_power(ep.trace(street(), make_radar(), num_rays=500))
+    assert np.isnan(power.standard_error) and not power.resolved and power.power > 0
+
+
+def test_batches_survive_a_file(paths, tmp_path):
+    paths.save(tmp_path / "frame.h5")
+    again = ep.Paths.load(tmp_path / "frame.h5")
+    assert again.frame.num_batches == BATCHES
+    assert ep.received_power(again).standard_error == ep.received_power(paths).standard_error
+
+
+def rough_ball():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(10, 0, 1))
+    return scene
+
+
+def test_rays_double_until_the_error_is_met(recwarn):
+    loose = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=1.0)
+    tight = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=0.005)
+    for paths in (loose, tight):
+        assert 0 < paths.frame.error_db <= paths.frame.target_error_db and paths.frame.num_batches == 8
+        assert paths.frame.error_db == ep.received_power(paths).error_db
+    assert loose.frame.statistics.num_rays == 500
+    doublings = np.log2(tight.frame.statistics.num_rays / 500)
+    assert doublings >= 1 and doublings == int(doublings)
+    assert not [warning for warning in recwarn if warning.category is RuntimeWarning]
+
+
+def test_a_cap_that_was_hit_is_reported():
+    with pytest.warns(RuntimeWarning, match="max_rays was reached.*target_error_db is 0.0001"):
+        paths = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=1e-4, max_rays=1500)
+    assert paths.frame.statistics.num_rays == 1500 and paths.frame.error_db > paths.frame.target_error_db
+    assert any("NOT met" in line for line in report.counts(paths))
+
+
+def test_without_a_target_no_error_is_looked_at(paths):
+    assert paths.frame.target_error_db == 0.0 and paths.frame.error_db == 0.0
+
+
+@pytest.mark.parametrize("keywords, message", [
+    ({"batches": 0}, "batches: must lie in .1, 64., got 0"),
+    ({"batches": 65}, "batches: must lie in .1, 64., got 65"),
+    ({"target_error_db": 0.1, "batches": 1}, "batches: must be >= 2 for target_error_db, got 1"),
+    ({"target_error_db": 0.0}, "target_error_db: must be positive, got 0"),
+    ({"target_error_db": 0.1, "max_rays": 0}, "max_rays: must be >= 1, got 0"),
+    ({"target_error_db": 0.1, "max_rays": 50}, "num_rays: must not exceed max_rays, got 100"),
+])
+def test_bad_settings_are_named(keywords, message):
+    with pytest.raises(ValueError, match=message):
+        ep.trace(rough_ball(), make_radar(), **({"num_rays": 100} | keywords))
+
+
+def test_a_report_gives_powers_with_their_errors():
+    parts = {"object": {"rough": "T 'rough' R", "nothing": "T 'metal' 'metal' 'metal' R"}}
+    frame = ep.simulate(street(), make_radar(), num_rays=6000, batches=8, parts=parts)
+    lines = report.mean_powers(frame)
+    assert "8 batches" in lines[0] and [line.split()[0] for line in lines[1:]] == ["whole", "mean", "rough", "nothing", "other"]
+    assert "dBm +- 0." in lines[3] and "nothing" in lines[4].split()[-1]
+    frame = ep.simulate(street(), make_radar(), num_rays=500)
+    assert report.mean_powers(frame) == []

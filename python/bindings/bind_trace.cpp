@@ -16,6 +16,7 @@
 #include "echopath/replay/replay.h"
 #include "echopath/sim/trace_to_error.h"
 #include "echopath/trace/trace.h"
+#include "footprint_name.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -25,15 +26,6 @@ namespace {
 using PathsPtr = std::shared_ptr<Paths>;
 
 // By the order of the enum.
-constexpr std::array<const char*, 3> kFootprints = {"none", "first_order", "second_order"};
-
-Footprint as_footprint(const std::string& name) {
-  for (size_t i = 0; i < kFootprints.size(); ++i) {
-    if (name == kFootprints[i]) return static_cast<Footprint>(i);
-  }
-  throw std::invalid_argument("footprint: must be 'second_order', 'first_order' or 'none', got '" + name + "'");
-}
-
 // --- TraceFrame and what it holds ---
 
 void bind_frame(py::module_& m) {

@@ -10,6 +10,7 @@ constexpr double kFlatAbsolute = 1e-4;   // m
 constexpr double kFlatRelative = 1e-6;   // of the mesh's extent
 constexpr double kOnPlane = 1e-4;        // m: a point this near the plane has no image leg over it
 constexpr double kTeLimit = 0.70710678118654752;
+constexpr double kAlongTravel = 0.1;  // sine between field and direction of travel
 
 Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_id) {
   const std::vector<Triangle>& triangles = scene.node_of(mesh_id).mesh->triangles();
@@ -59,7 +60,8 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
   const Vec3 across = polarization - polarization.dot(direction) * direction;
   const Vec3 te_axis = direction.cross(normal);
   const double scale = across.norm() * te_axis.norm();
-  if (scale < 1e-12) return PolarizationMode::kTe;  // normal incidence: both are the same
+  if (te_axis.norm() < 1e-12) return PolarizationMode::kTe;  // normal incidence: both are the same
+  if (across.norm() < kAlongTravel) return PolarizationMode::kTm;
   return std::abs(across.dot(te_axis)) >= kTeLimit * scale ? PolarizationMode::kTe : PolarizationMode::kTm;
 }
 

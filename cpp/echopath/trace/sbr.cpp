@@ -16,6 +16,8 @@ namespace {
 constexpr int kRouletteBounce = 3;     // rays leave this bounce and later ones by Russian roulette
 constexpr double kGrazing = 1e-3;      // cosine below which a hit is dropped
 constexpr double kNearAntenna = 1e-3;  // m
+// Product of material areas in m^2 per hit beyond which a ray ends: its square root is part of the weight, in single precision.
+constexpr double kLargestArea = 1e60;
 constexpr int kDirect = -1;            // transmit chains, besides the index of a mirror
 constexpr int kOther = -2;
 
@@ -366,7 +368,7 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     ray.leg_length = 0.0;
     ray.leg_density = odds.diffuse * survival * std::max(normal.dot(ray.direction), 1e-9) / kPi;
   }
-  return std::norm(ray.coefficient) > 0;
+  return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }
 
 std::complex<double> RayShooter::phase_factor(const Ray& ray) const {

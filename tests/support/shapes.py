@@ -1,0 +1,102 @@
+"""Canonical targets, scenes and radars that tests of levels share."""
+import numpy as np
+
+import echopath as ep
+
+FREQUENCY = 77e9                                # Hz
+WAVELENGTH = ep.speed_of_light / FREQUENCY      # m
+METAL = ep.Material.metal()
+
+
+def lambert(reflectivity):
+    return ep.Material(reflectivity=reflectivity, scattering=1.0)
+
+
+def rectangle(corner, edge_a, edge_b):
+    corner, a, b = (np.asarray(value, float) for value in (corner, edge_a, edge_b))
+    return ep.Mesh([corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]])
+
+
+def plate(centre, normal, side, up=(0.0, 0.0, 1.0)):
+    """A square whose horizontal edges are perpendicular to `up`."""
+    across = np.cross(up, normal)
+    across = across / np.linalg.norm(across)
+    upward = np.cross(normal, across) / np.linalg.norm(normal)
+    return rectangle(np.asarray(centre) - 0.5 * side * (across + upward), side * across, side * upward)
+
+
+def sphere(centre, radius, subdivisions):
+    """An icosphere of 20 * 4^subdivisions triangles."""
+    golden = 0.5 * (1 + np.sqrt(5))
+    points = [np.array(p) / np.hypot(1, golden) for p in (
+        (-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0), (0, -1, golden), (0, 1, golden),
+        (0, -1, -golden), (0, 1, -golden), (golden, 0, -1), (golden, 0, 1), (-golden, 0, -1), (-golden, 0, 1))]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6),
+             (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10),
+             (8, 6, 7), (9, 8, 1)]
+    for _ in range(subdivisions):
+        faces = _subdivided(points, faces)
+    return ep.Mesh(np.asarray(centre) + radius * np.array(points), faces)
+
+
+def _subdivided(points, faces):
+    middles = {}
+
+    def middle(a, b):
+        key = (min(a, b), max(a, b))
+        if key not in middles:
+            middles[key] = len(points)
+            between = points[a] + points[b]
+            points.append(between / np.linalg.norm(between))
+        return middles[key]
+
+    fine = []
+    for a, b, c in faces:
+        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+        fine += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+    return fine
+
+
+def scene_of(**objects):
+    """Scene of name=(mesh, material) or (mesh, material, smooth)."""
+    scene = ep.Scene()
+    for name, (mesh, material, *smooth) in objects.items():
+        scene.add(mesh, name=name, material=material, smooth=bool(smooth and smooth[0]))
+    return scene
+
+
+def make_radar(transmitter, receiver=None, polarization=(0.0, 0.0, 1.0), frequency=FREQUENCY):
+    """1 W, isotropic antennas, one chirp."""
+    waveform = ep.ChirpSequence(start_frequency=frequency, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
+                                num_chirps=1, chirp_interval=30e-6)
+    receiver = transmitter if receiver is None else receiver
+    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter, polarization=polarization)],
+                    receivers=[ep.Antenna(receiver, polarization=polarization)], transmit_power=1.0)
+
+
+def fields(paths):
+    """[P] amplitudes with the phase of their lengths, sqrt(W)."""
+    cycles = paths.lengths([paths.frame.trace_time])[0] * (paths.radar.waveform.start_frequency / ep.speed_of_light)
+    return paths.amplitude * np.exp(-2j * np.pi * np.mod(cycles, 1.0))
+
+
+def power_by_hit(paths, of_mesh):
+    """Mean power of diffuse paths in W: paths over the same hit on mesh `of_mesh` share its phase and add as fields."""
+    if paths.num_paths == 0:
+        return 0.0
+    starts = np.asarray(paths.offsets, int)
+    row = np.full(paths.num_paths, -1)
+    for k in range(int(paths.num_bounces.max())):
+        inside = k < paths.num_bounces
+        found = inside & (row < 0)
+        at = np.where(inside, starts + k, 0)
+        row = np.where(found & (paths.mesh_id[at] == of_mesh), at, row)
+    keys = np.stack([paths.triangle_id[row], paths.u[row].view(np.uint32), paths.v[row].view(np.uint32)], axis=1)
+    _, group = np.unique(keys, axis=0, return_inverse=True)
+    group = group.ravel()
+    field = fields(paths)
+    return float(np.sum(np.bincount(group, field.real) ** 2 + np.bincount(group, field.imag) ** 2))
+
+
+def decibel(power):
+    return 10 * np.log10(power)

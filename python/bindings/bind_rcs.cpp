@@ -45,7 +45,8 @@ std::vector<RcsDirections> pairs_of(const py::object& incidence, const py::objec
 
 py::object rcs_of(const Scene& scene, double frequency, const py::object& incidence, const py::object& observation,
                   const py::object& polarization, int64_t num_rays, int max_bounces, uint64_t seed,
-                  const std::string& footprint, bool components, const py::object& progress, const py::kwargs& unknown) {
+                  const std::string& footprint, bool components, const py::object& progress,
+                  const py::kwargs& unknown) {
   refuse_unknown(unknown, "rcs", kKeywords);
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);

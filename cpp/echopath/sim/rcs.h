@@ -34,11 +34,11 @@ struct RadarCrossSection {
   double total() const { return coherent + diffuse; }
 };
 
-// sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic antennas
-// at a distance R at which the wave fronts are flat over the scene's bounding sphere to 1e-3 rad and their amplitude to
-// 1e-4. Each pair costs a trace of its own.
-// Raises invalid_argument for bad settings, a zero direction, one along the polarization, a scene without meshes, or one
-// with mirrors: they stand for planes without end, which have no cross section.
+// sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic
+// antennas at a distance R at which the wave fronts are flat over the scene's bounding sphere to 1e-3 rad and their
+// amplitude to 1e-4. Each pair costs a trace of its own.
+// Raises invalid_argument for bad settings, a zero direction, one along the polarization, a scene without meshes, or
+// one with mirrors: they stand for planes without end, which have no cross section.
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
                                    const RcsSettings& settings, Job* job = nullptr);
 

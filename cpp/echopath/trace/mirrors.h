@@ -33,8 +33,8 @@ struct Leg {
 };
 
 // Decides between TE and TM at a hit by the transmit polarisation (scalar mode): TE where the part of `polarization`
-// across `direction` lies within 45 degrees of the normal of the plane of incidence. TM where the field would lie along the
-// direction of travel: only bounces in the plane of the field turn a ray that way.
+// across `direction` lies within 45 degrees of the normal of the plane of incidence. TM where the field would lie
+// along the direction of travel: only bounces in the plane of the field turn a ray that way.
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal);
 
 class LegFinder {

@@ -16,7 +16,7 @@ namespace {
 constexpr int kRouletteBounce = 3;     // rays leave this bounce and later ones by Russian roulette
 constexpr double kGrazing = 1e-3;      // cosine below which a hit is dropped
 constexpr double kNearAntenna = 1e-3;  // m
-// Product of material areas in m^2 per hit beyond which a ray ends: its square root is part of the weight, in single precision.
+// Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 constexpr int kDirect = -1;            // transmit chains, besides the index of a mirror
 constexpr int kOther = -2;

@@ -1,0 +1,225 @@
+"""Radar cross sections against physical optics, Lambert's law and the Mie series."""
+import math
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.shapes import FREQUENCY, METAL, decibel, lambert, plate, rectangle, scene_of, sphere
+
+MIE_TOLERANCE = 1e-6             # of sigma / (pi a^2): the digits of the table
+PLATE_TOLERANCE_DB = 0.1         # the promise for plates at broadside
+MAIN_LOBE_TOLERANCE_DB = 0.3
+SIDELOBE_TOLERANCE = 0.05        # of the amplitude of the main lobe: beyond the first null edges are what is sampled
+MIE_BY_RAYS_TOLERANCE_DB = 0.5   # creeping waves, which physical optics has not, at ka = 20
+SMOOTH_TOLERANCE_DB = 0.1
+PO_SPHERE_TOLERANCE = 0.01       # relative
+DIHEDRAL_TOLERANCE_DB, TRIHEDRAL_TOLERANCE_DB = 0.15, 0.2
+LAMBERT_TOLERANCE = 0.002        # relative: mean powers add, so that only the quadrature over the plate is left
+WEIGHT_RULE_TOLERANCE_DB = 0.2   # mean of 32 seeds of a coin per ray
+
+# ka: sigma / (pi a^2), metal sphere
+MIE_TABLE = {0.1: .000898, 0.5: .529576, 1: 3.637567, 1.0289: 3.654939, 2: 1.008143, 3: .520765, 5: 1.168837,
+             10: .929230, 20: .966357, 50: .995918, 100: .999025, 161.379: 1.000118}
+PO_SPHERE_TABLE = {1: .79878, 5: 1.14559, 10: .91167, 50: 1.01015}
+PLATE_TABLE_DBSM = {.05: 7.144, .1: 19.185, .2: 31.227}       # by side in m
+TILTED_PLATE_DBSM = {0: 19.185, .5: 16.096, 1: .277, 2: -.183, 3: -.980, 5: -3.833, 10: -21.996, 20: -16.400}  # by deg
+DIHEDRAL_TOTAL_DBSM, DIHEDRAL_DOUBLE_DBSM, TRIHEDRAL_TOTAL_DBSM = 22.162, 22.196, 14.294
+
+RADIUS = 0.1  # m
+RIGHT_ANGLE_HALF = math.sqrt(0.5)
+
+
+def frequency_of(ka, radius=RADIUS):
+    return ka * ep.speed_of_light / (2 * math.pi * radius)
+
+
+def smooth_sphere(radius=RADIUS, centre=(0, 0, 0)):
+    return scene_of(ball=(sphere(centre, radius, 5), METAL, True))
+
+
+def plate_scene(side=0.1, material=METAL):
+    return scene_of(plate=(plate((0, 0, 0), (1, 0, 0), side), material))
+
+
+def dihedral(material=METAL, side=0.1):
+    along = RIGHT_ANGLE_HALF * side
+    corner = (0, 0, -side / 2)
+    return scene_of(left=(rectangle(corner, (along, along, 0), (0, 0, side)), material),
+                    right=(rectangle(corner, (along, -along, 0), (0, 0, side)), material))
+
+
+def in_plane(angles_deg):
+    angles = np.radians(angles_deg)
+    return np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+
+
+# --- The Mie series ---
+
+@pytest.mark.parametrize("ka", MIE_TABLE)
+def test_mie_rcs_is_that_of_the_table(ka):
+    assert abs(ep.mie_rcs(RADIUS, frequency_of(ka)) / (math.pi * RADIUS**2) - MIE_TABLE[ka]) < MIE_TOLERANCE
+
+
+def test_mie_rcs_agrees_with_library_bessel_functions():
+    special = pytest.importorskip("scipy.special")
+    for ka in (0.03, 0.7, 7.3, 63.0, 411.0):
+        n = np.arange(1, int(ka + 4.05 * ka ** (1 / 3) + 12) + 1)
+        j, y = special.spherical_jn(n, ka), special.spherical_yn(n, ka)
+        dj, dy = special.spherical_jn(n, ka, True), special.spherical_yn(n, ka, True)
+        b = j / (j - 1j * y)
+        a = (j + ka * dj) / (j + ka * dj - 1j * (y + ka * dy))
+        expected = abs(np.sum((-1.0) ** n * (2 * n + 1) * (a - b))) ** 2 / ka**2
+        assert ep.mie_rcs(RADIUS, frequency_of(ka)) / (math.pi * RADIUS**2) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("bistatic_deg", [0, 40, 90, 150, 180])
+def test_a_tiny_sphere_is_an_electric_and_a_magnetic_dipole(bistatic_deg):
+    ka, angle = 1e-3, math.radians(bistatic_deg)
+    scale = 4 * math.pi * RADIUS**2 * ka**4
+    frequency = frequency_of(ka)
+    across = ep.mie_rcs(RADIUS, frequency, angle, plane="H") / scale
+    within = ep.mie_rcs(RADIUS, frequency, angle, plane="E") / scale
+    assert across == pytest.approx((1 + 0.5 * math.cos(angle)) ** 2, abs=1e-5)
+    assert within == pytest.approx((math.cos(angle) + 0.5) ** 2, abs=1e-5)
+
+
+def test_a_large_sphere_scatters_forward_like_its_shadow():
+    ka = 2000.0
+    shadow = 4 * math.pi * (math.pi * RADIUS**2) ** 2 / (ep.speed_of_light / frequency_of(ka)) ** 2
+    assert ep.mie_rcs(RADIUS, frequency_of(ka), math.pi) == pytest.approx(shadow, rel=0.02)  # + edge terms of ka^(-2/3)
+
+
+@pytest.mark.parametrize("keywords", [dict(radius=0.0), dict(radius=-1.0), dict(frequency=0.0),
+                                      dict(frequency=math.nan), dict(radius=1e9), dict(bistatic_angle=4.0),
+                                      dict(plane="V")])
+def test_mie_rcs_refuses_what_has_no_meaning(keywords):
+    with pytest.raises(ValueError, match=next(iter(keywords))):
+        ep.mie_rcs(**{"radius": 0.1, "frequency": 77e9, **keywords})
+
+
+# --- Targets with closed forms ---
+
+@pytest.mark.parametrize("side", PLATE_TABLE_DBSM)
+def test_plate_at_broadside(side):
+    found = ep.rcs(plate_scene(side), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 12)
+    assert abs(decibel(found) - PLATE_TABLE_DBSM[side]) < PLATE_TOLERANCE_DB
+
+
+def test_plate_over_angle():
+    found = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=in_plane(list(TILTED_PLATE_DBSM)), num_rays=1 << 16)
+    expected = np.array(list(TILTED_PLATE_DBSM.values()))
+    lobe = np.abs(np.array(list(TILTED_PLATE_DBSM))) <= 0.5
+    assert np.all(np.abs(decibel(found) - expected)[lobe] < MAIN_LOBE_TOLERANCE_DB)
+    off = np.sqrt(found) - 10 ** (expected / 20)
+    assert np.all(np.abs(off) < SIDELOBE_TOLERANCE * 10 ** (TILTED_PLATE_DBSM[0] / 20))
+    assert np.all(np.abs(decibel(found) - expected)[:-1] < MAIN_LOBE_TOLERANCE_DB)  # reached up to 10 degrees
+
+
+def test_plate_turned_by_both_angles_of_a_bistatic_pair_mirrors_at_full_strength():
+    # Specular direction: 4 pi A^2 cos^2 / lambda^2, whatever the tilt.
+    incidence, observation = in_plane([35, -35])
+    found = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=incidence, observation=observation, num_rays=1 << 12)
+    expected = PLATE_TABLE_DBSM[.1] + 20 * math.log10(math.cos(math.radians(35)))
+    assert abs(decibel(found) - expected) < PLATE_TOLERANCE_DB
+
+
+@pytest.mark.parametrize("ka", [20, 50, 100, 161.379])
+def test_smooth_sphere_against_mie(ka):
+    found = ep.rcs(smooth_sphere(), frequency=frequency_of(ka), incidence=(1, .2, .3), num_rays=1 << 14)
+    tolerance = MIE_BY_RAYS_TOLERANCE_DB if ka < 50 else SMOOTH_TOLERANCE_DB
+    assert abs(decibel(found / ep.mie_rcs(RADIUS, frequency_of(ka)))) < tolerance
+
+
+@pytest.mark.parametrize("bistatic_deg", [20, 45, 90])
+def test_bistatic_smooth_sphere_against_mie(bistatic_deg):
+    angle = math.radians(bistatic_deg)
+    found = ep.rcs(smooth_sphere(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 14,
+                   observation=(math.cos(angle), math.sin(angle), 0))
+    assert abs(decibel(found / ep.mie_rcs(RADIUS, FREQUENCY, angle))) < SMOOTH_TOLERANCE_DB
+
+
+@pytest.mark.parametrize("ka", PO_SPHERE_TABLE)
+def test_sphere_by_physical_optics(ka):
+    # Without the footprint filter, which takes away the wave that physical optics sends from the shadow's edge.
+    found = ep.rcs(smooth_sphere(), frequency=frequency_of(ka), incidence=(1, .2, .3), num_rays=1 << 18, max_bounces=1,
+                   footprint="none")
+    assert found / (math.pi * RADIUS**2) == pytest.approx(PO_SPHERE_TABLE[ka], rel=PO_SPHERE_TOLERANCE)
+
+
+def test_dihedral_with_all_orders():
+    found = ep.rcs(dihedral(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 16)
+    assert abs(decibel(found) - DIHEDRAL_TOTAL_DBSM) < DIHEDRAL_TOLERANCE_DB
+
+
+def test_trihedral_with_all_orders():
+    edge = 0.1
+    corner = ep.Mesh([[0, 0, 0], [edge, 0, 0], [0, edge, 0], [0, 0, edge]], [[0, 1, 2], [0, 2, 3], [0, 3, 1]])
+    found = ep.rcs(scene_of(corner=(corner, METAL)), frequency=FREQUENCY, incidence=(1, 1, 1), num_rays=1 << 16)
+    assert abs(decibel(found) - TRIHEDRAL_TOTAL_DBSM) < TRIHEDRAL_TOLERANCE_DB
+
+
+def test_rough_plate_follows_lambert():
+    scene = plate_scene(1.0, lambert(0.3))
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=in_plane([0, 45, 60]), num_rays=1 << 12, components=True)
+    assert np.all(found["coherent"] == 0)
+    assert found["diffuse"] == pytest.approx(4 * 0.3 * np.cos(np.radians([0, 45, 60])) ** 2, rel=LAMBERT_TOLERANCE)
+
+
+def test_rough_dihedral_keeps_half_the_field():
+    # Half of the power is diffuse at each face, so the field of the double bounce halves: -6.02 dB.
+    half = ep.Material(reflectivity=1.0, scattering=math.sqrt(0.5))
+    parts = [ep.rcs(dihedral(half), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 13, max_bounces=2,
+                    seed=seed, components=True) for seed in range(32)]
+    mean = np.mean([part["coherent"] for part in parts])
+    assert abs(decibel(mean) - DIHEDRAL_DOUBLE_DBSM + 20 * math.log10(2)) < WEIGHT_RULE_TOLERANCE_DB
+    assert all(part["diffuse"] > 0 for part in parts)
+
+
+# --- What the figure must not depend on ---
+
+def test_place_and_length_of_directions_do_not_matter():
+    near = ep.rcs(smooth_sphere(2.0), frequency=FREQUENCY, incidence=(1, .3, .2), num_rays=1 << 13)
+    far = ep.rcs(smooth_sphere(2.0, (2e3, -1e3, 5.0)), frequency=FREQUENCY, incidence=(100, 30, 20), num_rays=1 << 13)
+    assert abs(decibel(near / ep.mie_rcs(2.0, FREQUENCY))) < SMOOTH_TOLERANCE_DB
+    assert abs(decibel(far / near)) < 0.01  # dB: rounding moves hits by nanometres
+
+
+def test_rows_are_the_single_results_and_bits_repeat():
+    directions = in_plane([0, 10, 50])
+    keywords = dict(frequency=FREQUENCY, num_rays=3000, max_bounces=2)
+    rows = ep.rcs(dihedral(), incidence=directions, **keywords)
+    assert rows.shape == (3,)
+    assert list(rows) == [ep.rcs(dihedral(), incidence=direction, **keywords) for direction in directions]
+    one_to_many = ep.rcs(dihedral(), incidence=directions[0], observation=directions, **keywords)
+    assert one_to_many[0] == rows[0] and one_to_many.shape == (3,)
+    threads = ep.num_threads()
+    try:
+        ep.set_num_threads(1)
+        assert list(ep.rcs(dihedral(), incidence=directions, **keywords)) == list(rows)
+    finally:
+        ep.set_num_threads(threads)
+
+
+def test_a_target_seen_edge_on_returns_nothing():
+    assert ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(0, 1, 0), num_rays=1000) == 0.0
+
+
+@pytest.mark.parametrize("keywords, name", [
+    (dict(incidence=(0, 0, 0)), "incidence"), (dict(incidence=(0, 0, 1)), "polarization"),
+    (dict(observation=(0, 0, 0)), "observation"),
+    (dict(observation=[(1, 0, 0)] * 3, incidence=[(1, 0, 0)] * 2), "observation"),
+    (dict(frequency=-1.0), "frequency"), (dict(num_rays=0), "num_rays"), (dict(max_bounces=65), "max_bounces"),
+    (dict(footprint="third"), "footprint"), (dict(polarization=(0, 0, 0)), "polarization")])
+def test_bad_input_is_named(keywords, name):
+    with pytest.raises(ValueError, match=name):
+        ep.rcs(plate_scene(), **{"frequency": FREQUENCY, "incidence": (1, 0, 0), **keywords})
+
+
+def test_scenes_without_a_cross_section_are_refused():
+    with pytest.raises(ValueError, match="scene"):
+        ep.rcs(ep.Scene(), frequency=FREQUENCY, incidence=(1, 0, 0))
+    with pytest.raises(ValueError, match="mirror"):
+        ep.rcs(plate_scene(material=ep.Material.metal(mirror=True)), frequency=FREQUENCY, incidence=(1, 0, 0))
+    with pytest.raises(TypeError, match="num_rays"):
+        ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(1, 0, 0), num_ray=1)

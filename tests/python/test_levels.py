@@ -164,3 +164,9 @@ def test_a_dielectric_dihedral_reflects_by_its_polarisation(polarization, expect
     power = abs(fields(paths.select("T . . R")).sum()) ** 2
     found = decibel(power * (4 * math.pi) ** 3 * distance**4 / WAVELENGTH**2)
     assert found == pytest.approx(expected, abs=COEFFICIENT_TOLERANCE_DB)
+
+
+def test_the_deepest_diffuse_paths_have_finite_weights():
+    scene = scene_of(shell=(sphere((0, 0, 0), 30.0, 2), lambert(1.0)))
+    paths = ep.trace(scene, make_radar((0, 0, 0), (.7, .4, -.3)), num_rays=50, max_bounces=64)
+    assert paths.num_bounces.max() > 10 and np.all(np.isfinite(paths.weight)) and np.all(np.isfinite(paths.amplitude))

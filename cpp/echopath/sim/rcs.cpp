@@ -73,6 +73,15 @@ Radar far_radar(const Target& target, const RcsDirections& pair, double distance
   return radar;
 }
 
+TraceSettings tracing_of(const RcsSettings& settings) {
+  TraceSettings tracing;
+  tracing.num_rays = settings.num_rays;
+  tracing.max_bounces = settings.max_bounces;
+  tracing.seed = settings.seed;
+  tracing.footprint = settings.footprint;
+  return tracing;
+}
+
 struct Sums {
   std::complex<double> field = 0.0;
   double power = 0.0;
@@ -120,7 +129,7 @@ void RcsSettings::validate() const {
   require(std::isfinite(frequency) && frequency > 0, "frequency", "must be finite and > 0 Hz", frequency);
   const double length = polarization.norm();
   require(std::isfinite(length) && length > 0, "polarization", "must be finite and not zero, length", length);
-  TraceSettings{num_rays, max_bounces, seed, 0.0, footprint}.validate();
+  tracing_of(*this).validate();
 }
 
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
@@ -132,7 +141,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   std::vector<Radar> radars;
   for (const RcsDirections& pair : directions) radars.push_back(far_radar(target, pair, distance, settings));
 
-  const TraceSettings tracing{settings.num_rays, settings.max_bounces, settings.seed, 0.0, settings.footprint};
+  const TraceSettings tracing = tracing_of(settings);
   if (job) job->start(static_cast<int64_t>(radars.size()));
   std::vector<RadarCrossSection> out;
   for (const Radar& radar : radars) {

@@ -92,7 +92,7 @@ void bind_frame(py::module_& m) {
                              "\"second_order\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
-                    "dB, standard error of the received power that was asked for; 0: none")
+                    "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
       .def_readonly("statistics", &TraceFrame::statistics);
@@ -279,12 +279,12 @@ void warn_of_missed_target(const TraceFrame& frame) {
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
-                     double start_time, const std::string& footprint, std::optional<int> batches,
+PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
+                     uint64_t seed, double start_time, const std::string& footprint, std::optional<int> batches,
                      std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
                      const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "batches", "target_error_db",
-                                    "max_rays", "progress"});
+  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "batches",
+                                    "target_error_db", "max_rays", "progress"});
   TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time, as_footprint(footprint),
                          batches.value_or(1)};
   if (!target_error_db) {
@@ -314,16 +314,18 @@ void bind_received_power(py::module_& m) {
   py::class_<ReceivedPower>(m, "ReceivedPower",
                             R"(Mean received power of a set of paths and its Monte-Carlo error; all powers in W.
 
-At the trace time, between the first antennas, at the start frequency; the mean is over the random phases of diffuse hits.
-Errors come from the batches of a trace (`trace(batches=8)`) and are NaN for one batch.)")
+At the trace time, between the first antennas, at the start frequency; the mean is over the random phases of diffuse
+hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN for one batch.)")
       .def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
       .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
       .def_readonly("coherent", &ReceivedPower::coherent,
-                    "W, |field|^2 of coherent paths; with batches free of the bias by noise, which can take it below zero")
+                    "W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero")
       .def_readonly("coherent_error", &ReceivedPower::coherent_error, "W, standard error")
-      .def_readonly("diffuse", &ReceivedPower::diffuse, "W, sum over diffuse hits of |field of all paths over that hit|^2")
+      .def_readonly("diffuse", &ReceivedPower::diffuse,
+                    "W, sum over diffuse hits of |field of all paths over that hit|^2")
       .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
-      .def_readonly("resolved", &ReceivedPower::resolved, "the power is at least twice its standard error; False for one batch")
+      .def_readonly("resolved", &ReceivedPower::resolved,
+                    "the power is at least twice its standard error; False for one batch")
       .def_readonly("num_batches", &ReceivedPower::num_batches)
       .def_property_readonly("error_db", &ReceivedPower::error_db,
                              "dB, 10 log10(1 + standard_error / power); infinite where not resolved")
@@ -388,12 +390,14 @@ share hits; selections share all hits of their trace.)")
         py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays,
         py::arg("progress") = py::none(), R"(Shoots rays through the scene at mid-frame and records what they hit.
 
-num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count; seed: the same seed gives the same
-bits
+num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count
+seed: the same seed gives the same bits
 start_time: s, first sample of the frame; footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
-batches: 1 to 64 independent parts of the rays, from which `received_power` tells standard errors; 1 unless given
-target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, until the standard error of the
-received power is no larger. 8 batches unless given; a RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
+batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
+fine as its share of the rays; 1 unless given
+target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, until the error of the
+received power is no larger: its standard error and what the last doubling changed. 8 batches unless given; a
+RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
 progress: callable(stage, fraction) or None
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
 }

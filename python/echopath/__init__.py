@@ -10,8 +10,9 @@ from . import _core
 from ._core import (
     Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, Isotropic, KeyframeMotion,
     LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeDoppler, ReceivedPower, Selection, Stratum, TraceFrame,
-    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes, mie_rcs,
-    num_bounces, num_threads, range_doppler, rcs, received_power, set_num_threads, speed_of_light, synthesize, trace,
+    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes,
+    mie_rcs, num_bounces, num_threads, range_doppler, rcs, received_power, set_num_threads, speed_of_light,
+    synthesize, trace,
 )
 from .materials import materials
 from .scene import Scene
@@ -32,8 +33,8 @@ def view(*arguments, **keywords):
 __all__ = [
     "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "FileError", "Frame",
     "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar",
-    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics", "VertexSequence",
-    "actors", "add_noise", "boltzmann", "decompose", "hits", "load_frame", "load_mesh", "load_meshes", "load_scene",
-    "materials", "mie_rcs", "num_bounces", "num_threads", "range_doppler", "rcs", "received_power", "save_frame",
-    "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "view",
+    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics",
+    "VertexSequence", "actors", "add_noise", "boltzmann", "decompose", "hits", "load_frame", "load_mesh",
+    "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "range_doppler", "rcs",
+    "received_power", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "view",
 ]

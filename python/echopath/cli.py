@@ -57,7 +57,7 @@ def _add_trace_options(parser, default_rays) -> None:
     parser.add_argument("--seed", type=_natural, default=None, metavar="N",
                         help="of the rays (default: that of the scene file)")
     parser.add_argument("--batches", type=_positive, default=None, metavar="N",
-                        help="independent parts of the rays, which give standard errors (default: that of the scene file)")
+                        help="parts of the rays that give standard errors (default: that of the scene file)")
 
 
 def _positive(text: str) -> int:

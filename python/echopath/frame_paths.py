@@ -12,7 +12,8 @@ HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
                "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
-FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "footprint", "num_batches", "target_error_db", "error_db")
+FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "footprint", "num_batches", "target_error_db",
+                "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits")

@@ -39,7 +39,8 @@ def _describe_scene_file(scene_file) -> list[str]:
     if trace.batches is not None:
         lines.append(report.line("batches", str(trace.batches)))
     if trace.target_error_db is not None:
-        lines.append(report.line("until a standard error of", f"{trace.target_error_db:g} dB, {trace.max_rays:,} rays at most"))
+        until = f"{trace.target_error_db:g} dB, {trace.max_rays:,} rays at most"
+        lines.append(report.line("until an error of", until))
     for partition, group in scene_file.partitions().items():
         lines.append(f"parts, {partition}")
         lines += [report.line(name, expression) for name, expression in group.items()]

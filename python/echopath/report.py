@@ -58,7 +58,7 @@ def _target(frame) -> list[str]:
     if frame.target_error_db == 0.0:
         return []
     verdict = "met" if frame.error_db <= frame.target_error_db else "NOT met with the most rays allowed"
-    return [line("standard error", f"{frame.error_db:.3g} dB, target {frame.target_error_db:g} dB: {verdict}")]
+    return [line("error", f"{frame.error_db:.3g} dB, target {frame.target_error_db:g} dB: {verdict}")]
 
 
 def stages(all_stages) -> list[str]:

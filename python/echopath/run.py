@@ -24,10 +24,12 @@ class Written:
     pictures: list
 
 
-def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None, progress=None) -> Frame:
+def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None,
+                  progress=None) -> Frame:
     """The frame that a scene file describes.
 
-    num_rays, seed, batches: instead of those of the file; extra_parts: {partition: {part: selection}} beside those of the file.
+    num_rays, seed, batches: instead of those of the file
+    extra_parts: {partition: {part: selection}} beside those of the file.
     """
     settings = scene_file.trace_settings()
     if num_rays is not None:

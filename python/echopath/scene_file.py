@@ -37,7 +37,7 @@ class SceneFile:
     noise_seed: int
 
     def trace_settings(self) -> dict:
-        """Keywords of `ep.trace`: num_rays, max_bounces, seed, start_time (s), footprint, batches, target_error_db, max_rays."""
+        """Keywords of `ep.trace`, all but progress."""
         settings = self.trace.model_dump()
         if self.trace.target_error_db is not None and "num_rays" not in self.trace.model_fields_set:
             settings["num_rays"] = None  # where the search begins is then up to it

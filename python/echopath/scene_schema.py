@@ -209,7 +209,7 @@ class TraceTable(Table):
     batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
         None, description="independent parts of the rays, which give standard errors; none: 1, with target_error_db 8")
     target_error_db: Optional[Positive] = Field(
-        None, description="dB, standard error of the received power until which the rays double, from num_rays on")
+        None, description="dB, error of the received power until which the rays double, from num_rays on")
     max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
 
 

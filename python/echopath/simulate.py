@@ -54,8 +54,8 @@ class Frame:
 
 
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, footprint="second_order",
-             batches=None, target_error_db=None, max_rays=2**24, parts=None, tolerance=1e-7, method="auto", noise_seed=1, window="hann", zero_pad=1,
-             progress=None) -> Frame:
+             batches=None, target_error_db=None, max_rays=2**24, parts=None, tolerance=1e-7, method="auto",
+             noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), footprint, batches, target_error_db (dB), max_rays: as in `trace`

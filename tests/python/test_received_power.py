@@ -22,7 +22,8 @@ def street():
     scene = ep.Scene()
     wall = ep.Mesh([[-20, 3, -10], [60, 3, -10], [60, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
     scene.add(wall, name="wall", material=ep.Material(permittivity=5 - 0.3j, mirror=True, scattering=0.3))
-    scene.add(ep.actors.sphere(0.3), name="rough", material=ep.Material(reflectivity=0.5, scattering=0.8), position=(10, 0.5, 1))
+    rough = ep.Material(reflectivity=0.5, scattering=0.8)
+    scene.add(ep.actors.sphere(0.3), name="rough", material=rough, position=(10, 0.5, 1))
     scene.add(ep.actors.sphere(0.1), name="metal", material=ep.Material.metal(), position=(8, -1, 1), smooth=True)
     return scene
 
@@ -37,7 +38,8 @@ def slow_power(paths):
     arriving = paths.amplitude * np.exp(-1j * WAVE_NUMBER * paths.lengths([paths.frame.trace_time])[0])
     count = paths.frame.num_batches
     images = arriving[paths.batch == 255].sum()
-    fields = np.array([count * arriving[(paths.batch == b) & (paths.diffuse == 0)].sum() + images for b in range(count)])
+    coherent = paths.diffuse == 0
+    fields = np.array([count * arriving[(paths.batch == b) & coherent].sum() + images for b in range(count)])
     by_hit = {}
     for path in np.flatnonzero(paths.diffuse):
         hits = paths.hits[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
@@ -87,7 +89,8 @@ def test_batches_survive_a_file(paths, tmp_path):
 
 def rough_ball():
     scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(10, 0, 1))
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)
+    scene.add(ep.actors.sphere(0.3), name="rough", material=rough, position=(10, 0, 1))
     return scene
 
 
@@ -96,11 +99,21 @@ def test_rays_double_until_the_error_is_met(recwarn):
     tight = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=0.005)
     for paths in (loose, tight):
         assert 0 < paths.frame.error_db <= paths.frame.target_error_db and paths.frame.num_batches == 8
-        assert paths.frame.error_db == ep.received_power(paths).error_db
+        assert paths.frame.error_db >= ep.received_power(paths).error_db > 0
     assert loose.frame.statistics.num_rays == 500
     doublings = np.log2(tight.frame.statistics.num_rays / 500)
     assert doublings >= 1 and doublings == int(doublings)
     assert not [warning for warning in recwarn if warning.category is RuntimeWarning]
+
+
+def test_what_a_doubling_changes_counts_as_error():
+    """A plate 20 degrees off, -16.400 dBsm: coarse cells filter its sidelobe away, in all batches alike."""
+    scene = ep.Scene()
+    plate = ep.Mesh([[0, -0.05, -0.05], [0, 0.05, -0.05], [0, 0.05, 0.05], [0, -0.05, 0.05]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(plate, name="plate", material=ep.Material.metal(), position=(10, 0, 1), yaw=np.radians(20))
+    power = ep.received_power(ep.trace(scene, make_radar(), num_rays=2048, target_error_db=0.5))
+    rcs = power.power / 0.01 * (4 * np.pi) ** 3 * 10.0**4 * (FREQUENCY / ep.speed_of_light) ** 2
+    assert 10 * np.log10(rcs) == pytest.approx(-16.4, abs=1.0)
 
 
 def test_a_cap_that_was_hit_is_reported():
@@ -131,7 +144,8 @@ def test_a_report_gives_powers_with_their_errors():
     parts = {"object": {"rough": "T 'rough' R", "nothing": "T 'metal' 'metal' 'metal' R"}}
     frame = ep.simulate(street(), make_radar(), num_rays=6000, batches=8, parts=parts)
     lines = report.mean_powers(frame)
-    assert "8 batches" in lines[0] and [line.split()[0] for line in lines[1:]] == ["whole", "mean", "rough", "nothing", "other"]
+    labels = [line.split()[0] for line in lines[1:]]
+    assert "8 batches" in lines[0] and labels == ["whole", "mean", "rough", "nothing", "other"]
     assert "dBm +- 0." in lines[3] and "nothing" in lines[4].split()[-1]
     frame = ep.simulate(street(), make_radar(), num_rays=500)
     assert report.mean_powers(frame) == []

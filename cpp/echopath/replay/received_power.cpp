@@ -152,7 +152,8 @@ double ReceivedPower::error_db() const {
 ReceivedPower received_power(const Paths& paths, Job* job) {
   const Estimates estimates = scaled_up(sum_batches(paths, job));
   const auto count = static_cast<double>(estimates.field.size());
-  const std::complex<double> mean = std::accumulate(estimates.field.begin(), estimates.field.end(), std::complex<double>()) / count;
+  std::complex<double> mean = 0.0;
+  for (const std::complex<double>& field : estimates.field) mean += field / count;
   ReceivedPower out;
   out.num_batches = paths.frame.num_batches;
   out.coherent = std::norm(mean);

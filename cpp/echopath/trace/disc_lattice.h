@@ -10,11 +10,12 @@ namespace echopath {
 // an edge of small slope, its cells are nearly square, and unlike a spiral it looks the same everywhere. `shift` [2] in
 // [0, 1) moves it within its cell (Cranley and Patterson 1976). The cell is chosen so that exactly num_points fall into the
 // disc; its area then differs a little from pi / num_points. Neighbours in order are neighbours in the disc.
-// Several shifts give as many independent batches, one after the other: lattices of one and the same wider cell, so that
-// each batch stands for the disc in the same way and their sizes differ by a few points.
+// Several shifts give as many independent batches, one after the other: lattices of one and the same wider cell, so
+// that each batch stands for the disc in the same way and their sizes differ by a few points.
 class DiscLattice {
  public:
-  DiscLattice(int64_t num_points, const Eigen::Vector2d& shift) : DiscLattice(num_points, std::vector<Eigen::Vector2d>{shift}) {}
+  DiscLattice(int64_t num_points, const Eigen::Vector2d& shift)
+      : DiscLattice(num_points, std::vector<Eigen::Vector2d>{shift}) {}
   DiscLattice(int64_t num_points, const std::vector<Eigen::Vector2d>& shifts);
   int64_t size() const { return first_.back(); }
   double cell_area() const { return cell_area_; }  // what one point of the whole set stands for

@@ -101,7 +101,8 @@ std::vector<Stratum> limited(Cones cones) {
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
   std::vector<Eigen::Vector2d> shifts;
   for (int batch = 0; batch < batches; ++batch) {
-    const auto shift = uniform2(seed, Stream::kLaunchShift, static_cast<uint64_t>(stratum), static_cast<uint32_t>(batch));
+    const auto k = static_cast<uint64_t>(stratum);
+    const auto shift = uniform2(seed, Stream::kLaunchShift, k, static_cast<uint32_t>(batch));
     shifts.emplace_back(shift[0], shift[1]);
   }
   return shifts;

@@ -59,12 +59,12 @@ struct TraceFrame {
   int max_bounces = 4;
   Footprint footprint = Footprint::kSecondOrder;
   TraceStatistics statistics;
-  int num_batches = 1;             // independent shifts of the launch directions; each has its share of each stratum's rays
-  double target_error_db = 0.0;    // dB, the standard error of the received power that was asked for; 0: none
-  double error_db = 0.0;           // dB, the one that was reached; 0: not looked at
+  int num_batches = 1;             // independent lattices of launch directions, which share the rays of each stratum
+  double target_error_db = 0.0;    // dB, the error of the received power that was asked for; 0: none
+  double error_db = 0.0;           // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
 
-  // Rays per sr of one batch of a stratum: what its launch cells are made of. Filters for the cells of all batches together
-  // would leave each batch its aliases, and these do not cancel between lattices that know nothing of each other.
+  // Rays per sr of one batch of a stratum: what its launch cells are made of. Filters for the cells of all batches
+  // together would leave each its aliases, and these do not cancel between lattices that know nothing of each other.
   double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / num_batches; }
 };
 

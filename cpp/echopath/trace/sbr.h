@@ -22,7 +22,7 @@ struct SbrSettings {
   Vec3 transmitter = Vec3::Zero();           // relative to the trace origin, as the receiver
   Vec3 receiver = Vec3::Zero();
   Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
-  double specular_probability = 0.0;         // of going on specularly where a surface does both; 0: the specular share of power
+  double specular_probability = 0.0;         // of going on specularly where a surface does both; 0: its specular share
 };
 
 class RayShooter {

@@ -11,15 +11,18 @@ struct TraceSettings {
   uint64_t seed = 1;
   double start_time = 0.0;      // s, first sample of the frame
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
-  int batches = 1;              // 1 to 64: independent lattices that share the rays and give errors; each filters its own cells
+  // 1 to 64: independent lattices that share the rays, from which errors follow. Each is as fine as its share of the
+  // rays.
+  int batches = 1;
   double specular_probability = 0.0;  // 0: the specular share; any other leaves the expected echo as it is (for tests)
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };
 
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
-// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings,
-// a radar without antennas, a mirror that is not flat, or a motion that does not cover the frame; DeviceError; Cancelled.
+// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad
+// settings, a radar without antennas, a mirror that is not flat, or a motion that does not cover the frame;
+// DeviceError; Cancelled.
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
 
 }  // namespace echopath

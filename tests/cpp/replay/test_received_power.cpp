@@ -1,6 +1,7 @@
 // Received power and its standard error: against closed forms and against the spread of many independent traces.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <numeric>
 
 #include "echopath/replay/received_power.h"
@@ -12,7 +13,7 @@ namespace {
 using namespace testing;
 
 constexpr int kSeeds = 200;
-constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 200 values is known to 5 %, errors of lattices less well
+constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 200 values is known to 5 %, of lattices less well
 constexpr double kFourSigma = 4.0;
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
@@ -57,7 +58,8 @@ struct Spread {
   double mean_power = 0.0, spread = 0.0, rms_error = 0.0;
 };
 
-Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays, Footprint footprint = Footprint::kSecondOrder) {
+Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays,
+                 Footprint footprint = Footprint::kSecondOrder) {
   std::vector<double> powers;
   Spread out;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -129,7 +131,7 @@ TEST(ReceivedPower, OrdersOverAMirrorAddAsFields) {
   const auto of_bounces = [&](int count) {
     std::vector<uint8_t> keep;
     for (size_t i = 0; i < paths.offsets.size(); ++i) {
-      keep.push_back(paths.num_bounces[i] == count && paths.diffuse[i] != 0 && (paths.diffuse[i] & (paths.diffuse[i] - 1)) == 0);
+      keep.push_back(paths.num_bounces[i] == count && std::has_single_bit(paths.diffuse[i]));
     }
     return received_power(paths.select(keep));
   };

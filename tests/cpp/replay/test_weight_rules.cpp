@@ -61,7 +61,9 @@ TEST(WeightRules, HalfDiffuseDihedralLosesSixDecibelsForAnyBranching) {
   const double smooth = std::norm(double_bounce(0.0, 0.0, 1));
   for (const double probability : {0.0, 0.2, 0.3, 0.8}) {
     double power = 0.0;
-    for (uint64_t seed = 1; seed <= kSeeds; ++seed) power += std::norm(double_bounce(std::sqrt(0.5), probability, seed)) / kSeeds;
+    for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      power += std::norm(double_bounce(std::sqrt(0.5), probability, seed)) / kSeeds;
+    }
     EXPECT_NEAR(decibel(power / smooth), -6.0206, kDihedralTolerance) << probability;
   }
 }

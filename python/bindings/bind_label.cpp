@@ -13,6 +13,7 @@
 #include "echopath/label/expression.h"
 #include "echopath/label/partition.h"
 #include "echopath/label/selection.h"
+#include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
@@ -29,11 +30,8 @@ PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
 }
 
 py::array_t<bool> matches_of(const Selection& selection, const Paths& paths) {
-  std::vector<uint8_t> taken;
-  {
-    const py::gil_scoped_release release;
-    taken = selection.matches(paths);
-  }
+  const std::vector<uint8_t> taken =
+      run_job("matches", py::none(), [&](Job& job) { return selection.matches(paths, &job); });
   py::array_t<bool> mask(static_cast<py::ssize_t>(taken.size()));
   std::copy(taken.begin(), taken.end(), mask.mutable_data());
   return mask;
@@ -46,11 +44,8 @@ std::vector<NamedSelection> named(const NamedSelections& parts) {
 }
 
 py::tuple partition_groups(const Paths& paths, const NamedSelections& parts) {
-  Partition partition;
-  {
-    const py::gil_scoped_release release;
-    partition = make_partition(paths, named(parts));
-  }
+  Partition partition =
+      run_job("partition", py::none(), [&](Job& job) { return make_partition(paths, named(parts), &job); });
   return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
 }
 
@@ -79,12 +74,12 @@ void bind_selection(py::module_& m) {
 text: a regular expression over the hits of a path between T and R. A hit is . (any), 'glob' (a mesh, by its full name
     or that of a group above it), S or D (specular, diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are
     * + ? | ( ) {m,n}.
-Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when
+selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when
 a glob takes no mesh of the scene.)");
   selection.def(py::init<const std::string&>(), py::arg("text"))
       .def(py::init<const Selection&>(), py::arg("selection"))
       .def_static("path_expression", [](const std::string& text) { return Selection(text); }, py::arg("text"),
-                  "The paths that a path expression takes.")
+                  "The paths that the path expression `text` takes.")
       .def_static("touches", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
                   "Paths with at least one hit on a mesh that the glob takes.")
       .def_static("num_bounces", &Selection::num_bounces, py::arg("min"), py::arg("max") = py::none(),

@@ -128,7 +128,7 @@ Raises ValueError naming the argument. Cubic sequences take twice the memory of 
       .def_property_readonly("times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly("vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); },
                              "[T, V, 3] in m, a copy")
-      .def_property_readonly("num_vertices", &VertexSequence::num_vertices)
+      .def_property_readonly("num_vertices", &VertexSequence::num_vertices, "V, of each instant")
       .def_property_readonly("breakpoints", [](const VertexSequence& self) { return to_numpy(self.breakpoints()); },
                              "Times [N] in s, ascending, where the motion is not smooth.")
       .def_property_readonly("span", [](const VertexSequence& self) { return as_tuple(self.span()); },

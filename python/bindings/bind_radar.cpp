@@ -151,7 +151,7 @@ void bind_antenna(py::module_& m) {
       .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear, towards the boresight")
       .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")
       .def("gain", &AntennaPattern::gain, py::arg("cos_boresight"),
-           "Linear power gain at the angle from the boresight with that cosine.")
+           "Linear power gain where cos_boresight is the cosine of the angle from the boresight.")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
   m.def("Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
   m.def("CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
@@ -171,7 +171,7 @@ Raises ValueError naming the argument.)")
       .def_property_readonly("position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] in m")
       .def_property_readonly("orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
                              "[4] (w, x, y, z), radar from antenna")
-      .def_readonly("pattern", &Antenna::pattern)
+      .def_readonly("pattern", &Antenna::pattern, "AntennaPattern")
       .def_property_readonly("polarization", [](const Antenna& self) { return to_numpy(self.polarization); },
                              "[3], unit")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
@@ -194,7 +194,7 @@ Raises ValueError naming the argument.)")
       .def(py::init(&radar), py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
            py::arg("transmit_power") = 0.01, py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm",
            py::arg("motion") = py::none())
-      .def_readonly("waveform", &Radar::waveform)
+      .def_readonly("waveform", &Radar::waveform, "ChirpSequence")
       .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
@@ -204,7 +204,7 @@ Raises ValueError naming the argument.)")
                              "Motion of the radar's frame, or None")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
       .def("chirp_time", &Radar::chirp_time, py::arg("tx"), py::arg("chirp"),
-           "Time of the middle of a chirp of a transmitter, s after the frame's start. Raises IndexError.")
+           "Time of the middle of a chirp of transmitter tx (indices), s after the frame's start. Raises IndexError.")
       .def("world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
            py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
       .def("__repr__", [](const Radar& self) { return text_of(self); });

@@ -104,7 +104,7 @@ Raises ValueError naming the field, the rule and the value.)")
            py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
            py::arg("scattering") = py::none(), py::arg("mirror") = false)
       .def_static("metal", [](bool mirror) { return std::make_shared<Material>(Material::metal(mirror)); },
-                  py::arg("mirror") = false, "A perfect conductor.")
+                  py::arg("mirror") = false, "A perfect conductor; mirror: a plane larger than its Fresnel zone.")
       .def("replace", &replaced, "A copy with some fields changed: material.replace(mirror=True).")
       .def_readonly("conductor", &Material::conductor, "bool")
       .def_readonly("permittivity", &Material::permittivity, "complex, relative, or None")
@@ -161,8 +161,8 @@ out. Raises ValueError for indices out of range and where no face has an area.)"
       .def_property_readonly("original_triangle", view_of(&Mesh::original_triangle), "[F] face of the input or file")
       .def_property_readonly("original_vertex", view_of(&Mesh::original_vertex), "[V] vertex of the input")
       .def_property_readonly("num_input_vertices", &Mesh::num_input_vertices, "what a VertexSequence must have")
-      .def_property_readonly("num_removed_triangles", &Mesh::num_removed_triangles)
-      .def_property_readonly("num_duplicated_vertices", &Mesh::num_duplicated_vertices)
+      .def_property_readonly("num_removed_triangles", &Mesh::num_removed_triangles, "faces without area, left out")
+      .def_property_readonly("num_duplicated_vertices", &Mesh::num_duplicated_vertices, "added where sheets meet")
       .def_property_readonly("is_closed", &Mesh::is_closed, "no boundary edge, no duplicated vertex")
       .def_property_readonly("area", &Mesh::area, "m^2")
       .def("__repr__", &mesh_text);

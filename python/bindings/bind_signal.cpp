@@ -31,7 +31,7 @@ uint64_t as_seed(const py::object& value) {
 py::array noisy_cube(const py::object& cube, const Radar& radar, const py::object& seed) {
   std::vector<Complex> values = as_cube(cube, radar);
   const uint64_t number = as_seed(seed);
-  run_job("add_noise", py::none(), [&](Job&) { add_noise(values, radar, number); });
+  run_job("add_noise", py::none(), [&](Job& job) { add_noise(values, radar, number, &job); });
   return numpy_take(std::move(values), cube_shape(radar));
 }
 

@@ -107,7 +107,7 @@ Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
 
 parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at once
 Returns {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; one such mapping
-per view for several views. Further arguments as in synthesize.)");
+per view for several views. radar, tolerance, method, replay, phase_tolerance and progress are as in synthesize.)");
 }
 
 }  // namespace echopath::bindings

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "array.h"
+#include "echopath/base/parallel.h"
 #include "echopath/label/partition.h"
 #include "echopath/replay/received_power.h"
 #include "echopath/replay/replay.h"
@@ -44,7 +45,7 @@ void bind_frame(py::module_& m) {
            py::arg("name"))
       .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
       .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle; 2 is the whole sphere")
-      .def_readonly("num_rays", &Stratum::num_rays)
+      .def_readonly("num_rays", &Stratum::num_rays, "launched in it")
       .def_readonly("name", &Stratum::name, "what it aims at")
       .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
       .def("__repr__", [](const Stratum& self) {
@@ -86,8 +87,8 @@ void bind_frame(py::module_& m) {
       .def_property_readonly("receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
                              "[3] m, where hits were connected to, world")
       .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
-      .def_readonly("seed", &TraceFrame::seed)
-      .def_readonly("max_bounces", &TraceFrame::max_bounces)
+      .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
+      .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
       .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprints[static_cast<size_t>(self.footprint)]; },
                              "\"second_order\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
@@ -95,7 +96,7 @@ void bind_frame(py::module_& m) {
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
-      .def_readonly("statistics", &TraceFrame::statistics);
+      .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
 }
 
 // --- Paths ---
@@ -127,9 +128,11 @@ py::array curved_cell_of(const py::object& self) {
   return numpy_view(cells.empty() ? nullptr : cells.front().data(), {static_cast<py::ssize_t>(cells.size()), 7}, self);
 }
 
-std::vector<int64_t> all_paths(const Paths& paths) {
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  std::iota(indices.begin(), indices.end(), int64_t{0});
+constexpr int64_t kPathsPerBlock = 1 << 19;  // evaluated at a time where the paths are not all wanted at once
+
+std::vector<int64_t> path_range(int64_t begin, int64_t end) {
+  std::vector<int64_t> indices(static_cast<size_t>(end - begin));
+  std::iota(indices.begin(), indices.end(), begin);
   return indices;
 }
 
@@ -153,21 +156,25 @@ struct Series {
   std::vector<std::complex<double>> amplitudes;     // [T, P]
 };
 
-Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, Antenna transmitter, Antenna receiver) {
-  Radar radar = paths.radar;
-  radar.transmitters = {std::move(transmitter)};
-  radar.receivers = {std::move(receiver)};
-  const Replayer replayer(paths, radar);
-  const std::vector<int64_t> indices = all_paths(paths);
-  Series series;
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  for (const double time : times) {
-    replayer.evaluate(indices, time, lengths, amplitudes);
-    series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
-    series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
-  }
-  return series;
+// Of all paths. Runs beside Python, so that Ctrl-C is answered.
+Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
+                            const Antenna& receiver) {
+  return run_job("replay", py::none(), [&](Job& job) {
+    Radar radar = paths.radar;
+    radar.transmitters = {transmitter};
+    radar.receivers = {receiver};
+    const Replayer replayer(paths, radar);
+    const std::vector<int64_t> indices = path_range(0, paths.num_paths());
+    Series series;
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    for (const double time : times) {
+      replayer.evaluate(indices, time, lengths, amplitudes, &job);
+      series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
+      series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
+    }
+    return series;
+  });
 }
 
 Shape series_shape(const Paths& paths, const std::vector<double>& times) {
@@ -178,70 +185,102 @@ py::array amplitudes_of(const Paths& paths, const py::object& times, const py::o
   const std::vector<double> at = as_vector<double>(times, "times");
   const Antenna transmitter = paths.radar.transmitters[antenna_index(tx, "tx", paths.radar.transmitters.size())];
   const Antenna receiver = paths.radar.receivers[antenna_index(rx, "rx", paths.radar.receivers.size())];
-  Series series;
-  {
-    const py::gil_scoped_release release;
-    series = evaluate_one_channel(paths, at, transmitter, receiver);
-  }
-  return numpy_take(std::move(series.amplitudes), series_shape(paths, at));
+  return numpy_take(evaluate_one_channel(paths, at, transmitter, receiver).amplitudes, series_shape(paths, at));
 }
 
 py::array amplitude_of(const Paths& paths) {
-  Series series;
-  {
-    const py::gil_scoped_release release;
-    series = evaluate_one_channel(paths, {paths.frame.trace_time}, paths.radar.transmitters[0], paths.radar.receivers[0]);
-  }
-  return numpy_take(std::move(series.amplitudes));
+  const Radar& radar = paths.radar;
+  return numpy_take(
+      evaluate_one_channel(paths, {paths.frame.trace_time}, radar.transmitters[0], radar.receivers[0]).amplitudes);
+}
+
+// In blocks: needs no more memory than the result.
+py::array path_power_of(const Paths& paths) {
+  return numpy_take(run_job("replay", py::none(), [&](Job& job) {
+    Radar radar = paths.radar;
+    radar.transmitters.resize(1);
+    radar.receivers.resize(1);
+    const Replayer replayer(paths, radar);
+    std::vector<double> power, lengths;
+    std::vector<std::complex<double>> amplitudes;
+    power.reserve(static_cast<size_t>(paths.num_paths()));
+    for (int64_t begin = 0; begin < paths.num_paths(); begin += kPathsPerBlock) {
+      const std::vector<int64_t> block = path_range(begin, std::min(begin + kPathsPerBlock, paths.num_paths()));
+      replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, &job);
+      for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
+    }
+    return power;
+  }));
 }
 
 py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver) {
   const std::vector<double> at = as_vector<double>(times, "times");
   const Antenna from = antenna_of(transmitter, "transmitter", paths.radar.transmitters);
   const Antenna to = antenna_of(receiver, "receiver", paths.radar.receivers);
-  Series series;
-  {
-    const py::gil_scoped_release release;
-    series = evaluate_one_channel(paths, at, from, to);
-  }
-  return numpy_take(std::move(series.lengths), series_shape(paths, at));
+  return numpy_take(evaluate_one_channel(paths, at, from, to).lengths, series_shape(paths, at));
 }
 
 py::array points_of(const Paths& paths, double time) {
-  std::vector<Vec3> points;
-  {
-    const py::gil_scoped_release release;
+  std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
     const Pose pose(*paths.scene, time);
-    points.reserve(static_cast<size_t>(paths.num_hits()));
-    for (int64_t i = 0; i < paths.num_hits(); ++i) {
-      const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
-      const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
-      points.push_back(a + double{hit.u} * (b - a) + double{hit.v} * (c - a));
-    }
-  }
-  return to_numpy(points);
+    std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
+    parallel_for((paths.num_hits() + kPathsPerBlock - 1) / kPathsPerBlock, [&](int64_t block) {
+      const int64_t end = std::min((block + 1) * kPathsPerBlock, paths.num_hits());
+      for (int64_t i = block * kPathsPerBlock; i < end; ++i) {
+        const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+        const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+        Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+      }
+    }, &job);
+    return out;
+  });
+  return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});
+}
+
+std::vector<uint8_t> as_mask(const py::array& mask) {
+  const auto keep = checked_array<bool>(mask, "selection", "[P]");
+  return std::vector<uint8_t>(keep.data(), keep.data() + keep.size());
 }
 
 PathsPtr select_mask(const Paths& paths, const py::array& mask) {
-  const auto keep = checked_array<bool>(mask, "selection", "[P]");
-  const std::vector<uint8_t> bytes(keep.data(), keep.data() + keep.size());
-  return std::make_shared<Paths>(paths.select(bytes));
+  const std::vector<uint8_t> keep = as_mask(mask);
+  return run_job("select", py::none(), [&](Job& job) { return std::make_shared<Paths>(paths.select(keep, &job)); });
+}
+
+PathsPtr select_with_own_hits(const Paths& paths, const py::array& mask) {
+  const std::vector<uint8_t> keep = as_mask(mask);
+  return run_job("select", py::none(), [&](Job& job) {
+    return std::make_shared<Paths>(paths.select(keep, &job).with_own_hits(&job));
+  });
 }
 
 PathsPtr select_paths(const Paths& paths, const Selection& selection) {
-  return std::make_shared<Paths>(paths.select(selection.matches(paths)));
+  return run_job("select", py::none(), [&](Job& job) {
+    return std::make_shared<Paths>(paths.select(selection.matches(paths, &job), &job));
+  });
+}
+
+// Paths of each part, in the order of the names.
+std::vector<PathsPtr> split(const Paths& paths, const Partition& partition, Job& job) {
+  std::vector<PathsPtr> parts;
+  for (uint32_t part = 0; part < partition.names.size(); ++part) {
+    std::vector<uint8_t> keep(partition.group.size());
+    for (size_t path = 0; path < keep.size(); ++path) keep[path] = partition.group[path] == part;
+    parts.push_back(std::make_shared<Paths>(paths.select(keep, &job)));
+  }
+  return parts;
 }
 
 py::dict partition_paths(const Paths& paths, const py::dict& parts) {
   std::vector<NamedSelection> named;
   for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
-  const Partition partition = make_partition(paths, named);
+  Partition partition;
+  const std::vector<PathsPtr> made = run_job("partition", py::none(), [&](Job& job) {
+    partition = make_partition(paths, named, &job);
+    return split(paths, partition, job);
+  });
   py::dict out;
-  for (uint32_t part = 0; part < partition.names.size(); ++part) {
-    std::vector<uint8_t> keep;
-    for (const uint32_t group : partition.group) keep.push_back(group == part);
-    out[py::str(partition.names[part])] = std::make_shared<Paths>(paths.select(keep));
-  }
+  for (size_t part = 0; part < made.size(); ++part) out[py::str(partition.names[part])] = made[part];
   return out;
 }
 
@@ -267,7 +306,7 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   paths->scene = std::make_shared<const Scene>(scene);
   paths->radar = radar;
   paths->frame = frame;
-  paths->validate();
+  run_job("check", py::none(), [&](Job&) { paths->validate(); });
   return paths;
 }
 
@@ -326,7 +365,7 @@ hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN f
       .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
       .def_readonly("resolved", &ReceivedPower::resolved,
                     "the power is at least twice its standard error; False for one batch")
-      .def_readonly("num_batches", &ReceivedPower::num_batches)
+      .def_readonly("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors")
       .def_property_readonly("error_db", &ReceivedPower::error_db,
                              "dB, 10 log10(1 + standard_error / power); infinite where not resolved")
       .def("__repr__", &power_text);
@@ -347,8 +386,8 @@ void bind_paths(py::module_& m) {
 
 Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
 share hits; selections share all hits of their trace.)")
-      .def_property_readonly("num_paths", &Paths::num_paths)
-      .def_property_readonly("num_hits", &Paths::num_hits)
+      .def_property_readonly("num_paths", &Paths::num_paths, "P, their number")
+      .def_property_readonly("num_hits", &Paths::num_hits, "H, of all paths of the trace")
       .def_property_readonly("hits", &hits_of, "[H] structured: mesh_id, triangle_id, u, v")
       .def_property_readonly("mesh_id", hit_column(&Hit::mesh_id), "[H]")
       .def_property_readonly("triangle_id", hit_column(&Hit::triangle_id), "[H] triangle within the mesh")
@@ -369,26 +408,33 @@ share hits; selections share all hits of their trace.)")
       .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
       .def_property_readonly("amplitude", &amplitude_of,
                              "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length")
+      .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
       .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
-           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for one transmitter and receiver (indices).")
+           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices).")
       .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
-           "Lengths [T, P] in m at `times` [T] in s; antennas are indices or positions [3] in m in the radar's frame.")
+           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame.")
       .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
-      .def("select", &select_paths, py::arg("selection"), "The paths that a path expression or Selection takes.")
-      .def("select", &select_mask, py::arg("selection"), "The paths where a mask, bool [P], is true.")
+      .def("select", &select_paths, py::arg("selection"), "The paths that `selection`, a path expression or a Selection, takes.")
+      .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")
+      .def("_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
+           "The paths where a mask, bool [P], is true, with only the hits that they use.")
       .def("partition", &partition_paths, py::arg("parts"),
            "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
       .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
                   py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
                   py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("scene"), py::arg("radar"), py::arg("frame"),
-                  "Paths of arrays as the properties give them. Raises ValueError where an index leads nowhere.")
+                  R"(Paths of arrays as the properties give them.
+
+hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None
+scene, radar, frame: what they belong to
+Raises ValueError where an index leads nowhere.)")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
 
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint") = "second_order",
         py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays,
-        py::arg("progress") = py::none(), R"(Shoots rays through the scene at mid-frame and records what they hit.
+        py::arg("progress") = py::none(), R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
 num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count
 seed: the same seed gives the same bits

@@ -250,7 +250,7 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
   }
 }
 
-std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths) {
+std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
   std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()));
   const Hit* hits = paths.hits ? paths.hits->data() : nullptr;
   const int64_t num_tasks = (paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask;
@@ -263,7 +263,7 @@ std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths) {
                         ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
                         : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
     }
-  });
+  }, job);
   return taken;
 }
 

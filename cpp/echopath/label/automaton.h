@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "echopath/base/job.h"
 #include "echopath/label/expression.h"
 #include "echopath/trace/paths.h"
 
@@ -61,7 +62,7 @@ class Automaton {
   int num_states_ = 0, num_classes_ = 0;
 };
 
-// [P] 1 where the automaton takes the path, else 0. Runs on all threads.
-std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths);
+// [P] 1 where the automaton takes the path, else 0. Runs on all threads; raises Cancelled when the job is.
+std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -48,7 +48,7 @@ void refine(CombinedPartition& combined, const Partition& partition) {
 
 }  // namespace
 
-Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts) {
+Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts, Job* job) {
   check_names(parts);
   Partition partition;
   for (const NamedSelection& part : parts) partition.names.push_back(part.name);
@@ -56,7 +56,7 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
   const auto other = static_cast<uint32_t>(parts.size());
   partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
   for (uint32_t part = 0; part < other; ++part) {
-    const std::vector<uint8_t> taken = parts[part].selection.matches(paths);
+    const std::vector<uint8_t> taken = parts[part].selection.matches(paths, job);
     for (size_t path = 0; path < taken.size(); ++path) {
       if (taken[path] && partition.group[path] == other) partition.group[path] = part;
     }
@@ -64,13 +64,14 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
   return partition;
 }
 
-CombinedPartition combine(std::vector<Partition> partitions) {
+CombinedPartition combine(std::vector<Partition> partitions, Job* job) {
   require(!partitions.empty(), "partitions", "must be one or more", "none");
   const size_t num_paths = partitions.front().group.size();
   CombinedPartition combined;
   combined.group.assign(num_paths, 0);
   combined.num_groups = num_paths > 0 ? 1 : 0;
   for (const Partition& partition : partitions) {
+    if (job) job->throw_if_cancelled();
     const std::string rule = "must be of the same paths, " + std::to_string(num_paths);
     require(partition.group.size() == num_paths, "partitions", rule, partition.group.size());
     refine(combined, partition);

@@ -20,8 +20,8 @@ struct Partition {
 };
 
 // The first selection that takes a path names its part; paths that none takes are "other". Raises invalid_argument when
-// a name is empty, "other" or given twice, or when a glob takes no mesh.
-Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts);
+// a name is empty, "other" or given twice, or when a glob takes no mesh; Cancelled when the job is.
+Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts, Job* job = nullptr);
 
 // Several partitions of the same paths in one group index: one group per combination of parts that occurs.
 struct CombinedPartition {
@@ -49,7 +49,8 @@ struct CombinedPartition {
   }
 };
 
-// Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations.
-CombinedPartition combine(std::vector<Partition> partitions);
+// Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations; Cancelled
+// when the job is.
+CombinedPartition combine(std::vector<Partition> partitions, Job* job = nullptr);
 
 }  // namespace echopath

@@ -70,9 +70,9 @@ std::vector<uint8_t> matches_num_bounces(const Paths& paths, int min, int max) {
   return taken;
 }
 
-std::vector<uint8_t> matches_expression(const Paths& paths, const PathExpression& expression) {
+std::vector<uint8_t> matches_expression(const Paths& paths, const PathExpression& expression, Job* job) {
   require(paths.scene != nullptr, "paths", "must carry a scene to match mesh names", "none");
-  return matches(Automaton(expression, paths.scene->mesh_names()), paths);
+  return matches(Automaton(expression, paths.scene->mesh_names()), paths, job);
 }
 
 std::string num_bounces_text(int min, int max) {
@@ -84,14 +84,15 @@ std::string num_bounces_text(int min, int max) {
 
 }  // namespace
 
-std::vector<uint8_t> Selection::matches(const Paths& paths) const {
+std::vector<uint8_t> Selection::matches(const Paths& paths, Job* job) const {
   const Term& term = *term_;
-  if (term.kind == Term::Kind::kExpression) return matches_expression(paths, term.expression);
+  if (job) job->throw_if_cancelled();
+  if (term.kind == Term::Kind::kExpression) return matches_expression(paths, term.expression, job);
   if (term.kind == Term::Kind::kNumBounces) return matches_num_bounces(paths, term.min, term.max);
 
-  std::vector<uint8_t> taken = term.children.front().matches(paths);
+  std::vector<uint8_t> taken = term.children.front().matches(paths, job);
   for (size_t child = 1; child < term.children.size(); ++child) {
-    const std::vector<uint8_t> other = term.children[child].matches(paths);
+    const std::vector<uint8_t> other = term.children[child].matches(paths, job);
     for (size_t path = 0; path < taken.size(); ++path) {
       taken[path] = term.kind == Term::Kind::kAnd ? taken[path] & other[path] : taken[path] | other[path];
     }

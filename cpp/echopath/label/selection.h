@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "echopath/base/job.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
@@ -30,8 +31,9 @@ class Selection {
   friend Selection operator|(const Selection& a, const Selection& b);
   friend Selection operator~(const Selection& a);
 
-  // [P] 1 where the path is selected, else 0. Raises invalid_argument when a glob takes no mesh of the paths' scene.
-  std::vector<uint8_t> matches(const Paths& paths) const;
+  // [P] 1 where the path is selected, else 0. Raises invalid_argument when a glob takes no mesh of the paths' scene,
+  // Cancelled when the job is.
+  std::vector<uint8_t> matches(const Paths& paths, Job* job = nullptr) const;
   // As written; combined ones as (T . R) & ~(T .* 'wall' .* R).
   std::string text() const;
 

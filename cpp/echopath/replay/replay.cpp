@@ -251,7 +251,7 @@ std::vector<Echoes> Replayer::echoes(std::span<const int64_t> indices, bool movi
 }
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
-                        std::vector<std::complex<double>>& amplitudes) const {
+                        std::vector<std::complex<double>>& amplitudes, Job* job) const {
   constexpr size_t kBlock = 8192;
   Level single;
   single.instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
@@ -268,7 +268,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
       std::copy_n(block_lengths.begin() + from, size, lengths.begin() + to);
       std::copy_n(block_amplitudes.begin() + from, size, amplitudes.begin() + to);
     }
-  });
+  }, job);
 }
 
 }  // namespace echopath

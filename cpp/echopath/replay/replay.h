@@ -33,9 +33,9 @@ class Replayer {
   // the first whose last two coefficients stay below the phase tolerance for all paths of the call, else every chirp.
   std::vector<Echoes> echoes(std::span<const int64_t> paths, bool moving) const;
 
-  // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time.
+  // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
-                std::vector<std::complex<double>>& amplitudes) const;
+                std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
   struct Block;

@@ -29,7 +29,7 @@ int64_t cube_size(const Radar& radar) {
          radar.waveform.num_chirps * radar.waveform.num_samples;
 }
 
-void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed) {
+void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job) {
   radar.validate();
   require(size == cube_size(radar), "cube", "must have transmitters x receivers x chirps x samples values", size);
   const bool real = radar.waveform.real;
@@ -40,11 +40,11 @@ void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uin
       const std::complex<double> noise = deviation * gaussian_pair(seed, i);
       cube[i] += real ? noise.real() : noise;
     }
-  });
+  }, job);
 }
 
-void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed) {
-  add_noise(cube.data(), static_cast<int64_t>(cube.size()), radar, seed);
+void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job) {
+  add_noise(cube.data(), static_cast<int64_t>(cube.size()), radar, seed, job);
 }
 
 }  // namespace echopath

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
 
 namespace echopath {
@@ -15,10 +16,10 @@ double noise_power(const Radar& radar);
 // Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise),
 // independent from sample to sample. A pure function of (seed, place in the cube), so it depends on no thread.
 // Parallel over chirps.
-// Raises invalid_argument unless the cube has the size that the radar gives it.
-void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed);
+// Raises invalid_argument unless the cube has the size that the radar gives it, Cancelled when the job is.
+void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job = nullptr);
 // The same for the `size` samples at `cube`.
-void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed);
+void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job = nullptr);
 
 // Samples in the cube of a radar: transmitters x receivers x chirps x samples.
 int64_t cube_size(const Radar& radar);

@@ -1,6 +1,7 @@
 #include "echopath/sim/synthesize.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "echopath/base/parallel.h"
 
@@ -54,14 +55,29 @@ struct Stream {
   }
 };
 
+// Indices of the paths on which nothing moves, and of the others.
+std::pair<std::vector<int64_t>, std::vector<int64_t>> split_by_motion(const Replayer& replayer, int64_t num_paths, Job* job) {
+  std::pair<std::vector<int64_t>, std::vector<int64_t>> split;
+  auto& [still, moving] = split;
+  const auto is_still = [&](int64_t path) {
+    if (job && path % kLargestBlock == 0) job->throw_if_cancelled();
+    return replayer.is_static(path);
+  };
+  int64_t num_still = 0;
+  for (int64_t path = 0; path < num_paths; ++path) num_still += is_still(path) ? 1 : 0;
+  still.reserve(static_cast<size_t>(num_still));
+  moving.reserve(static_cast<size_t>(num_paths - num_still));
+  for (int64_t path = 0; path < num_paths; ++path) (is_still(path) ? still : moving).push_back(path);
+  return split;
+}
+
 // Cubes [group] of all groups, in one pass.
 std::vector<Cube> synthesize_groups(const Paths& paths, const Radar& radar, const std::vector<uint32_t>* group, int num_groups,
                                     const CubeSettings& settings, Job* job) {
   const Replayer replayer(paths, radar, settings.replay);
   const int64_t num_paths = paths.num_paths();
   Synthesizer synthesizer(radar.waveform, replayer.num_channels(), num_groups, num_paths, settings.synthesis);
-  std::vector<int64_t> still, moving;
-  for (int64_t path = 0; path < num_paths; ++path) (replayer.is_static(path) ? still : moving).push_back(path);
+  const auto [still, moving] = split_by_motion(replayer, num_paths, job);
   if (job) job->start(num_paths * replayer.num_channels());
   Stream stream{replayer, group, synthesizer, job};
   stream.run(still, false);
@@ -92,8 +108,9 @@ std::vector<std::vector<PartCube>> decompose(const Paths& paths, const Radar& ra
                                              const std::vector<std::vector<NamedSelection>>& partitions,
                                              const CubeSettings& settings, Job* job) {
   std::vector<Partition> parts;
-  for (const std::vector<NamedSelection>& named : partitions) parts.push_back(make_partition(paths, named));
-  const CombinedPartition combined = combine(std::move(parts));
+  for (const std::vector<NamedSelection>& named : partitions) parts.push_back(make_partition(paths, named, job));
+  CombinedPartition combined = combine(std::move(parts), job);
+  for (Partition& partition : combined.partitions) partition.group = {};  // only the combination is needed from here on
   const int num_groups = std::max(1, static_cast<int>(combined.num_groups));
   const std::vector<Cube> by_group = synthesize_groups(paths, radar, &combined.group, num_groups, settings, job);
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace echopath {
 
 void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
@@ -49,7 +53,24 @@ void PathBlock::end_ray(const Hit* ray_hits) {
   used_depth_ = 0;
 }
 
+void PathBlock::shrink_to_fit() {
+  hits.shrink_to_fit();
+  offsets.shrink_to_fit();
+  num_bounces.shrink_to_fit();
+  diffuse.shrink_to_fit();
+  weight.shrink_to_fit();
+  stratum.shrink_to_fit();
+  curved_cell.shrink_to_fit();
+}
+
 namespace {
+
+// To the system: what thousands of small blocks leave behind is never large enough for a later array.
+void give_back_free_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
 
 void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_queries += part.num_queries;
@@ -67,7 +88,7 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
 
 }  // namespace
 
-void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
+void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
   size_t num_hits = 0, num_paths = 0;
   for (const PathBlock& block : blocks) {
     num_hits += block.hits.size();
@@ -83,6 +104,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
   paths.flags.reserve(num_paths);
   paths.batch.reserve(num_paths);
   for (PathBlock& block : blocks) {
+    if (job) job->throw_if_cancelled();
     const auto base = static_cast<int64_t>(hits->size());
     append(*hits, block.hits);
     for (const int64_t offset : block.offsets) paths.offsets.push_back(base + offset);
@@ -101,6 +123,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths) {
   }
   if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
   paths.hits = std::move(hits);
+  give_back_free_memory();
 }
 
 }  // namespace echopath

@@ -29,6 +29,8 @@ class PathBlock {
   void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.
   void end_ray(const Hit* ray_hits);
+  // Gives back what its vectors hold in reserve: for all blocks together that would be as much as the record.
+  void shrink_to_fit();
 
  private:
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
@@ -37,7 +39,7 @@ class PathBlock {
   int used_depth_ = 0;
 };
 
-// Joins blocks in order into `paths` (hits and path arrays only), freeing each block.
-void join_blocks(std::vector<PathBlock>& blocks, Paths& paths);
+// Joins blocks in order into `paths` (hits and path arrays only), freeing each block. Raises Cancelled when the job is.
+void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -1,18 +1,58 @@
 #include "echopath/trace/paths.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 
 namespace echopath {
 namespace {
 
+constexpr size_t kHitsPerWord = 64;
+
 template <class T>
-std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep) {
+std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep, size_t count, Job* job) {
+  if (job) job->throw_if_cancelled();
   std::vector<T> out;
+  out.reserve(count);
   for (size_t i = 0; i < keep.size(); ++i) {
     if (keep[i]) out.push_back(values[i]);
   }
   return out;
+}
+
+// A set of hits that tells quickly how many of its members come before one.
+class HitSet {
+ public:
+  explicit HitSet(size_t num_hits) : words_((num_hits + kHitsPerWord - 1) / kHitsPerWord), before_(words_.size()) {}
+  void insert(size_t hit) { words_[hit / kHitsPerWord] |= uint64_t{1} << (hit % kHitsPerWord); }
+  bool has(size_t hit) const { return (words_[hit / kHitsPerWord] >> (hit % kHitsPerWord)) & 1u; }
+  // Makes `rank` right; returns the number of members.
+  int64_t count() {
+    int64_t sum = 0;
+    for (size_t i = 0; i < words_.size(); ++i) {
+      before_[i] = sum;
+      sum += std::popcount(words_[i]);
+    }
+    return sum;
+  }
+  int64_t rank(size_t hit) const {
+    const uint64_t lower = words_[hit / kHitsPerWord] & ((uint64_t{1} << (hit % kHitsPerWord)) - 1);
+    return before_[hit / kHitsPerWord] + std::popcount(lower);
+  }
+
+ private:
+  std::vector<uint64_t> words_;
+  std::vector<int64_t> before_;
+};
+
+HitSet used_hits(const Paths& paths) {
+  HitSet used(static_cast<size_t>(paths.num_hits()));
+  for (size_t i = 0; i < paths.offsets.size(); ++i) {
+    for (int k = 0; k < paths.num_bounces[i]; ++k) used.insert(static_cast<size_t>(paths.offsets[i] + k));
+  }
+  return used;
 }
 
 }  // namespace
@@ -40,21 +80,38 @@ void Paths::validate() const {
   }
 }
 
-Paths Paths::select(const std::vector<uint8_t>& keep) const {
+Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   require(static_cast<int64_t>(keep.size()) == num_paths(), "keep", "must have one entry per path", keep.size());
+  const auto count = static_cast<size_t>(std::count_if(keep.begin(), keep.end(), [](uint8_t value) { return value != 0; }));
+  const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
   Paths out;
   out.hits = hits;
-  out.offsets = kept(offsets, keep);
-  out.num_bounces = kept(num_bounces, keep);
-  out.diffuse = kept(diffuse, keep);
-  out.weight = kept(weight, keep);
-  out.stratum = kept(stratum, keep);
-  out.batch = kept(batch, keep);
-  out.flags = kept(flags, keep);
-  if (!curved_cell.empty()) out.curved_cell = kept(curved_cell, keep);
+  out.offsets = column(offsets);
+  out.num_bounces = column(num_bounces);
+  out.diffuse = column(diffuse);
+  out.weight = column(weight);
+  out.stratum = column(stratum);
+  out.batch = column(batch);
+  out.flags = column(flags);
+  if (!curved_cell.empty()) out.curved_cell = column(curved_cell);
   out.scene = scene;
   out.radar = radar;
   out.frame = frame;
+  return out;
+}
+
+Paths Paths::with_own_hits(Job* job) const {
+  HitSet used = used_hits(*this);
+  if (job) job->throw_if_cancelled();
+  auto own = std::make_shared<std::vector<Hit>>();
+  own->reserve(static_cast<size_t>(used.count()));
+  for (size_t hit = 0; hit < static_cast<size_t>(num_hits()); ++hit) {
+    if (used.has(hit)) own->push_back((*hits)[hit]);
+  }
+  if (job) job->throw_if_cancelled();
+  Paths out = *this;
+  out.hits = std::move(own);
+  for (int64_t& offset : out.offsets) offset = used.rank(static_cast<size_t>(offset));
   return out;
 }
 

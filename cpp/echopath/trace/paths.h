@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "echopath/base/job.h"
 #include "echopath/em/footprint.h"
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"
@@ -93,8 +94,10 @@ struct Paths {
 
   // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
   void validate() const;
-  // The paths where keep [P] is not 0, in order; shares the hits.
-  Paths select(const std::vector<uint8_t>& keep) const;
+  // The paths where keep [P] is not 0, in order; shares the hits. Raises Cancelled when the job is.
+  Paths select(const std::vector<uint8_t>& keep, Job* job = nullptr) const;
+  // The same paths with only the hits that they use, in their order; hits that paths share stay shared.
+  Paths with_own_hits(Job* job = nullptr) const;
 };
 
 }  // namespace echopath

@@ -51,7 +51,9 @@ void shoot_all(const RayShooter& shooter, int64_t num_rays, std::vector<PathBloc
       num_blocks,
       [&](int64_t i) {
         const int64_t end = std::min(num_rays, (i + 1) * kRaysPerBlock);
-        for (int64_t ray = i * kRaysPerBlock; ray < end; ++ray) shooter.shoot(ray, blocks[base + static_cast<size_t>(i)]);
+        PathBlock& block = blocks[base + static_cast<size_t>(i)];
+        for (int64_t ray = i * kRaysPerBlock; ray < end; ++ray) shooter.shoot(ray, block);
+        block.shrink_to_fit();
       },
       job);
 }
@@ -107,7 +109,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   const RayShooter shooter(*paths.scene, geometry, mirrors, plan, sbr);
   paths.frame.statistics.num_rays = plan.first_ray.back();
   shoot_all(shooter, plan.first_ray.back(), blocks, job);
-  join_blocks(blocks, paths);
+  join_blocks(blocks, paths, job);
   return paths;
 }
 

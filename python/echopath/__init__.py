@@ -6,6 +6,10 @@
     cube = ep.synthesize(paths, radar)                                     # [tx, rx, chirp, sample]
     parts = ep.decompose(paths, radar, {"ghosts": "T .* 'wall' .* R"})     # and "other"
 """
+from ._startup import answer_ctrl_c_while_loading
+
+answer_ctrl_c_while_loading()
+
 from . import _core
 from ._core import (
     Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, Isotropic, KeyframeMotion,
@@ -24,7 +28,10 @@ from .scene_file import SceneFile, load_scene
 
 
 def view(*arguments, **keywords):
-    """Opens the viewer: view(scene, paths, parts). It comes with `pip install echopath[viewer]`."""
+    """Opens the viewer: view(scene, paths, parts). It comes with `pip install echopath[viewer]`.
+
+    arguments, keywords: those of the viewer's own `view`.
+    """
     from echopath_viewer import view as open_viewer
 
     return open_viewer(*arguments, **keywords)

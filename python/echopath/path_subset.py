@@ -1,56 +1,28 @@
-"""Some paths of a record with only the hits they use."""
+"""Some paths of a record, and which of them are strong. Long arrays are walked in blocks: that bounds the memory, and
+Ctrl-C is answered in between."""
 from __future__ import annotations
 
 import numpy as np
 
 import echopath as ep
 
-
-BLOCK_PATHS = 1 << 19  # whose power is computed at a time: bounds the memory, and Ctrl-C is answered in between
-
-
-def path_power(paths):
-    """Power of each path at the trace time for the first antennas, [P] in W."""
-    power = np.empty(paths.num_paths)
-    is_meant = np.zeros(paths.num_paths, bool)
-    for begin in range(0, paths.num_paths, BLOCK_PATHS):
-        block = slice(begin, begin + BLOCK_PATHS)
-        is_meant[block] = True
-        amplitude = paths.select(is_meant).amplitude
-        is_meant[block] = False
-        power[block] = amplitude.real**2 + amplitude.imag**2
-    return power
+BLOCK = 1 << 20  # paths
+_DIGIT = 16      # bits of a power that one pass of `power_of_strongest` looks at
 
 
-def used_hits(offsets, num_bounces, num_hits: int):
-    """The hits that paths use, and where the paths find them once the others are gone.
-
-    offsets, num_bounces [P]: as in Paths; num_hits: H.
-    Returns used [H'] (ascending indices of hits) and offsets [P] into them. Hits that paths share stay shared.
-    """
-    is_used = np.zeros(num_hits, bool)
-    for _, hits in _hits_by_order(offsets, num_bounces):
-        is_used[hits] = True
-    used = np.flatnonzero(is_used)
-    return used, np.searchsorted(used, offsets).astype(np.int64)
-
-
-def _hits_by_order(offsets, num_bounces):
-    """For the first, second, ... hits of paths: which paths have one (indices), and which hit it is."""
-    for order in range(int(num_bounces.max(initial=0))):
-        paths = np.flatnonzero(num_bounces > order)
-        yield paths, offsets[paths] + order
+def _blocks(size: int):
+    """Slices that cover `size` entries."""
+    return (slice(begin, min(begin + BLOCK, size)) for begin in range(0, size, BLOCK))
 
 
 def subset(paths, keep):
     """The paths where `keep` [P] is true (or of the indices `keep`), in order, with only the hits that they use."""
-    chosen = np.flatnonzero(keep) if np.asarray(keep).dtype == bool else np.sort(np.asarray(keep, dtype=np.int64))
-    offsets, num_bounces = paths.offsets[chosen], paths.num_bounces[chosen]
-    used, new_offsets = used_hits(offsets, num_bounces, len(paths.hits))
-    return ep.Paths.from_arrays(
-        hits=paths.hits[used], offsets=new_offsets, num_bounces=num_bounces, diffuse=paths.diffuse[chosen],
-        weight=paths.weight[chosen], stratum=paths.stratum[chosen], batch=paths.batch[chosen],
-        flags=paths.flags[chosen], curved_cell=paths.curved_cell[chosen] if len(paths.curved_cell) else None, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    keep = np.asarray(keep)
+    if keep.dtype != bool:
+        mask = np.zeros(paths.num_paths, bool)
+        mask[keep] = True
+        keep = mask
+    return paths._select_with_own_hits(keep)
 
 
 def part_of_path(paths, selections: dict):
@@ -59,27 +31,56 @@ def part_of_path(paths, selections: dict):
 
 
 def power_of_strongest(power, max_paths: int) -> float:
-    """The power in W that at most `max_paths` of the paths reach, [P] `power` in W; 0 when all paths are few enough."""
+    """The power in W that at most `max_paths` of the paths reach, [P] `power` in W; 0 when all paths are few enough.
+
+    max_paths: at least 1.
+    """
     if len(power) <= max_paths:
         return 0.0
-    strongest = np.partition(power, len(power) - max_paths)[len(power) - max_paths:]
-    threshold = strongest.min()
-    if np.count_nonzero(power >= threshold) > max_paths:
+    # Digit by digit from the highest: the bits of positive floats are in the order of their values.
+    bits = np.ascontiguousarray(power, np.float64).view(np.uint64)
+    prefix, rank = 0, max_paths
+    for shift in range(64 - _DIGIT, -1, -_DIGIT):
+        counts = _count_digits(bits, shift, prefix)
+        reached = counts[::-1].cumsum()[::-1]  # paths of this digit or a higher one
+        digit = int(np.flatnonzero(reached >= rank)[-1])
+        rank -= int(reached[digit] - counts[digit])
+        prefix = (prefix << _DIGIT) | digit
+    threshold = np.uint64(prefix).view(np.float64)
+    if sum(np.count_nonzero(power[block] >= threshold) for block in _blocks(len(power))) > max_paths:
         threshold = np.nextafter(threshold, np.inf)
     return float(threshold)
 
 
+def _count_digits(bits, shift: int, prefix: int):
+    """How often each digit at `shift` occurs among the numbers whose higher digits are `prefix`."""
+    counts = np.zeros(1 << _DIGIT, np.int64)
+    for block in _blocks(len(bits)):
+        digits = bits[block] >> np.uint64(shift)
+        if shift < 64 - _DIGIT:
+            digits = digits[digits >> np.uint64(_DIGIT) == np.uint64(prefix)] & np.uint64((1 << _DIGIT) - 1)
+        counts += np.bincount(digits.astype(np.int64), minlength=len(counts))
+    return counts
+
+
 def strongest(power, count: int, among=None):
     """Indices of the `count` strongest paths where `among` [P] is true, strongest first; never paths of no power."""
-    candidates = np.flatnonzero(power > 0.0 if among is None else among & (power > 0.0))
-    if len(candidates) > count:
-        candidates = candidates[np.argpartition(power[candidates], len(candidates) - count)[-count:]]
-    return candidates[np.argsort(-power[candidates], kind="stable")]
+    best = np.zeros(0, np.int64)
+    for block in _blocks(len(power)):
+        is_candidate = power[block] > 0.0 if among is None else among[block] & (power[block] > 0.0)
+        best = np.concatenate([best, block.start + np.flatnonzero(is_candidate)])
+        if len(best) > count:
+            best = best[np.argpartition(power[best], len(best) - count)[-count:]]
+    best.sort()
+    return best[np.argsort(-power[best], kind="stable")]
 
 
-def paths_with(hit_is_meant, offsets, num_bounces):
-    """Which paths have a hit that is meant: bool [P] from bool [H]."""
-    found = np.zeros(len(offsets), bool)
-    for paths, hits in _hits_by_order(offsets, num_bounces):
-        found[paths] |= hit_is_meant[hits]
+def paths_on(paths, mesh_is_meant):
+    """Which paths have a hit on a mesh that is meant: bool [P] from bool [M]."""
+    found = np.zeros(paths.num_paths, bool)
+    offsets, num_bounces, mesh_id = paths.offsets, paths.num_bounces, paths.mesh_id
+    for block in _blocks(paths.num_paths):
+        for order in range(int(num_bounces[block].max(initial=0))):
+            with_one = block.start + np.flatnonzero(num_bounces[block] > order)
+            found[with_one] |= mesh_is_meant[mesh_id[offsets[with_one] + order]]
     return found

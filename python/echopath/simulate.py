@@ -6,7 +6,7 @@ from functools import cached_property
 
 import echopath as ep
 
-from .path_subset import part_of_path, path_power
+from .path_subset import part_of_path
 from .stages import Stage, StageClock
 
 
@@ -46,7 +46,7 @@ class Frame:
     @cached_property
     def path_power(self):
         """Power of each path at the trace time for the first antennas, [P] in W."""
-        return path_power(self.paths)
+        return self.paths.power
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"

@@ -64,7 +64,7 @@ def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
     done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
     assert done.returncode == 0, done.stderr
     files = sorted((tmp_path / "out").iterdir())
-    assert [path.name for path in files] == ["frame.h5", "map.png", "route.png", "scene.png"]
+    assert [path.name for path in files] == ["frame.h5", "map.png", "overview.png", "route.png", "scene.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in files[1:])
     assert ep.Paths.load(tmp_path / "out" / "frame.h5").frame.statistics.num_rays == 500
     assert "rays                              500" in done.stdout and done.stderr == ""
@@ -73,7 +73,7 @@ def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
 def test_run_twice_gives_the_same_bytes(scene_path, tmp_path):
     for out in ("one", "two"):
         assert call("run", scene_path, "--out", tmp_path / out).returncode == 0
-    for name in ("frame.h5", "map.png", "route.png", "scene.png"):
+    for name in ("frame.h5", "map.png", "overview.png", "route.png", "scene.png"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import report
-from echopath.demo import run_demo
+from echopath.cli.demo import run_demo
+from echopath.measures import residual, velocity_extent
 
 NUM_RAYS = 20_000
 SUM_TOLERANCE = 1e-12
@@ -49,7 +49,8 @@ def moving_peak(spectrum):
 
 def test_all_files_are_written(demo):
     out, _, _ = demo
-    assert sorted(path.name for path in out.iterdir()) == ["body.png", "frame.h5", "map.png", "route.png", "scene.png"]
+    pictures = ["body.png", "map.png", "overview.png", "route.png", "scene.png"]
+    assert sorted(path.name for path in out.iterdir()) == sorted(["frame.h5", *pictures])
 
 
 def test_the_report_tells_what_was_asked_for(demo):
@@ -66,7 +67,7 @@ def test_parts_add_up_to_a_whole_synthesised_on_its_own(demo):
     whole = ep.synthesize(frame.paths, frame.radar)
     assert np.abs(whole).max() > 0.0
     for cubes in frame.parts.values():
-        assert report.residual(whole, cubes) < SUM_TOLERANCE
+        assert residual(whole, cubes) < SUM_TOLERANCE
 
 
 def test_the_direct_echo_is_at_the_person(demo):
@@ -99,9 +100,9 @@ def test_side_wall_ghosts_are_farther_than_the_person_by_image_theory(demo):
 def test_limbs_are_faster_and_slower_than_the_walk(demo):
     _, frame, _ = demo
     for limb in ("arms", "legs"):
-        lowest, highest = report.velocity_extent(frame.part_spectra["limbs"][limb])
+        lowest, highest = velocity_extent(frame.part_spectra["limbs"][limb])
         assert lowest < -1.3 * WALKING_SPEED or highest > -0.7 * WALKING_SPEED
-    lowest, _ = report.velocity_extent(frame.part_spectra["limbs"]["legs"])
+    lowest, _ = velocity_extent(frame.part_spectra["limbs"]["legs"])
     assert lowest > -4.5 * WALKING_SPEED  # no foot is faster
 
 
@@ -120,6 +121,6 @@ def test_velocity_extent_finds_the_lines_of_a_made_up_map():
     values[0, 0, 20, 1] = 1.0     # -3 m/s
     values[0, 0, 70, 2] = 0.04    # +2 m/s, 28 dB below
     values[0, 0, 90, 2] = 0.02    # +4 m/s, 34 dB below
-    assert report.velocity_extent(SimpleNamespace(values=values, velocity=velocity)) == pytest.approx((-3.0, 2.0))
+    assert velocity_extent(SimpleNamespace(values=values, velocity=velocity)) == pytest.approx((-3.0, 2.0))
     still = SimpleNamespace(values=values * (np.abs(velocity) < 0.05)[:, None], velocity=velocity)
-    assert report.velocity_extent(still) is None
+    assert velocity_extent(still) is None

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import frame_file, frame_paths
-from echopath.path_subset import power_of_strongest, subset, used_hits
+from echopath import frame_file, path_subset
+from echopath.frame_file import paths as frame_paths
+from echopath.path_subset import power_of_strongest, strongest, subset
 
 SUM_TOLERANCE = 1e-12  # sums of doubles in another order
 PATH_COLUMNS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
@@ -158,25 +159,19 @@ def test_labels_of_a_file_are_those_of_the_paths_it_holds(frame, tmp_path):
     assert np.count_nonzero(other.part_of_path["route"] == 1) == expected
 
 
-def random_paths(rng, num_rays):
-    """Offsets and numbers of bounces of rays whose prefixes are paths, [P] each, and the number of hits."""
-    lengths = rng.integers(1, 5, num_rays)
-    starts = np.concatenate([[0], np.cumsum(lengths)])
-    pairs = [(start, count) for start, length in zip(starts, lengths) for count in range(1, length + 1)]
-    offsets, num_bounces = np.array(pairs).T
-    return offsets.astype(np.int64), num_bounces.astype(np.uint8), int(starts[-1])
+def test_a_subset_has_exactly_the_hits_that_its_paths_use(frame):
+    keep = np.random.default_rng(5).random(frame.paths.num_paths) < 0.3
+    some = subset(frame.paths, keep)
+    offsets, num_bounces = frame.paths.offsets[keep], frame.paths.num_bounces[keep]
+    used = sorted({int(hit) for begin, count in zip(offsets, num_bounces) for hit in range(begin, begin + count)})
+    assert_same_bits(some.hits, frame.paths.hits[used])
+    for old, new, count in zip(offsets, some.offsets, num_bounces):
+        assert used[new:new + count] == list(range(old, old + count))
 
 
-def test_compaction_keeps_exactly_the_hits_in_use():
-    rng = np.random.default_rng(5)
-    offsets, num_bounces, num_hits = random_paths(rng, 300)
-    keep = rng.random(len(offsets)) < 0.3
-    offsets, num_bounces = offsets[keep], num_bounces[keep]
-    used, new_offsets = used_hits(offsets, num_bounces, num_hits)
-    in_use = {int(hit) for begin, count in zip(offsets, num_bounces) for hit in range(begin, begin + count)}
-    assert used.tolist() == sorted(in_use)
-    for begin, new_begin, count in zip(offsets, new_offsets, num_bounces):
-        assert used[new_begin:new_begin + count].tolist() == list(range(begin, begin + count))
+def test_power_is_that_of_the_amplitudes(frame):
+    amplitude = frame.paths.amplitude
+    np.testing.assert_allclose(frame.paths.power, amplitude.real**2 + amplitude.imag**2, rtol=SUM_TOLERANCE, atol=0.0)
 
 
 def test_a_subset_has_the_lengths_and_amplitudes_of_its_paths(frame):
@@ -192,6 +187,17 @@ def test_the_strongest_paths_fill_the_budget_but_never_exceed_it():
     assert np.count_nonzero(power >= power_of_strongest(power, 5)) == 5
     assert np.count_nonzero(power >= power_of_strongest(power, 3)) == 3
     assert np.count_nonzero(power >= power_of_strongest(power, 2)) == 1  # the two equal ones go together
+
+
+@pytest.mark.parametrize("block", [3, 1000])
+def test_the_strongest_paths_are_those_of_a_sort(monkeypatch, block):
+    monkeypatch.setattr(path_subset, "BLOCK", block)
+    power = np.random.default_rng(9).lognormal(-60.0, 9.0, 400)
+    power[::7] = 0.0
+    descending = np.argsort(-power)
+    for count in (1, 17, 300):
+        assert power_of_strongest(power, count) == power[descending[count - 1]]
+        assert strongest(power, count).tolist() == descending[:count].tolist()
 
 
 def refuse(path, reason):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from echopath.plots import colour_limits, plot_partition, plot_range_doppler, power_dbm, save_png
+from echopath.plots import colour_limits, plot_overview, plot_partition, plot_range_doppler, power_dbm, save_png
 from echopath.plots.clip import clip_triangles, outline
 
 AREA_TOLERANCE = 1e-12
@@ -61,6 +61,30 @@ def test_all_parts_share_one_colour_scale(spectrum):
     figure = plot_partition({"strong": spectrum, "weak": weak}, whole=spectrum)
     scales = {axes.get_images()[0].get_clim() for axes in figure.axes if axes.get_images()}
     assert scales == {colour_limits(spectrum)}
+
+
+def with_clutter(spectrum):
+    """The same with an echo at rest, far behind the one that moves."""
+    values = spectrum.values.copy()
+    values[0, 0, 32, 110] = 1e-5  # 16.5 m, 0 m/s
+    return SimpleNamespace(values=values, velocity=spectrum.velocity, range=spectrum.range)
+
+
+def test_parts_are_cropped_to_what_moves_and_the_whole_is_not(spectrum):
+    whole = with_clutter(spectrum)
+    figure = plot_overview(whole, {"all of it": whole})
+    upper, lower = [axes for axes in figure.axes if axes.get_images()]
+    assert upper.get_xlim()[0] < 6.0 and upper.get_xlim()[1] > 16.5
+    assert lower.get_xlim()[0] < 6.0 < lower.get_xlim()[1] < 8.0
+    assert upper.get_images()[0].get_clim() == lower.get_images()[0].get_clim()
+
+
+def test_parts_that_are_all_at_rest_are_shown_whole(spectrum):
+    values = with_clutter(spectrum).values
+    values[0, 0, 20, 40] = 0.0
+    still = SimpleNamespace(values=values, velocity=spectrum.velocity, range=spectrum.range)
+    axes = plot_partition({"wall": still}).axes[0]
+    assert axes.get_xlim()[0] < 16.5 < axes.get_xlim()[1]
 
 
 def test_the_colour_scale_begins_above_the_noise_and_ends_above_the_peak(spectrum):

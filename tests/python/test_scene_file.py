@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import scene_schema
+from echopath.scene_file import schema as scene_schema
 
 RADAR = """
 [radar.waveform]

@@ -25,6 +25,7 @@ class Actor:
     """Parts that are placed in a scene as one object.
 
     The actor's frame has x forward, y left, z up and the floor at z = 0.
+    parts: list of Part, whose names differ.
     """
 
     parts: list = field(default_factory=list)
@@ -39,6 +40,7 @@ class Actor:
 
     @property
     def num_triangles(self):
+        """Of all parts."""
         return sum(len(part.mesh.triangles) for part in self.parts)
 
     def __repr__(self):

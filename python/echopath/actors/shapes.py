@@ -13,7 +13,10 @@ FACE_EDGE = 1.33    # longest edge, in radii, of an icosahedron face once it is 
 
 @nearest_keywords
 def plate(width, height, *, edge=None):
-    """Flat rectangle about the origin in the plane x = 0, `width` along y and `height` along z, front towards -x."""
+    """Flat rectangle about the origin in the plane x = 0, `width` along y and `height` along z in m, front towards -x.
+
+    edge: longest side in m of the grid of triangles, None for as few as possible.
+    """
     width, height = positive("width", width), positive("height", height)
     edge = edge_length(edge, max(width, height))
     return _mesh(surfaces.parallelogram([0, width / 2, -height / 2], [0, -width, 0], [0, 0, height], edge))
@@ -23,8 +26,8 @@ def plate(width, height, *, edge=None):
 def dihedral(size, height=None, *, edge=None):
     """Two rectangles at a right angle that open towards -x.
 
-    They meet on the z axis; each is `size` wide and `height` high (default: square), z from -height/2 to height/2.
-    Peak radar cross section 8 pi (size height / wavelength)^2 towards -x.
+    They meet on the z axis; each is `size` wide and `height` high in m (default: square), z from -height/2 to height/2.
+    Peak radar cross section 8 pi (size height / wavelength)^2 towards -x. `edge` is as in `plate`.
     """
     size = positive("size", size)
     height = size if height is None else positive("height", height)
@@ -39,8 +42,8 @@ def dihedral(size, height=None, *, edge=None):
 def trihedral(size, *, edge=None):
     """Corner reflector of three right-angled triangles, apex at the origin, that opens towards -x.
 
-    `size` is the length of the three edges at the apex, one of which lies in the plane y = 0 and rises. Peak radar
-    cross section 4 pi size^4 / (3 wavelength^2) towards -x.
+    `size` in m is the length of the three edges at the apex, one of which lies in the plane y = 0 and rises. Peak radar
+    cross section 4 pi size^4 / (3 wavelength^2) towards -x. `edge` is as in `plate`.
     """
     size = positive("size", size)
     pieces = surfaces.num_pieces(np.sqrt(2.0) * size, edge_length(edge, size))
@@ -54,7 +57,7 @@ def trihedral(size, *, edge=None):
 
 @nearest_keywords
 def box(size, *, edge=None):
-    """Closed box about the origin; `size` is one length or three (x, y, z)."""
+    """Closed box about the origin; `size` is one length in m or three (x, y, z), `edge` as in `plate`."""
     x, y, z = _lengths("size", size, 3)
     edge = edge_length(edge, max(x, y, z), 12.0)
     low = -np.array([x, y, z]) / 2.0
@@ -68,7 +71,10 @@ def box(size, *, edge=None):
 
 @nearest_keywords
 def ground(size, *, z=0.0, edge=None):
-    """Horizontal rectangle about the z axis at the height z, front up; `size` is one length or two (x, y)."""
+    """Horizontal rectangle about the z axis at the height `z`, front up.
+
+    `size` is one length in m or two (x, y), `edge` as in `plate`.
+    """
     x, y = _lengths("size", size, 2)
     edge = edge_length(edge, max(x, y))
     return _mesh(surfaces.parallelogram([-x / 2, -y / 2, number("z", z)], [x, 0, 0], [0, y, 0], edge))
@@ -78,7 +84,7 @@ def ground(size, *, z=0.0, edge=None):
 def wall(length, height, *, edge=None):
     """Vertical rectangle in the plane y = 0, x from -length/2 to length/2, z from 0 to height, front towards -y.
 
-    So it stands on the left of a street along x; yaw = pi turns it for the right side.
+    So it stands on the left of a street along x; yaw = pi turns it for the right side. Lengths in m, `edge` as in `plate`.
     """
     length, height = positive("length", length), positive("height", height)
     edge = edge_length(edge, max(length, height))
@@ -87,7 +93,7 @@ def wall(length, height, *, edge=None):
 
 @nearest_keywords
 def sphere(radius, *, edge=None, subdivisions=None):
-    """Sphere about the origin with its vertices on the surface.
+    """Sphere of that `radius` in m about the origin with its vertices on the surface.
 
     Give `edge`, or `subdivisions`, the number of pieces of an icosahedron's edge (20 subdivisions^2 triangles);
     default 12.
@@ -105,7 +111,7 @@ def sphere(radius, *, edge=None, subdivisions=None):
 
 @nearest_keywords
 def ellipsoid(semi_axes, *, edge=None):
-    """Ellipsoid about the origin; `semi_axes` (x, y, z)."""
+    """Ellipsoid about the origin; `semi_axes` (x, y, z) in m, `edge` as in `plate`."""
     a, b, c = _lengths("semi_axes", semi_axes, 3)
     edge = _round_edge(edge, min(a, b), max(a, b, c))
     section = surfaces.table_section([(-c, 0, 0, a, b, 2), (c, 0, 0, a, b, 2)], c, c)
@@ -114,7 +120,10 @@ def ellipsoid(semi_axes, *, edge=None):
 
 @nearest_keywords
 def capsule(radius, length, *, edge=None):
-    """Cylinder along z with half spheres on its ends, about the origin; `length` from tip to tip."""
+    """Cylinder of `radius` along z with half spheres on its ends, `length` from tip to tip, about the origin.
+
+    Lengths in m, `edge` as in `plate`.
+    """
     radius, length = positive("radius", radius), positive("length", length)
     if length < 2.0 * radius:
         raise ValueError(f"length must be at least twice the radius {radius!r} m, got {length!r}")

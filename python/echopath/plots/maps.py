@@ -5,14 +5,15 @@ import math
 
 import numpy as np
 
-from ..report import STATIC_SPEED
+from ..measures import STATIC_SPEED
 from .style import MAP_COLOURS, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
-RANGE_MARGIN = 3.0           # m, shown around the signal
+RANGE_MARGIN = 0.8           # m, shown around the signal
 VELOCITY_MARGIN = 0.5        # m/s
+RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 SMALLEST_POWER = 1e-300      # W, stands for zero on a logarithmic scale
 
 
@@ -31,25 +32,22 @@ def colour_limits(spectrum) -> tuple[float, float]:
 
 
 def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None):
-    """One range-Doppler map, cropped to where there is signal.
+    """One range-Doppler map, cropped to where there is signal, at rest or moving.
 
     spectrum: of `range_doppler`; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`.
     Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive).
     """
     vmin, vmax = _limits(spectrum, vmin, vmax)
-    with new_figure(7.2, 4.4) as figure:
+    with new_figure(9.0, 4.4) as figure:
         axes = figure.subplots()
-        image = _draw(axes, spectrum, vmin, vmax)
-        _crop([axes], _extent([spectrum], vmin))
-        axes.set_title(title)
-        axes.set_xlabel("Range in m")
-        axes.set_ylabel("Radial velocity in m/s")
+        image = _draw_whole(axes, spectrum, vmin, vmax, title)
+        axes.set_ylabel(VELOCITY_LABEL)
         _colour_bar(figure, image, [axes])
     return figure
 
 
 def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None):
-    """The maps of the parts of a partition side by side, with one crop and one colour scale for all.
+    """The maps of the parts of a partition side by side, cropped to what moves, with one colour scale for all.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`). Returns a matplotlib figure with the axes of `plot_range_doppler`.
@@ -58,20 +56,51 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None)
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
     columns = len(spectra) if len(spectra) <= 3 else 2
     rows = -(-len(spectra) // columns)
-    with new_figure(3.4 * columns + 1.2, 3.2 * rows + 0.5) as figure:
-        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-        panels = list(grid.flat)
-        for axes, (name, spectrum) in zip(panels, spectra.items()):
-            image = _draw(axes, spectrum, vmin, vmax)
-            axes.set_title(name)
-        for axes in panels[len(spectra):]:
-            axes.remove()
-        _crop(panels[:len(spectra)], _extent(list(spectra.values()), vmin))
-        figure.supxlabel("Range in m", fontsize=9)
-        figure.supylabel("Radial velocity in m/s", fontsize=9)
+    with new_figure(3.4 * columns + 1.2, 3.4 * rows + 0.5) as figure:
+        panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
+        image = _draw_parts(panels, spectra, vmin, vmax)
+        figure.supxlabel(RANGE_LABEL, fontsize=9)
+        figure.supylabel(VELOCITY_LABEL, fontsize=9)
         figure.suptitle(title, fontsize=11)
         _colour_bar(figure, image, panels[:len(spectra)])
     return figure
+
+
+def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None):
+    """The whole map above the maps of its parts, on one colour scale; otherwise as `plot_partition`."""
+    vmin, vmax = _limits(whole, vmin, vmax)
+    with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
+        upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
+        axes = upper.subplots()
+        image = _draw_whole(axes, whole, vmin, vmax, title)
+        panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
+        _draw_parts(panels, spectra, vmin, vmax)
+        lower.suptitle(parts_title, fontsize=10)
+        lower.supxlabel(RANGE_LABEL, fontsize=9)
+        for first in (axes, panels[0]):
+            first.set_ylabel(VELOCITY_LABEL)
+        _colour_bar(upper, image, [axes])
+        _colour_bar(lower, image, panels)
+    return figure
+
+
+def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):
+    image = _draw(axes, spectrum, vmin, vmax)
+    _crop([axes], _extent([spectrum], vmin))
+    axes.set_title(title)
+    axes.set_xlabel(RANGE_LABEL)
+    return image
+
+
+def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float):
+    """The parts in as many panels, the panels left over removed; returns the last image."""
+    for axes, (name, spectrum) in zip(panels, spectra.items()):
+        image = _draw(axes, spectrum, vmin, vmax)
+        axes.set_title(name if name != "other" else "other: all the rest")
+    for axes in panels[len(spectra):]:
+        axes.remove()
+    _crop(panels[:len(spectra)], _extent(list(spectra.values()), vmin, is_moving_meant=True))
+    return image
 
 
 def _limits(spectrum, vmin, vmax):
@@ -92,12 +121,15 @@ def _half_step(axis) -> float:
     return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
 
 
-def _extent(spectra, floor: float):
-    """Box (range, velocity) around the moving cells above `floor` in dBm, around all when none moves, or None."""
+def _extent(spectra, floor: float, is_moving_meant: bool = False):
+    """Box (range, velocity) around the cells above `floor` in dBm, or None when there are none.
+
+    is_moving_meant: by range only around the cells that move, where some do.
+    """
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
     is_moving = np.abs(velocity) > STATIC_SPEED
-    if is_moving.any():
+    if is_moving_meant and is_moving.any():
         distance = distance[is_moving]
     if not len(distance):
         return None

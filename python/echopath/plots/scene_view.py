@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..path_subset import path_power, paths_with, strongest, subset
+from ..path_subset import paths_on, strongest, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
@@ -40,7 +40,7 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
     Returns a matplotlib figure with three views in metres.
     """
     time = paths.frame.trace_time if time is None else time
-    power = path_power(paths) if power is None else power
+    power = paths.power if power is None else power
     chosen = strongest(power, num_rays, among=_reach_objects(scene, paths))
     drawing = _collect(scene, subset(paths, chosen), time)
     with new_figure(10.5, 8.0) as figure:
@@ -71,7 +71,7 @@ def _collect(scene, shown, time: float) -> _Drawing:
 def _reach_objects(scene, paths):
     """Paths that hit a mesh that is no mirror, bool [P]; None when there is none."""
     is_object = np.array([not mesh.material.mirror for mesh in scene.meshes], bool)
-    chosen = paths_with(is_object[paths.mesh_id], paths.offsets, paths.num_bounces)
+    chosen = paths_on(paths, is_object)
     return chosen if chosen.any() else None
 
 

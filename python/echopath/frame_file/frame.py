@@ -1,4 +1,4 @@
-"""Frame files: HDF5 with scene, radar, paths and what was computed from them (layout: data/README.md)."""
+"""Frames and records of paths in HDF5 files."""
 from __future__ import annotations
 
 import dataclasses
@@ -10,12 +10,12 @@ import numpy as np
 
 import echopath as ep
 
-from .files import written_whole
-from .frame_paths import read_paths, write_paths
-from .frame_radar import read_radar, write_radar
-from .frame_scene import read_scene, write_scene
+from ..files import written_whole
+from ..simulate import Frame, with_spectra
 from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts
-from .simulate import Frame, with_spectra
+from .paths import read_paths, write_paths
+from .radar import read_radar, write_radar
+from .scene import read_scene, write_scene
 
 FORMAT = "echopath frame"
 SCHEMA_VERSION = 1  # grows when a reader of the old layout would misread the new one
@@ -41,13 +41,13 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
 
 
 def load_paths(path):
-    """Reads the paths of a frame file: the same bits that were written. Raises ep.FileError."""
+    """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""
     with _our_file(path) as file:
         return _read_record(file)
 
 
 def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
-    """Writes a frame to an HDF5 file; otherwise as `save_paths`.
+    """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `save_paths`.
 
     The cubes hold all paths, also those that the record leaves out.
     """
@@ -60,7 +60,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
 
 
 def load_frame(path) -> Frame:
-    """Reads a frame file: the same bits that were written. Raises ep.FileError.
+    """Reads the frame file at `path`: the same bits that were written. Raises ep.FileError.
 
     A file of `save_paths` gives a frame whose cube and spectrum are None.
     """

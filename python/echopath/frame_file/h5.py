@@ -9,7 +9,7 @@ import numpy as np
 
 import echopath as ep
 
-BLOCK_BYTES = 1 << 24   # written at a time: between two blocks Ctrl-C is answered
+BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 CHUNK_BYTES = 1 << 20   # of compression and of check sums
 SMALL_BYTES = 1 << 12   # below it a dataset is one piece without compression
 
@@ -21,7 +21,7 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
 
     compress: shuffle and gzip level 1, for data with repetition (noise-like data grow no smaller and take longer).
     """
-    values = np.ascontiguousarray(values)
+    values = np.asarray(values)
     options = {}
     if values.nbytes > SMALL_BYTES:
         options = {"chunks": _chunks(values.shape, values.itemsize), "fletcher32": True}
@@ -29,9 +29,8 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
             options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
     dataset.attrs["unit"] = unit
-    rows = max(1, BLOCK_BYTES // max(1, values[:1].nbytes))
-    for begin in range(0, len(values), rows):
-        dataset[begin:begin + rows] = values[begin:begin + rows]
+    for rows in _row_blocks(values.shape, values.itemsize):
+        dataset[rows] = values[rows]
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
@@ -43,6 +42,12 @@ def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
     dataset.attrs["unit"] = unit
     for index, values in enumerate(arrays):
         dataset[index] = values
+
+
+def _row_blocks(shape: tuple, itemsize: int):
+    """Slices of rows of at most BLOCK_BYTES, at least one row each."""
+    step = max(1, BLOCK_BYTES // max(1, itemsize * math.prod(shape[1:])))
+    return (slice(begin, begin + step) for begin in range(0, shape[0], step))
 
 
 def _chunks(shape: tuple, itemsize: int) -> tuple:
@@ -69,7 +74,10 @@ def read_array(group, name: str, dtype, shape: tuple):
     if len(dataset.shape) != len(shape) or any(want not in (None, got) for want, got in zip(shape, dataset.shape)):
         wanted = ", ".join("any" if want is None else str(want) for want in shape)
         raise ep.FileError(f"{dataset.name} must have the shape [{wanted}], has {list(dataset.shape)}")
-    return dataset[...]
+    values = np.empty(dataset.shape, dataset.dtype)
+    for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
+        values[rows] = dataset[rows]
+    return values
 
 
 def read_texts(group, name: str, length: int | None = None) -> list[str]:

@@ -5,18 +5,20 @@ import argparse
 import os
 import sys
 
-EXIT_BAD_INPUT, EXIT_INTERRUPTED = 2, 130
+from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
+
+EXIT_BAD_INPUT = 2
 
 
 def main(arguments=None) -> int:
     """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C."""
-    parser = _parser()
-    options = parser.parse_args(arguments)
     try:
+        loading_is_over()
+        options = _parser().parse_args(arguments)
         options.command(options)
         sys.stdout.flush()
     except KeyboardInterrupt:
-        print("\nechopath: stopped; no file was left half written", file=sys.stderr)
+        print(f"\n{STOPPED}", file=sys.stderr)
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -91,7 +93,7 @@ def _run(options) -> None:
     from . import report
     from .progress import progress_bars
     from .run import simulate_file, write_outputs
-    from .scene_file import load_scene
+    from ..scene_file import load_scene
 
     scene_file = load_scene(options.scene)
     with progress_bars() as progress:

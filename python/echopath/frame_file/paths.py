@@ -5,8 +5,8 @@ import numpy as np
 
 import echopath as ep
 
+from ..path_subset import subset
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
-from .path_subset import path_power, subset
 
 HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
@@ -25,11 +25,11 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
     power: of the paths [P] in W where it is known already.
     Returns which paths were written: bool [P].
     """
-    power = path_power(paths) if power is None else power
+    power = paths.power if power is None else power
     keep = power >= min_power
     group.attrs["min_power"] = min_power
     group.attrs["num_left_out"] = int(np.count_nonzero(~keep))
-    group.attrs["power_left_out"] = float(power[~keep].sum())
+    group.attrs["power_left_out"] = float(power.sum(where=~keep))
     written = paths if min_power <= 0.0 else subset(paths, keep)
     _write_frame(group.create_group("frame"), written.frame)
     for fields, folder in ((HIT_FIELDS, "hits"), (PATH_FIELDS, "paths")):

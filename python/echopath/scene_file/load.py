@@ -13,9 +13,9 @@ from pydantic import create_model
 
 import echopath as ep
 
-from .scene_schema import ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
-from .schema_errors import validated
-from .simulate import as_partitions
+from ..simulate import as_partitions
+from .errors import validated
+from .schema import ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
 
 
 @dataclasses.dataclass(frozen=True)

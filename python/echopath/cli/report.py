@@ -5,42 +5,13 @@ import numpy as np
 
 import echopath as ep
 
-STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
-EXTENT_BELOW_PEAK_DB = 30.0
+from ..measures import in_dbm, power_dbm, velocity_extent
+
 LABEL_WIDTH = 34
-
-
-def power_dbm(cube) -> float:
-    """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros."""
-    return _in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
-
-
-def _in_dbm(power: float) -> float:
-    return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
 
 
 def _power_text(power: float) -> str:
     return f"{power:8.2f} dBm" if np.isfinite(power) else "  nothing"
-
-
-def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
-    """(lowest, highest) radial velocity in m/s in a map; None when nothing moves.
-
-    Counted are velocities whose power over all ranges and channels is at most `below_peak_db` below that of the strongest
-    moving one; a planted foot, which stands still, counts too.
-    """
-    profile = np.sum(np.abs(spectrum.values) ** 2, axis=(0, 1, 3))
-    peak = profile[np.abs(spectrum.velocity) > STATIC_SPEED].max(initial=0.0)
-    if peak == 0.0:
-        return None
-    velocities = spectrum.velocity[profile >= peak * 10.0 ** (-below_peak_db / 10.0)]
-    return float(velocities.min()), float(velocities.max())
-
-
-def residual(whole, parts: dict) -> float:
-    """How far the parts are from adding up: |whole - sum of parts| / |whole|, 0 when both are zero."""
-    difference = float(np.linalg.norm(whole - sum(parts.values())))
-    return difference / float(np.linalg.norm(whole)) if difference > 0.0 else 0.0
 
 
 def line(label: str, value: str) -> str:
@@ -93,9 +64,9 @@ def mean_powers(frame) -> list[str]:
 def power_with_error(power) -> str:
     """An ep.ReceivedPower in dBm +- dB; the bound of two standard errors where it is not resolved."""
     if power.resolved:
-        return f"{_power_text(_in_dbm(power.power))} +- {power.error_db:.2f} dB"
+        return f"{_power_text(in_dbm(power.power))} +- {power.error_db:.2f} dB"
     bound = max(power.power, 0.0) + 2.0 * power.standard_error
-    return f"  not resolved, below {_in_dbm(bound):.2f} dBm" if bound > 0.0 else _power_text(-np.inf)
+    return f"  not resolved, below {in_dbm(bound):.2f} dBm" if bound > 0.0 else _power_text(-np.inf)
 
 
 def extent(label: str, spectrum) -> str:
@@ -115,5 +86,5 @@ def omissions(left_out, path) -> str:
     size = f"{path.stat().st_size / 2**20:,.0f} MiB"
     if left_out.num_paths == 0:
         return line(path.name, f"{size}, all paths")
-    power = _power_text(_in_dbm(left_out.power)).strip()
+    power = _power_text(in_dbm(left_out.power)).strip()
     return line(path.name, f"{size}, without the {left_out.num_paths:,} weakest paths ({power} in sum)")

@@ -4,12 +4,12 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
-from . import plots
-from .frame_file import LeftOut, save_frame
-from .path_subset import power_of_strongest
-from .scene_file import SceneFile
-from .simulate import Frame, simulate
-from .stages import StageClock
+from .. import plots
+from ..frame_file import LeftOut, save_frame
+from ..path_subset import power_of_strongest
+from ..scene_file import SceneFile
+from ..simulate import Frame, simulate
+from ..stages import StageClock
 
 RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
 PATH_BYTES, HIT_BYTES = 31, 16
@@ -44,7 +44,7 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
 
 
 def write_outputs(frame: Frame, folder, partitions) -> Written:
-    """Writes frame.h5, scene.png, map.png and a PNG for each of `partitions`; adds its stages to those of the frame."""
+    """Writes frame.h5, scene.png, map.png, a PNG for each of `partitions` and overview.png (map and first partition); adds its stages to those of the frame."""
     folder = Path(folder)
     clock = StageClock()
     with clock("frame file"):
@@ -73,11 +73,14 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
 
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
     vmin, vmax = plots.colour_limits(frame.spectrum)
-    write("map", plots.plot_range_doppler(frame.spectrum, vmin=vmin, vmax=vmax))
-    for partition in partitions:
-        title = f"Received power by {partition}" if partition != "parts" else "Received power by part"
+    title = "Everything that the radar receives" + (", with its noise" if frame.noise_seed is not None else "")
+    write("map", plots.plot_range_doppler(frame.spectrum, title=title, vmin=vmin, vmax=vmax))
+    for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
-        write(partition, plots.plot_partition(spectra, title=title, vmin=vmin, vmax=vmax))
+        words = "The same taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
+        write(partition, plots.plot_partition(spectra, title=words, vmin=vmin, vmax=vmax))
+        if index == 0:
+            write("overview", plots.plot_overview(frame.spectrum, spectra, title=title, parts_title=words, vmin=vmin, vmax=vmax))
     return written
 
 

@@ -6,19 +6,20 @@ from pathlib import Path
 
 import echopath as ep
 
+from ..materials import data_folder
+from ..measures import EXTENT_BELOW_PEAK_DB, residual
+from ..scene_file import load_scene
+from ..simulate import Frame
+from ..stages import StageClock
 from . import report
-from .materials import data_folder
 from .run import simulate_file, write_outputs
-from .scene_file import load_scene
-from .simulate import Frame
-from .stages import StageClock
 
 NUM_RAYS = 200_000
 ARMS, LEGS = "pedestrian/arm_*", "pedestrian/leg_*"
 
 
 def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, batches=None, progress=None, say=print) -> Frame:
-    """Simulates data/scenes/street.toml, writes frame.h5 and four pictures to `out` and reports what the rays touched.
+    """Simulates data/scenes/street.toml, writes frame.h5 and five pictures to `out` and reports what the rays touched.
 
     num_rays: launched; seed, batches: None, those of the file; progress: callable (stage, fraction) or None
     say: takes each line of the report.
@@ -47,7 +48,7 @@ def _check_sums(frame: Frame, progress) -> dict:
     clock = StageClock()
     with clock("check of the sum"):
         whole = ep.synthesize(frame.paths, frame.radar, progress=progress)
-        residuals = {partition: report.residual(whole, cubes) for partition, cubes in frame.parts.items()}
+        residuals = {partition: residual(whole, cubes) for partition, cubes in frame.parts.items()}
     frame.stages += clock.stages
     return residuals
 
@@ -58,7 +59,7 @@ def _report(street, frame: Frame, written, residuals: dict) -> list[str]:
     limbs = frame.part_spectra["limbs"]
     return [street.title, *report.counts(frame.paths), *report.stages(frame.stages),
             *report.powers(frame.cube, shown), *report.mean_powers(frame),
-            f"radial velocities (receding positive), down to {report.EXTENT_BELOW_PEAK_DB:.0f} dB below the peak",
+            f"radial velocities (receding positive), down to {EXTENT_BELOW_PEAK_DB:.0f} dB below the peak",
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",
             *(report.line(partition, f"{value:.1e}") for partition, value in residuals.items()),

@@ -7,9 +7,9 @@ import numpy as np
 
 import echopath as ep
 
+from ..frame_file import left_out, load_frame
+from ..scene_file import load_scene
 from . import report
-from .frame_file import left_out, load_frame
-from .scene_file import load_scene
 
 MESH_SUFFIXES = (".obj", ".ply")
 MAX_LISTED = 40  # nodes or meshes named one by one

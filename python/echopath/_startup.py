@@ -1,0 +1,34 @@
+"""Ctrl-C while the command line is still loading: one line and exit code 130, not the stack of an import."""
+import os
+import signal
+import sys
+import threading
+
+EXIT_INTERRUPTED = 130
+STOPPED = "echopath: stopped; no file was left half written"
+
+
+def answer_ctrl_c_while_loading() -> None:
+    """Called first when the package loads; does something only where the program is echopath's own command line."""
+    if (_is_command_line() and threading.current_thread() is threading.main_thread()
+            and signal.getsignal(signal.SIGINT) is signal.default_int_handler):
+        signal.signal(signal.SIGINT, _stop)
+
+
+def loading_is_over() -> None:
+    """From here on Ctrl-C is a KeyboardInterrupt again."""
+    if signal.getsignal(signal.SIGINT) is _stop:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _is_command_line() -> bool:
+    """The command `echopath`, or `python -m echopath`, whose package loads while argv[0] is still "-m"."""
+    if sys.argv[:1] == ["-m"]:
+        arguments = sys.orig_argv
+        return "-m" in arguments and arguments[arguments.index("-m") + 1:][:1] == ["echopath"]
+    return os.path.basename(sys.argv[0] if sys.argv else "") == "echopath"
+
+
+def _stop(signal_number, frame) -> None:
+    os.write(2, f"\n{STOPPED}\n".encode())
+    os._exit(EXIT_INTERRUPTED)  # nothing is open yet, and an import cannot catch it

@@ -1,0 +1,37 @@
+"""Figures of cubes and maps: power, velocities, how far parts are from adding up."""
+from __future__ import annotations
+
+import numpy as np
+
+STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
+EXTENT_BELOW_PEAK_DB = 30.0
+
+
+def power_dbm(cube) -> float:
+    """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros."""
+    return in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
+
+
+def in_dbm(power: float) -> float:
+    """A power in W in dB re 1 mW; -inf for none."""
+    return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
+
+
+def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):
+    """(lowest, highest) radial velocity in m/s in a map; None when nothing moves.
+
+    Counted are velocities whose power over all ranges and channels is at most `below_peak_db` below that of the strongest
+    moving one; a planted foot, which stands still, counts too.
+    """
+    profile = np.sum(np.abs(spectrum.values) ** 2, axis=(0, 1, 3))
+    peak = profile[np.abs(spectrum.velocity) > STATIC_SPEED].max(initial=0.0)
+    if peak == 0.0:
+        return None
+    velocities = spectrum.velocity[profile >= peak * 10.0 ** (-below_peak_db / 10.0)]
+    return float(velocities.min()), float(velocities.max())
+
+
+def residual(whole, parts: dict) -> float:
+    """How far the parts are from adding up: |whole - sum of parts| / |whole|, 0 when both are zero."""
+    difference = float(np.linalg.norm(whole - sum(parts.values())))
+    return difference / float(np.linalg.norm(whole)) if difference > 0.0 else 0.0

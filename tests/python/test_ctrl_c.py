@@ -1,0 +1,112 @@
+"""Ctrl-C stops whatever takes long, not only the trace: records of millions of paths, and the start of the program."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+PROMISE = 0.5        # s, on a machine with nothing else to do
+PATIENCE = 1.5       # s, with the tests of a busy machine; tries until one keeps to it
+NUM_TRIES = 4
+NUM_PATHS = 3_000_000
+HEAD_START = 0.05    # s, of the work before Ctrl-C
+HITS_PER_PATH = 3
+
+
+@pytest.fixture(scope="module")
+def paths():
+    """Millions of copies of the paths over a plate and a wall that both move: lengths and amplitudes take a while."""
+    scene = ep.Scene()
+    motion = ep.LinearMotion(velocity=(-1.0, 0.0, 0.0))
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), motion=motion, material="clothing")
+    scene.add(ep.actors.plate(9.0, 9.0), name="wall", position=(9.0, 0.0, 0.0), motion=motion, material="concrete")
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=8,
+                                chirp_interval=1e-4)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    traced = ep.trace(scene, radar, num_rays=3000, max_bounces=HITS_PER_PATH)
+    index = np.arange(NUM_PATHS) % traced.num_paths
+    columns = {name: getattr(traced, name)[index] for name in ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
+    hits = np.tile(traced.hits, NUM_PATHS // traced.num_paths + 1)
+    offsets = traced.offsets[index] + np.arange(NUM_PATHS) // traced.num_paths * len(traced.hits)
+    return ep.Paths.from_arrays(hits=hits, offsets=offsets, **columns, scene=traced.scene, radar=traced.radar,
+                                frame=traced.frame)
+
+
+PARTS = {f"part {count}": f"T 'plate' .{{{count}}} 'wall'? .* R" for count in range(12)}
+TIMES = np.linspace(0.0, 5e-4, 12)
+WORK = {
+    "partition": lambda paths, folder: paths.partition(PARTS),
+    "partition_groups": lambda paths, folder: ep._core.partition_groups(paths, list(PARTS.items())),
+    "select": lambda paths, folder: [paths.select(text) for text in PARTS.values()],
+    "amplitude": lambda paths, folder: paths.amplitude,
+    "power": lambda paths, folder: paths.power,
+    "amplitudes": lambda paths, folder: paths.amplitudes(TIMES),
+    "lengths": lambda paths, folder: paths.lengths(TIMES),
+    "points": lambda paths, folder: [paths.points(time) for time in TIMES],
+    "save": lambda paths, folder: paths.save(folder / "paths.h5", min_power=1e-30),
+    "load": lambda paths, folder: ep.Paths.load(saved_once(paths, folder)),
+}
+_saved = {}
+
+
+def saved_once(paths, folder):
+    if "path" not in _saved:
+        paths.save(folder / "whole.h5")
+        _saved["path"] = folder / "whole.h5"
+    return _saved["path"]
+
+
+def seconds_to_stop(work) -> float:
+    """Time from Ctrl-C to the KeyboardInterrupt of `work`; 0 when it ended before it was interrupted."""
+    sent = []
+
+    def interrupt():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(HEAD_START, interrupt)
+    try:
+        timer.start()
+        work()
+        timer.join()
+        time.sleep(0.01)
+    except KeyboardInterrupt:
+        return time.perf_counter() - sent[0]
+    return 0.0
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_ctrl_c_stops_work_on_a_large_record(paths, tmp_path_factory, name):
+    folder = tmp_path_factory.getbasetemp()
+    if name == "load":
+        saved_once(paths, folder)
+    delays = []
+    while not delays or (delays[-1] > PROMISE and len(delays) < NUM_TRIES):
+        delays.append(seconds_to_stop(lambda: WORK[name](paths, folder)))
+    assert min(delays) < PATIENCE, delays
+    assert not list(folder.glob(".paths*")) and not (folder / "paths.h5").exists()
+
+
+def heed_ctrl_c() -> None:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.mark.parametrize("delay", [0.08, 0.15, 0.25, 0.4])
+def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):
+    arguments = [sys.executable, "-X", "importtime", "-m", "echopath", "demo", "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               preexec_fn=heed_ctrl_c)
+    for line in process.stderr:  # Python tells each module that it has loaded: the package itself has begun
+        if line.rstrip().endswith("echopath._startup"):
+            break
+    time.sleep(delay)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    said = [line for line in errors.splitlines() if line and not line.startswith("import time:")]
+    assert process.returncode == 130 and said == ["echopath: stopped; no file was left half written"]

@@ -1,0 +1,92 @@
+"""Every public name says what it is, names each parameter, and gives shapes and units where there are quantities."""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import inspect
+import re
+
+import pytest
+
+import echopath as ep
+
+# Parameters that are objects, names or counts: they have neither a unit nor a shape.
+NO_QUANTITY = {
+    "actor", "args", "arguments", "clothing", "exponent", "footprint", "glob", "interpolation", "keywords", "kwargs", "max",
+    "max_bounces", "mesh", "method", "min", "mirror", "mesh_or_actor", "multiplexing", "name", "noise_seed", "num_rays",
+    "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene", "seed",
+    "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform", "window", "zero_pad",
+    "batches", "num_batches", "frame", "subdivisions", "material", "motion", "unknown",
+}
+UNITS = r"(m|s|Hz|W|K|rad|sr|dB|dBm|m/s|rad/s|m/s\^2|Hz/s|S/m|1/s|m\^2|J/K|sqrt\(W\)|degrees|cycles|linear|metres)"
+QUANTITY = re.compile(rf"\[[\w, *]+\]|(?<![\w/]){UNITS}(?![\w/])")
+SIGNATURE = re.compile(r"^(?:\d+\. )?\w+\((.*)\)(?: -> .*)?$", re.MULTILINE)
+
+
+def public_names() -> dict:
+    """{dotted name: object} of the package and of its actors."""
+    names = {name: getattr(ep, name) for name in ep.__all__}
+    names |= {f"actors.{name}": getattr(ep.actors, name) for name in dir(ep.actors)
+              if not name.startswith("_") and inspect.isfunction(getattr(ep.actors, name))}
+    return {name: value for name, value in names.items() if not inspect.ismodule(value) and not isinstance(value, float)}
+
+
+def members(name: str, value) -> dict:
+    """Methods and properties of a class, inherited ones left out; a property may tell of the parameter of its name."""
+    if not inspect.isclass(value):
+        return {}
+    fields = {field.name for field in dataclasses.fields(value)} if dataclasses.is_dataclass(value) else set()
+    return {f"{name}.{key}": member for key, member in vars(value).items() if not key.startswith("_") and key not in fields}
+
+
+def docstring(value) -> str:
+    """Without the signature lines that pybind11 puts first."""
+    value = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
+    text = value.func.__doc__ if isinstance(value, functools.cached_property) else value.__doc__
+    text = re.sub(SIGNATURE, "", inspect.cleandoc(text or "")).replace("Overloaded function.", "")
+    return "" if text.startswith("(self:") or text.startswith("(arg0:") else text.strip()
+
+
+def parameters(value) -> list:
+    """Names of the parameters of a function, a method or a constructor, of the core too."""
+    value = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
+    if dataclasses.is_dataclass(value):
+        return [field.name for field in dataclasses.fields(value)]
+    constructor = inspect.isclass(value) and vars(value).get("__init__")
+    target = constructor or value
+    if not callable(target) or inspect.isclass(target):
+        return []
+    if inspect.isfunction(target):
+        found = list(inspect.signature(target).parameters)
+    else:  # of the core: "name(self: Type, first: Type = value, ...) -> Type"
+        found = [name for line in SIGNATURE.findall(target.__doc__ or "")
+                 for name in re.findall(r"(?:^|, )\*{0,2}(\w+)(?=: |$|,)", line)]
+    return [name for name in dict.fromkeys(found) if name not in ("self", "kwargs", "args", "unknown")]
+
+
+PUBLIC = {}
+for _name, _value in public_names().items():
+    PUBLIC |= {_name: _value} | members(_name, _value)
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_public_names_have_a_docstring(name):
+    assert len(docstring(PUBLIC[name])) >= 2, name
+
+
+@pytest.mark.parametrize("name", [name for name, value in PUBLIC.items() if parameters(value)])
+def test_docstrings_name_each_parameter_and_give_shapes_and_units(name):
+    names = parameters(PUBLIC[name])
+    text = "\n".join([docstring(PUBLIC[name]), *(f"{key.split('.')[-1]}: {docstring(member)}"
+                                                 for key, member in members(name, PUBLIC[name]).items())])
+    missing = [parameter for parameter in names if not re.search(rf"\b{parameter}\b", text)]
+    assert not missing, f"{name}: the docstring does not tell of {missing}"
+    if set(names) - NO_QUANTITY:
+        assert QUANTITY.search(text), f"{name}: neither a shape nor a unit for {sorted(set(names) - NO_QUANTITY)}"
+
+
+def test_quantities_are_recognised():
+    for text in ("[V, 3]", "position: [3] in m", "power in W", "in sqrt(W)", "1/s, at least 60"):
+        assert QUANTITY.search(text), text
+    for text in ("a copy of it", "many meshes", "T . R", "the worst case"):
+        assert not QUANTITY.search(text), text

@@ -130,7 +130,7 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
         add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
     add(Poly3DCollection, drawing.bodies, 3, facecolors=drawing.body_colours, edgecolors="none")
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
-    axes.text(*drawing.radar, f"  {RADAR_LABEL}", zorder=5)
+    axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
     _frame_box(axes, drawing)
 
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import report
+from echopath.cli import report
 
 FREQUENCY = 77e9
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light

@@ -27,6 +27,15 @@ namespace {
 using PathsPtr = std::shared_ptr<Paths>;
 
 // By the order of the enum.
+constexpr std::array<const char*, 2> kPolarizations = {"scalar", "jones"};
+
+PolarizationModel as_polarization(const std::string& name) {
+  for (size_t i = 0; i < kPolarizations.size(); ++i) {
+    if (name == kPolarizations[i]) return static_cast<PolarizationModel>(i);
+  }
+  throw std::invalid_argument("polarization: must be 'scalar' or 'jones', got '" + name + "'");
+}
+
 // --- TraceFrame and what it holds ---
 
 void bind_frame(py::module_& m) {
@@ -71,15 +80,15 @@ void bind_frame(py::module_& m) {
 
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
-                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& footprint,
-                       const TraceStatistics& statistics, int num_batches, double target_error_db, double error_db) {
+                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
+                       const std::string& footprint, const TraceStatistics& statistics, int num_batches, double target_error_db, double error_db) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, as_footprint(footprint), statistics, num_batches,
-                               target_error_db, error_db};
+                               std::move(strata), seed, max_bounces, as_polarization(polarization), as_footprint(footprint),
+                               statistics, num_batches, target_error_db, error_db};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
-           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("footprint"), py::arg("statistics"),
-           py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0)
+           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"), py::arg("footprint"),
+           py::arg("statistics"),           py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0)
       .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
@@ -89,6 +98,9 @@ void bind_frame(py::module_& m) {
       .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
       .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
       .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
+      .def_property_readonly(
+          "polarization", [](const TraceFrame& self) { return kPolarizations[static_cast<size_t>(self.polarization)]; },
+          "\"scalar\" or \"jones\"")
       .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprints[static_cast<size_t>(self.footprint)]; },
                              "\"second_order\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
@@ -126,6 +138,12 @@ py::array hits_of(const py::object& self) {
 py::array curved_cell_of(const py::object& self) {
   const auto& cells = self.cast<const Paths&>().curved_cell;
   return numpy_view(cells.empty() ? nullptr : cells.front().data(), {static_cast<py::ssize_t>(cells.size()), 7}, self);
+}
+
+py::array jones_of(const py::object& self) {
+  const auto& matrices = self.cast<const Paths&>().jones;
+  const Shape shape{static_cast<py::ssize_t>(matrices.size()), 2, 2};
+  return numpy_view(matrices.empty() ? nullptr : matrices.front().data(), shape, self);
 }
 
 constexpr int64_t kPathsPerBlock = 1 << 19;  // evaluated at a time where the paths are not all wanted at once
@@ -286,7 +304,7 @@ py::dict partition_paths(const Paths& paths, const py::dict& parts) {
 
 PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
                            const py::array& diffuse, const py::array& weight, const py::array& stratum,
-                           const py::array& batch, const py::array& flags, const py::object& curved_cell, const Scene& scene, const Radar& radar,
+                           const py::array& batch, const py::array& flags, const py::object& curved_cell, const py::object& jones, const Scene& scene, const Radar& radar,
                            const TraceFrame& frame) {
   auto paths = std::make_shared<Paths>();
   const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
@@ -302,6 +320,11 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
     const std::vector<float> cells = as_vector<float>(curved_cell, "curved_cell", "[P, 7]");
     paths->curved_cell.resize(cells.size() / 7);
     std::copy(cells.begin(), cells.end(), paths->curved_cell.empty() ? nullptr : paths->curved_cell.front().data());
+  }
+  if (!jones.is_none()) {
+    const auto entries = as_vector<std::complex<float>>(jones, "jones", "[P, 2, 2]");
+    paths->jones.resize(entries.size() / 4);
+    std::copy(entries.begin(), entries.end(), paths->jones.empty() ? nullptr : paths->jones.front().data());
   }
   paths->scene = std::make_shared<const Scene>(scene);
   paths->radar = radar;
@@ -319,13 +342,13 @@ void warn_of_missed_target(const TraceFrame& frame) {
 }
 
 PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
-                     uint64_t seed, double start_time, const std::string& footprint, std::optional<int> batches,
-                     std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
-                     const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "footprint", "batches",
-                                    "target_error_db", "max_rays", "progress"});
-  TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time, as_footprint(footprint),
-                         batches.value_or(1)};
+                     uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
+                     std::optional<int> batches, std::optional<double> target_error_db, int64_t max_rays,
+                     const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
+                                    "batches", "target_error_db", "max_rays", "progress"});
+  TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time,
+                         as_polarization(polarization), as_footprint(footprint), batches.value_or(1)};
   if (!target_error_db) {
     return std::make_shared<Paths>(
         run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
@@ -400,6 +423,8 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
       .def_property_readonly("flags", path_column(&Paths::flags), "[P] 1: recorded as the reversal of another path; else 0")
+      .def_property_readonly("jones", &jones_of,
+                             "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter")
       .def_property_readonly("curved_cell", &curved_cell_of,
                              "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
       .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
@@ -422,23 +447,29 @@ share hits; selections share all hits of their trace.)")
            "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
       .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
                   py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("scene"), py::arg("radar"), py::arg("frame"),
+                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(),
+                  py::arg("scene"), py::arg("radar"), py::arg("frame"),
                   R"(Paths of arrays as the properties give them.
 
-hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None
+hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
+[P, 2, 2] complex or None
 scene, radar, frame: what they belong to
 Raises ValueError where an index leads nowhere.)")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
 
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
-        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("footprint") = "second_order",
-        py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays,
-        py::arg("progress") = py::none(), R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
+        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
+        py::arg("footprint") = "second_order", py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(),
+        py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
+        R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
 num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count
 seed: the same seed gives the same bits
-start_time: s, first sample of the frame; footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
+start_time: s, first sample of the frame
+polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation) or "jones" (field vectors, co- and
+cross-polar echoes; 32 bytes a path more)
+footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
 batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
 fine as its share of the rays; 1 unless given
 target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, until the error of the

@@ -46,6 +46,14 @@ def make_scene():
     return scene
 
 
+def curved_scene():
+    """A smooth ball that throws light on a rough one: all optional columns are there."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(5, 0, 0), smooth=True)
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(4.5, 1.2, 0), yaw=1.0)
+    return scene
+
+
 def make_radar():
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=16,
                                 chirp_interval=1e-4)
@@ -291,3 +299,15 @@ def test_an_empty_scene_is_written_and_read(tmp_path):
     paths = ep.trace(ep.Scene(), make_radar(), num_rays=100)
     paths.save(tmp_path / "empty.h5")
     assert ep.Paths.load(tmp_path / "empty.h5").num_paths == 0
+
+
+def test_columns_of_curved_and_polarised_paths_come_back(tmp_path):
+    radar = make_radar()
+    paths = ep.trace(curved_scene(), radar, num_rays=200000, max_bounces=2, polarization="jones")
+    assert paths.jones.shape == (paths.num_paths, 2, 2) and np.abs(paths.jones).max() > 0
+    assert paths.curved_cell.shape == (paths.num_paths, 7) and np.abs(paths.curved_cell).max() > 0
+    paths.save(tmp_path / "frame.h5")
+    again = ep.Paths.load(tmp_path / "frame.h5")
+    assert np.array_equal(again.jones, paths.jones) and np.array_equal(again.curved_cell, paths.curved_cell)
+    assert again.frame.polarization == "jones" and again.scene.nodes[0].smooth
+    assert np.array_equal(again.amplitude, paths.amplitude)

@@ -9,7 +9,8 @@ std::vector<PosedAntenna> posed(const std::vector<Antenna>& antennas, const Tran
   std::vector<PosedAntenna> out;
   for (const Antenna& antenna : antennas) {
     out.push_back({world_from_radar * antenna.position - origin,
-                   (world_from_radar.linear() * (antenna.orientation * Vec3::UnitX())).normalized(), &antenna.pattern});
+                   (world_from_radar.linear() * (antenna.orientation * Vec3::UnitX())).normalized(),
+                   world_from_radar.linear() * (antenna.orientation * antenna.polarization), &antenna.pattern});
   }
   return out;
 }

@@ -9,6 +9,7 @@ namespace echopath {
 struct PosedAntenna {
   Vec3 position;    // m, relative to the origin
   Vec3 boresight;   // unit, world axes
+  Vec3 polarization;  // world axes
   const AntennaPattern* pattern = nullptr;
 
   double gain(const Vec3& direction) const { return pattern->gain(boresight.dot(direction)); }  // unit direction, outward

@@ -73,7 +73,8 @@ AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const Posed
   AntennaLeg leg;
   leg.length = line.norm();
   leg.travel = line / leg.length;
-  leg.gain = antenna.gain(direction_before(leg.travel, hits, 0, last));
+  leg.at_antenna = direction_before(leg.travel, hits, 0, last);
+  leg.gain = antenna.gain(leg.at_antenna);
   return leg;
 }
 
@@ -85,7 +86,8 @@ AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedA
   AntennaLeg leg;
   leg.length = line.norm();
   leg.travel = line / leg.length;
-  leg.gain = antenna.gain(-direction_behind(leg.travel, hits, first, path.count));
+  leg.at_antenna = direction_behind(leg.travel, hits, first, path.count);
+  leg.gain = antenna.gain(-leg.at_antenna);
   return leg;
 }
 
@@ -93,8 +95,8 @@ MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const
                               const PosedAntenna& receiver) {
   const Vec3 line = receiver.position - forward_image(transmitter.position, hits, 0, path.count);
   const double length = line.norm();
-  const Vec3 arrival = line / length;
-  return {length, transmitter.gain(direction_before(arrival, hits, 0, path.count)), receiver.gain(-arrival)};
+  const Vec3 arrival = line / length, departure = direction_before(arrival, hits, 0, path.count);
+  return {length, transmitter.gain(departure), receiver.gain(-arrival), departure, arrival};
 }
 
 InnerLeg inner_leg(const PosedHit* hits, int from, int to) {

@@ -44,6 +44,7 @@ struct LocalPath {
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
   std::complex<double> weight;
   LaunchCell cell;                 // coherent paths only
+  const JonesMatrix* jones = nullptr;  // coherent paths of a polarised trace, else null
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
@@ -57,6 +58,7 @@ void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
 struct AntennaLeg {
   double length = 0.0;  // m
   Vec3 travel;          // unit direction of travel at the material point
+  Vec3 at_antenna;      // unit direction of travel at the antenna
   double gain = 1.0;    // power gain of the antenna toward the leg
 };
 
@@ -67,6 +69,7 @@ AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedA
 // TX -> RX over mirrors alone: unfolded length and both gains.
 struct MirrorOnlyLeg {
   double length, transmit_gain, receive_gain;
+  Vec3 departure, arrival;  // unit directions of travel at the antennas
 };
 MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
                               const PosedAntenna& receiver);

@@ -107,6 +107,7 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
     path.hits = block.hits.data() + block.hits.size();
     path.count = paths_.num_bounces[p];
     path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
+    if (!paths_.jones.empty() && paths_.diffuse[p] == 0) path.jones = &paths_.jones[p];
     path.weight = std::complex<double>(paths_.weight[p]);
     block.longest = std::max(block.longest, path.count);
     for (int k = 0; k < path.count; ++k) {
@@ -160,7 +161,7 @@ void Replayer::set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const 
   PosedHit* hits = scratch.hits.data();
   pose_hits(path, *trace_instant_, hits);
   static const AntennaPattern isotropic;
-  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), &isotropic};
+  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ(), &isotropic};
   const AntennaLeg in = transmit_leg(path, hits, centre);
   double length = in.length;
   Vec3 arrival = in.travel;

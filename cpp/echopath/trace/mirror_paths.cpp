@@ -58,9 +58,10 @@ class ImageSearch {
       if (!hit) return;
       hits.push_back(*hit);
     }
-    const std::complex<double> weight = field() * corner_share();
+    const std::complex<double> weight = (settings_.is_polarized ? 1.0 : field()) * corner_share();
     if (std::abs(weight) == 0) return;
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, weight, kImageStratum);
+    if (settings_.is_polarized) block_.set_jones(jones_matrix());
     block_.statistics.num_hits += static_cast<int64_t>(hits.size());
   }
 
@@ -106,11 +107,36 @@ class ImageSearch {
   }
 
   // Where bounces coincide the direction between them is that of the chain of reflections.
-  std::complex<double> field() const {
-    std::complex<double> product = 1.0;
+  Vec3 departure() const {
     Vec3 image = settings_.receiver;
     for (size_t k = points_.size(); k-- > 0;) image = mirror(k).image(image);
-    Vec3 direction = (image - settings_.transmitter).normalized();
+    return (image - settings_.transmitter).normalized();
+  }
+
+  JonesMatrix jones_matrix() const {
+    Vec3 direction = departure();
+    const TransverseBasis start = transverse_basis(direction);
+    FieldVector fields[2] = {start.horizontal.cast<std::complex<double>>(), start.vertical.cast<std::complex<double>>()};
+    for (size_t k = 0; k < points_.size(); ++k) {
+      const Vec3 normal = direction.dot(mirror(k).normal) < 0 ? mirror(k).normal : Vec3(-mirror(k).normal);
+      const double cos_incidence = -direction.dot(normal);
+      const ModeCoefficients modes = mode_coefficients(*mirror(k).material, settings_.frequency, cos_incidence);
+      const double coherent = respond(*mirror(k).material, settings_.frequency, cos_incidence, PolarizationMode::kTe).coherent;
+      for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
+      direction = mirror(k).reflect(direction);
+    }
+    const TransverseBasis arrival = transverse_basis(direction);
+    JonesMatrix matrix;
+    for (size_t column = 0; column < 2; ++column) {
+      matrix[column] = std::complex<float>(fields[column].transpose() * arrival.horizontal.cast<std::complex<double>>());
+      matrix[2 + column] = std::complex<float>(fields[column].transpose() * arrival.vertical.cast<std::complex<double>>());
+    }
+    return matrix;
+  }
+
+  std::complex<double> field() const {
+    std::complex<double> product = 1.0;
+    Vec3 direction = departure();
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vec3& normal = mirror(k).normal;
       const SurfaceResponse response = respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)),

@@ -108,6 +108,7 @@ bool LegFinder::over_mirror(int index, const Vec3& point, const Vec3& normal, co
   ++num_queries;
   if (geometry_.occluded(geometry_.lifted(met.position, lit_normal), antenna)) return false;
 
+  leg.mirror_normal = lit_normal;
   const double cos_incidence = std::abs(leg.to_antenna.dot(mirror.normal));
   const PolarizationMode mode = polarization_mode(polarization_, leg.to_antenna, mirror.normal);
   const SurfaceResponse response = respond(*mirror.material, frequency_, cos_incidence, mode);

@@ -28,6 +28,7 @@ struct Leg {
   Vec3 to_antenna;            // unit, from the point toward the antenna or its image
   Vec3 at_antenna;            // unit, from the antenna toward the point or its image
   std::complex<double> gain = 1.0;  // field factor Gamma_m s_m of the mirror
+  Vec3 mirror_normal;               // unit, on the lit side, if mirror >= 0
   double specular_share = 1.0;      // s_m^2: the probability with which a ray goes on specularly
   Hit mirror_hit{};           // where the leg meets the mirror, if mirror >= 0
 };

@@ -40,6 +40,11 @@ void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits,
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
+void PathBlock::set_jones(const JonesMatrix& matrix) {
+  jones.resize(offsets.size());
+  jones.back() = matrix;
+}
+
 void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
   curved_cell.resize(offsets.size());
   curved_cell.back() = cell;
@@ -86,6 +91,14 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
   all.insert(all.end(), part.begin(), part.end());
 }
 
+// A column that exists only where some path needs it: zeros for those before.
+template <class T>
+void append_sparse(std::vector<T>& all, const std::vector<T>& part, size_t before) {
+  if (part.empty()) return;
+  all.resize(before);
+  append(all, part);
+}
+
 }  // namespace
 
 void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
@@ -114,14 +127,14 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
     append(paths.stratum, block.stratum);
     append(paths.flags, block.flags);
     append(paths.batch, block.batch);
-    if (!block.curved_cell.empty()) {
-      paths.curved_cell.resize(paths.offsets.size() - block.offsets.size());
-      append(paths.curved_cell, block.curved_cell);
-    }
+    const size_t before = paths.offsets.size() - block.offsets.size();
+    append_sparse(paths.curved_cell, block.curved_cell, before);
+    append_sparse(paths.jones, block.jones, before);
     add_statistics(paths.frame.statistics, block.statistics);
     block = PathBlock();  // frees it: the peak stays near one copy of the record
   }
   if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
+  if (!paths.jones.empty()) paths.jones.resize(num_paths);
   paths.hits = std::move(hits);
   give_back_free_memory();
 }

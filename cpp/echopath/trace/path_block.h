@@ -17,6 +17,7 @@ class PathBlock {
   std::vector<uint32_t> flags;
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
+  std::vector<JonesMatrix> jones;  // likewise
   TraceStatistics statistics;
 
   // A path with hits of its own.
@@ -25,7 +26,8 @@ class PathBlock {
   void add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // A path over `first` [count], given in the order in which it was traced, that runs the other way (kReversedPath).
   void add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
-  // Gives the last path added a launch cell of its own (Paths::curved_cell).
+  // Give the last path added its matrix (Paths::jones) and a launch cell of its own (Paths::curved_cell).
+  void set_jones(const JonesMatrix& matrix);
   void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.
   void end_ray(const Hit* ray_hits);

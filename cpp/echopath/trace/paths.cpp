@@ -64,7 +64,8 @@ bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - 
 void Paths::validate() const {
   const size_t size = offsets.size();
   require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
-              batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size),
+              batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size) &&
+              (jones.empty() || jones.size() == size),
           "paths", "all arrays must have one entry per path, paths", size);
   for (size_t i = 0; i < size; ++i) {
     require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
@@ -94,6 +95,7 @@ Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   out.batch = column(batch);
   out.flags = column(flags);
   if (!curved_cell.empty()) out.curved_cell = column(curved_cell);
+  if (!jones.empty()) out.jones = column(jones);
   out.scene = scene;
   out.radar = radar;
   out.frame = frame;

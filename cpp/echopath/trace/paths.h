@@ -9,6 +9,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/em/footprint.h"
+#include "echopath/em/jones.h"
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"
 
@@ -40,6 +41,8 @@ inline constexpr uint8_t kNoBatch = 255;
 // it was traced with the antennas exchanged.
 inline constexpr uint32_t kReversedPath = 1;
 
+using JonesMatrix = std::array<std::complex<float>, 4>;
+
 struct TraceStatistics {
   int64_t num_rays = 0;        // launched
   int64_t num_queries = 0;     // closest-hit and shadow queries
@@ -58,6 +61,7 @@ struct TraceFrame {
   std::vector<Stratum> strata;
   uint64_t seed = 0;
   int max_bounces = 4;
+  PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;
   TraceStatistics statistics;
   int num_batches = 1;             // independent lattices of launch directions, which share the rays of each stratum
@@ -83,6 +87,11 @@ struct Paths {
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
   std::vector<std::array<float, 7>> curved_cell;
+
+  // [P] or empty (scalar): of coherent paths, (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v) in the transverse bases of
+  // em/jones.h; takes the place of Gamma in the weight, over cos_i at the last surface. Zero for diffuse paths, which carry
+  // power whatever the polarisation.
+  std::vector<JonesMatrix> jones;
 
   std::shared_ptr<const Scene> scene;        // snapshot
   Radar radar;                               // snapshot

@@ -7,6 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
+#include "echopath/em/jones.h"
 #include "echopath/scene/smooth.h"
 #include "echopath/trace/ray_differential.h"
 
@@ -18,6 +19,7 @@ constexpr double kGrazing = 1e-3;      // cosine below which a hit is dropped
 constexpr double kNearAntenna = 1e-3;  // m
 // Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
+constexpr double kPolarizedGrazing = 0.05;  // cosine
 constexpr int kDirect = -1;            // transmit chains, besides the index of a mirror
 constexpr int kOther = -2;
 
@@ -75,6 +77,7 @@ struct RayShooter::Ray {
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> field = 1.0;        // product of Gamma s / q; regime C
   std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
+  FieldVector polarized[2];   // fields of a horizontal and a vertical launch with 1/q; regime C, where polarised
   RayDifferential rays;       // regime C, where the scene has smooth meshes
   bool is_curved = false;     // some bounce so far was on a curved surface
   MirrorBounce mirror;            // the last specular bounce off an unflagged surface since the last anchor
@@ -117,6 +120,11 @@ void RayShooter::shoot(int64_t index, PathBlock& block) const {
   ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
   block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, index));
   ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
+  if (settings_.is_polarized) {
+    const TransverseBasis basis = transverse_basis(ray.direction);
+    ray.polarized[0] = basis.horizontal.cast<std::complex<double>>();
+    ray.polarized[1] = basis.vertical.cast<std::complex<double>>();
+  }
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   thread_local Scratch scratch;
   Surface surface;
@@ -205,11 +213,12 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
   // density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
   const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
-  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field * surface.response.gamma *
-                                      surface.response.coherent * launch_area;
+  // Polarised, all coefficients are in the matrix.
+  const std::complex<double> scalar = settings_.is_polarized ? 1.0 : ray.field * surface.response.gamma * surface.response.coherent;
+  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * scalar * launch_area;
   for (const Leg& leg : scratch.receive) {
     const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);
-    record(ray, surface, leg, 0, weight * leg.gain, with_reversal, block);
+    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
   }
 }
 
@@ -220,13 +229,40 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
   int count = ray.depth;
   if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
-  const bool has_cell = ray.is_curved && bits == 0;
   if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
   else block.add(hits.data(), count, bits, weight, ray.stratum);
-  if (has_cell) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (bits == 0) set_columns(ray, surface, leg, block);
   if (!with_reversal) return;
   block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
-  if (has_cell) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (bits == 0) set_columns(ray, surface, leg, block);
+}
+
+// What the last path needs beside its weight, if the scene asks for it.
+void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const {
+  if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (settings_.is_polarized) block.set_jones(jones_matrix(ray, surface, leg));
+}
+
+// From the launched components to those that arrive at the receiver (Paths::jones).
+JonesMatrix RayShooter::jones_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
+  const double frequency = settings_.frequency;
+  const ModeCoefficients here = mode_coefficients(*surface.material, frequency, surface.cos_incidence);
+  // Replay multiplies by cos_i; a conductor's TM part does not vanish with it, so the quotient is bounded.
+  const double scale = surface.response.coherent / std::max(surface.cos_incidence, kPolarizedGrazing);
+  const TransverseBasis arrival = transverse_basis(-leg.at_antenna);
+  JonesMatrix matrix;
+  for (size_t column = 0; column < 2; ++column) {
+    FieldVector field = scale * radiated_field(ray.polarized[column], ray.direction, surface.point.normal, leg.to_antenna, here);
+    if (leg.mirror >= 0) {
+      const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
+      const double cos_mirror = -leg.to_antenna.dot(leg.mirror_normal);
+      field = std::sqrt(leg.specular_share) *
+              reflected_field(field, leg.to_antenna, leg.mirror_normal, mode_coefficients(material, frequency, cos_mirror));
+    }
+    matrix[column] = std::complex<float>(field.transpose() * arrival.horizontal.cast<std::complex<double>>());
+    matrix[2 + column] = std::complex<float>(field.transpose() * arrival.vertical.cast<std::complex<double>>());
+  }
+  return matrix;
 }
 
 // The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
@@ -336,39 +372,60 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     if (coin[1] >= survival) return false;
     if (is_open) specular = coin[0] < odds.specular;
   }
-  const Vec3& normal = surface.point.normal;
-  ray.from = geometry_.lifted(surface.point.position, normal);
-  if (specular) {
-    const MirrorBounce bounced{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
-                               curvature_along(surface.point, ray.direction)};
-    if (has_smooth_ && ray.coherent) {
-      const Mat3 flat = Mat3::Zero();
-      ray.rays.reflect(ray.direction, normal, surface.point.is_smooth ? surface.point.curvature : flat);
-      ray.is_curved = ray.is_curved || surface.point.is_smooth;
-    }
-    ray.direction = (ray.direction + 2.0 * surface.cos_incidence * normal).normalized();
-    ray.field *= response.gamma * response.coherent / (odds.specular * survival);
-    ray.coefficient *= response.gamma * response.coherent;
-    ray.leg_density *= odds.specular * survival;
-    const int mirror = mirror_of_mesh_[surface.point.hit.mesh_id];
-    ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
-    ray.last_was_mirror = mirror < 0;
-    if (mirror < 0) ray.mirror = bounced;
-    ray.chain_share = odds.specular;
-  } else {
-    ray.coefficient *= std::abs(response.gamma) * response.diffuse;
-    ray.area *= surface.area;
-    ray.diffuse |= uint64_t{1} << (ray.depth - 1);
-    ray.coherent = false;
-    ray.chain = kOther;
-    ray.mirror = MirrorBounce{};
-    ray.last_was_mirror = false;
-    const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension + 1);
-    ray.direction = cosine_lobe(normal, random);
-    ray.leg_length = 0.0;
-    ray.leg_density = odds.diffuse * survival * std::max(normal.dot(ray.direction), 1e-9) / kPi;
-  }
+  ray.from = geometry_.lifted(surface.point.position, surface.point.normal);
+  if (specular) bounce_specular(ray, surface, odds.specular * survival);
+  else bounce_diffuse(ray, surface, odds.diffuse * survival);
+  if (specular) ray.chain_share = odds.specular;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
+}
+
+// `probability`: with which the ray goes on this way.
+void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probability) const {
+  const SurfaceResponse& response = surface.response;
+  const RayHit& point = surface.point;
+  if (ray.coherent) reflect_field(ray, surface, probability);
+  const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
+  ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
+  ray.coefficient *= response.gamma * response.coherent;
+  ray.leg_density *= probability;
+  const int mirror = mirror_of_mesh_[point.hit.mesh_id];
+  ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
+  ray.last_was_mirror = mirror < 0;
+  if (mirror < 0) ray.mirror = bounced;
+}
+
+// Field, polarisation and tube of a coherent ray, before its direction changes.
+void RayShooter::reflect_field(Ray& ray, const Surface& surface, double probability) const {
+  const SurfaceResponse& response = surface.response;
+  const RayHit& point = surface.point;
+  ray.field *= response.gamma * response.coherent / probability;
+  if (settings_.is_polarized) {
+    const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, surface.cos_incidence);
+    for (FieldVector& field : ray.polarized) {
+      field = response.coherent / probability * reflected_field(field, ray.direction, point.normal, modes);
+    }
+  }
+  if (has_smooth_) {
+    const Mat3 flat = Mat3::Zero();
+    ray.rays.reflect(ray.direction, point.normal, point.is_smooth ? point.curvature : flat);
+    ray.is_curved = ray.is_curved || point.is_smooth;
+  }
+}
+
+void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability) const {
+  const Vec3& normal = surface.point.normal;
+  ray.coefficient *= std::abs(surface.response.gamma) * surface.response.diffuse;
+  ray.area *= surface.area;
+  ray.diffuse |= uint64_t{1} << (ray.depth - 1);
+  ray.coherent = false;
+  ray.chain = kOther;
+  ray.mirror = MirrorBounce{};
+  ray.last_was_mirror = false;
+  const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
+  const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
+  ray.direction = cosine_lobe(normal, random);
+  ray.leg_length = 0.0;
+  ray.leg_density = probability * std::max(normal.dot(ray.direction), 1e-9) / kPi;
 }
 
 std::complex<double> RayShooter::phase_factor(const Ray& ray) const {

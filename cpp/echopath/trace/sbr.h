@@ -21,6 +21,7 @@ struct SbrSettings {
   double frequency = 77e9;                   // Hz
   Vec3 transmitter = Vec3::Zero();           // relative to the trace origin, as the receiver
   Vec3 receiver = Vec3::Zero();
+  bool is_polarized = false;                 // follow field vectors (PolarizationModel::kJones)
   Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
   double specular_probability = 0.0;         // of going on specularly where a surface does both; 0: its specular share
 };
@@ -38,6 +39,7 @@ class RayShooter {
   struct Scratch;
   struct Odds;     // of going on
 
+  JonesMatrix jones_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   struct MirrorBounce;
@@ -45,6 +47,7 @@ class RayShooter {
   bool opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const;
   void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
               bool with_reversal, PathBlock& block) const;
+  void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
@@ -53,6 +56,9 @@ class RayShooter {
   Leg own_leg(const Ray& ray) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
   bool bounce(Ray& ray, const Surface& surface) const;
+  void bounce_specular(Ray& ray, const Surface& surface, double probability) const;
+  void reflect_field(Ray& ray, const Surface& surface, double probability) const;
+  void bounce_diffuse(Ray& ray, const Surface& surface, double probability) const;
   Odds odds_of(const Surface& surface) const;
   std::complex<double> phase_factor(const Ray& ray) const;
 

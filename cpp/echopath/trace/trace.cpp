@@ -39,6 +39,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.max_bounces = settings.max_bounces;
   frame.footprint = settings.footprint;
   frame.num_batches = settings.batches;
+  frame.polarization = settings.polarization;
   return frame;
 }
 
@@ -96,6 +97,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
 
   SbrSettings sbr;
   sbr.max_bounces = settings.max_bounces;
+  sbr.is_polarized = settings.polarization == PolarizationModel::kJones;
   sbr.seed = settings.seed;
   sbr.specular_probability = settings.specular_probability;
   sbr.frequency = radar.waveform.start_frequency;

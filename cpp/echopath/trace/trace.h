@@ -10,6 +10,7 @@ struct TraceSettings {
   int max_bounces = 4;          // 1 to 64; hits on mirrors count
   uint64_t seed = 1;
   double start_time = 0.0;      // s, first sample of the frame
+  PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
   // 1 to 64: independent lattices that share the rays, from which errors follow. Each is as fine as its share of the
   // rays.

@@ -11,9 +11,11 @@ from .h5 import read_array, read_attribute, read_group, read_texts, write_array,
 HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
                "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
+# Columns that are there only where the scene asks for them: dtype and shape of an entry.
+OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2, 2))}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
-FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "footprint", "num_batches", "target_error_db",
-                "error_db")
+FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "num_batches",
+                "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits")
@@ -36,8 +38,9 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
         target = group.create_group(folder)
         for name in fields:
             write_array(target, name, getattr(written, name), compress=name not in _NOISE_LIKE)
-    if len(written.curved_cell):
-        write_array(group["paths"], "curved_cell", written.curved_cell)
+    for name in OPTIONAL_FIELDS:
+        if len(getattr(written, name)):
+            write_array(group["paths"], name, getattr(written, name))
     return keep
 
 
@@ -51,8 +54,9 @@ def read_paths(group, scene, radar):
     source = read_group(group, "paths")
     num_paths = len(source["offsets"])
     columns = {name: read_array(source, name, dtype, (num_paths,)) for name, dtype in PATH_FIELDS.items()}
-    if "curved_cell" in source:
-        columns["curved_cell"] = read_array(source, "curved_cell", np.float32, (num_paths, 7))
+    for name, (dtype, shape) in OPTIONAL_FIELDS.items():
+        if name in source:
+            columns[name] = read_array(source, name, dtype, (num_paths, *shape))
     _check_indices(group, hits, columns, scene)
     frame = _read_frame(read_group(group, "frame"))
     return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
@@ -82,7 +86,8 @@ def _write_frame(group, frame) -> None:
     write_texts(group, "stratum_name", [stratum.name for stratum in strata])
     write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
     write_array(group, "stratum_versine", np.array([stratum.versine for stratum in strata], np.float64))
-    write_array(group, "stratum_ray_density", np.array([stratum.ray_density for stratum in strata], np.float64), unit="1/sr")
+    densities = np.array([stratum.ray_density for stratum in strata], np.float64)
+    write_array(group, "stratum_ray_density", densities, unit="1/sr")
     write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
 
 
@@ -92,7 +97,8 @@ def _read_frame(group):
     versine = read_array(group, "stratum_versine", np.float64, (len(names),))
     ray_density = read_array(group, "stratum_ray_density", np.float64, (len(names),))
     num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
-    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]), ray_density=float(ray_density[i]),
+    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
+                         ray_density=float(ray_density[i]),
                          name=names[i]) for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(
@@ -100,7 +106,8 @@ def _read_frame(group):
         transmitter=read_array(group, "transmitter", np.float64, (3,)),
         receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
         seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
-        footprint=read_attribute(group, "footprint", str), statistics=statistics,
+        polarization=read_attribute(group, "polarization", str), footprint=read_attribute(group, "footprint", str),
+        statistics=statistics,
         num_batches=read_attribute(group, "num_batches", int),
         target_error_db=read_attribute(group, "target_error_db", float),
         error_db=read_attribute(group, "error_db", float))

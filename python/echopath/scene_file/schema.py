@@ -205,7 +205,9 @@ class TraceTable(Table):
     max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
-    footprint: Literal["second_order", "first_order", "none"] = Field("second_order", description="filter of a ray's footprint")
+    polarization: Literal["scalar", "jones"] = Field("scalar", description="field vectors, or one coefficient a hit")
+    footprint: Literal["second_order", "first_order", "none"] = Field(
+        "second_order", description="filter of a ray's footprint")
     batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
         None, description="independent parts of the rays, which give standard errors; none: 1, with target_error_db 8")
     target_error_db: Optional[Positive] = Field(

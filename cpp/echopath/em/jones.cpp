@@ -1,0 +1,60 @@
+#include "echopath/em/jones.h"
+
+#include <cmath>
+
+#include "echopath/em/surface_response.h"
+
+namespace echopath {
+namespace {
+
+FieldVector cross(const Vec3& a, const FieldVector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// a.b without conjugation.
+std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+TransverseBasis transverse_basis(const Vec3& direction) {
+  Vec3 horizontal = Vec3::UnitZ().cross(direction);
+  const double length = horizontal.norm();
+  horizontal = length > 1e-9 ? Vec3(horizontal / length) : Vec3::UnitX();
+  return {horizontal, direction.cross(horizontal)};
+}
+
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
+  const TransverseBasis basis = transverse_basis(direction);
+  const Eigen::Vector2d components(polarization.dot(basis.horizontal), polarization.dot(basis.vertical));
+  const double length = components.norm();
+  return length > 1e-9 ? Eigen::Vector2d(components / length) : Eigen::Vector2d::Zero();
+}
+
+ModeCoefficients mode_coefficients(const Material& material, double frequency, double cos_incidence) {
+  if (material.conductor) return {-1.0, 1.0};
+  if (material.reflectivity) return {-std::sqrt(*material.reflectivity), std::sqrt(*material.reflectivity)};
+  return {respond(material, frequency, cos_incidence, PolarizationMode::kTe).gamma,
+          respond(material, frequency, cos_incidence, PolarizationMode::kTm).gamma};
+}
+
+FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal,
+                            const ModeCoefficients& coefficients) {
+  Vec3 te = direction.cross(normal);
+  const double sine = te.norm();
+  te = sine > 1e-9 ? Vec3(te / sine) : direction.unitOrthogonal();  // normal incidence: any plane serves
+  const Vec3 reflected = direction - 2.0 * direction.dot(normal) * normal;
+  const Vec3 tm_in = te.cross(direction), tm_out = te.cross(reflected);
+  return coefficients.te * dot(te, incident) * te.cast<std::complex<double>>() +
+         coefficients.tm * dot(tm_in, incident) * tm_out.cast<std::complex<double>>();
+}
+
+FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
+                           const ModeCoefficients& coefficients) {
+  const FieldVector reflected = reflected_field(incident, direction, normal, coefficients);
+  const Vec3 mirrored = direction - 2.0 * direction.dot(normal) * normal;
+  const FieldVector electric = cross(normal, FieldVector(incident + reflected));
+  const FieldVector magnetic = cross(normal, FieldVector(cross(direction, incident) + cross(mirrored, reflected)));
+  return -0.5 * cross(out, FieldVector(electric - cross(out, magnetic)));
+}
+
+}  // namespace echopath

@@ -1,7 +1,9 @@
+#include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -49,6 +51,22 @@ AntennaPattern cosine_power(double exponent, std::optional<double> peak_gain, co
   return AntennaPattern::cosine_power(exponent, peak_gain.value_or(0.0));
 }
 
+AntennaPattern gain_table(const py::object& azimuth, const py::object& elevation, const py::object& gain,
+                          const py::object& phase, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "GainTable", {"azimuth", "elevation", "gain", "phase"});
+  std::vector<double> phases;
+  if (!phase.is_none()) phases = as_vector<double>(phase, "phase", "[E, A]");
+  const auto gains = checked_array<double>(gain, "gain", "[E, A]");
+  const std::vector<double> columns = as_vector<double>(azimuth, "azimuth", "[A]");
+  const std::vector<double> rows = as_vector<double>(elevation, "elevation", "[E]");
+  const bool fits = gains.shape(0) == static_cast<py::ssize_t>(rows.size()) &&
+                    gains.shape(1) == static_cast<py::ssize_t>(columns.size());
+  require(fits, "gain", "must have a row for each elevation and a column for each azimuth",
+          std::to_string(gains.shape(0)) + " x " + std::to_string(gains.shape(1)));
+  const std::vector<double> samples(gains.data(), gains.data() + gains.size());
+  return AntennaPattern::of_table(GainTable(columns, rows, samples, phases));
+}
+
 Antenna antenna(const py::object& position, const py::object& orientation, const std::optional<AntennaPattern>& pattern,
                 const py::object& polarization, const py::kwargs& unknown) {
   refuse_unknown(unknown, "Antenna", {"position", "orientation", "pattern", "polarization"});
@@ -74,7 +92,32 @@ Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitt
 }
 
 const char* kind_of(const AntennaPattern& pattern) {
+  if (pattern.kind == AntennaPattern::Kind::kTable) return "table";
   return pattern.kind == AntennaPattern::Kind::kIsotropic ? "isotropic" : "cosine_power";
+}
+
+// One of the arrays of a table, in a new NumPy array; None for other patterns and where there is no phase.
+py::object axis_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
+  if (!pattern.table) return py::none();
+  return to_numpy(((*pattern.table).*getter)());
+}
+
+py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
+  if (!pattern.table || ((*pattern.table).*getter)().empty()) return py::none();
+  const GainTable& table = *pattern.table;
+  return numpy_take(std::vector<double>((table.*getter)()), {static_cast<py::ssize_t>(table.elevation().size()),
+                                                             static_cast<py::ssize_t>(table.azimuth().size())});
+}
+
+py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, const py::object& directions) {
+  std::vector<std::complex<double>> field;
+  for (const Vec3& direction : as_points(directions, "directions")) {
+    const double norm = direction.norm();
+    require(std::abs(norm - 1.0) <= kUnitTolerance, "directions", "must have norm 1 within 1e-6", norm);
+    const AntennaGain gain = pattern.toward(direction);
+    field.push_back(std::polar(std::sqrt(gain.power), gain.phase));
+  }
+  return numpy_take(std::move(field));
 }
 
 std::string text_of(const ChirpSequence& w) {
@@ -89,6 +132,9 @@ std::string text_of(const AntennaPattern& pattern) {
   std::ostringstream text;
   if (pattern.kind == AntennaPattern::Kind::kIsotropic) {
     text << "Isotropic(gain=" << pattern.peak_gain << ")";
+  } else if (pattern.table) {
+    text << "GainTable(" << pattern.table->azimuth().size() << " azimuths x " << pattern.table->elevation().size()
+         << " elevations, peak gain " << pattern.peak_gain << (pattern.table->phase().empty() ? "" : ", with phase") << ")";
   } else {
     text << "CosinePower(exponent=" << pattern.exponent << ", peak_gain=" << pattern.peak_gain << ")";
   }
@@ -146,23 +192,47 @@ Raises ValueError naming the argument.)")
 }
 
 void bind_antenna(py::module_& m) {
-  py::class_<AntennaPattern>(m, "AntennaPattern", "Power gain over direction; made by Isotropic or CosinePower.")
-      .def_property_readonly("kind", &kind_of, "\"isotropic\" or \"cosine_power\"")
-      .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear, towards the boresight")
+  py::class_<AntennaPattern>(m, "AntennaPattern", "Power gain over direction; made by Isotropic, CosinePower or GainTable.")
+      .def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
+      .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear; of a table its largest sample")
       .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")
       .def("gain", &AntennaPattern::gain, py::arg("cos_boresight"),
-           "Linear power gain where cos_boresight is the cosine of the angle from the boresight.")
+           "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.")
+      .def("field", &field_of, py::arg("directions"),
+           "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.")
+      .def_property_readonly("efficiency", &AntennaPattern::efficiency,
+                             "integral of the gain over the sphere / 4 pi; at most 1 for a power gain")
+      .def_property_readonly("azimuth", [](const AntennaPattern& self) { return axis_of(self, &GainTable::azimuth); },
+                             "[A] rad of a table, else None")
+      .def_property_readonly("elevation", [](const AntennaPattern& self) { return axis_of(self, &GainTable::elevation); },
+                             "[E] rad of a table, else None")
+      .def_property_readonly("table_gain", [](const AntennaPattern& self) { return samples_of(self, &GainTable::gain); },
+                             "[E, A] linear power gain of a table, else None")
+      .def_property_readonly("table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
+                             "[E, A] rad of a table with phases, else None")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
   m.def("Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
   m.def("CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
         "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)");
+  m.def("GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
+        py::arg("phase") = py::none(), R"(Gain sampled over direction; there is none outside the table.
+
+azimuth: [A] rad, ascending, about z from the boresight +x to the left, over at most a turn
+elevation: [E] rad, ascending, from the xy-plane, in [-pi/2, pi/2]
+gain: [E, A] linear power gain
+phase: [E, A] rad of the far field (e^{+jwt}) relative to the antenna's position, or None: 0 everywhere. It turns the
+    amplitudes of paths by e^{j phase}, in transmission and in reception.
+The field sqrt(gain) e^{j phase} is interpolated by bicubics; phases of neighbours should differ by less than 1 rad.
+Azimuths that cover the whole turn up to one step are closed to a ring.
+Returns an AntennaPattern. Raises ValueError naming the argument, also when the integral of the gain over the sphere is
+more than 1.02 times 4 pi.)");
 
   py::class_<Antenna>(m, "Antenna", R"(One element of a radar.
 
 position: [3] in m, in the radar's frame
 orientation: unit quaternion (w, x, y, z), radar from antenna; the boresight is +x of the antenna's frame
-pattern: Isotropic(gain) or CosinePower(exponent, peak_gain); None is Isotropic(1)
+pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
 polarization: [3] unit vector in the antenna's frame
 Raises ValueError naming the argument.)")
       .def(py::init(&antenna), py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(),

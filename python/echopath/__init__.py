@@ -12,14 +12,16 @@ answer_ctrl_c_while_loading()
 
 from . import _core
 from ._core import (
-    Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, Isotropic, KeyframeMotion,
+    Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, GainTable, Isotropic, KeyframeMotion,
     LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeDoppler, ReceivedPower, Selection, Stratum, TraceFrame,
-    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes,
-    mie_rcs, num_bounces, num_threads, range_doppler, rcs, received_power, set_num_threads, speed_of_light,
-    synthesize, trace,
+    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes, mie_rcs,
+    num_bounces, num_threads, range_doppler, rcs, received_power, set_num_threads, speed_of_light, synthesize,
 )
+from .antennas import load_antenna
 from .materials import materials
 from .scene import Scene
+from .tessellation import TessellationWarning, trace
+from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part
 from .simulate import Frame, simulate
@@ -38,10 +40,11 @@ def view(*arguments, **keywords):
 
 
 __all__ = [
-    "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "FileError", "Frame",
-    "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar",
-    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TraceFrame", "TraceStatistics",
-    "VertexSequence", "actors", "add_noise", "boltzmann", "decompose", "hits", "load_frame", "load_mesh",
-    "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "range_doppler", "rcs",
-    "received_power", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "view",
+    "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "Effect", "FileError", "Frame",
+    "GainTable", "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar",
+    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TessellationWarning", "TraceFrame",
+    "TraceStatistics", "VertexSequence", "actors", "add_noise", "boltzmann", "decompose", "effects", "hits",
+    "load_antenna", "load_frame", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces",
+    "num_threads", "range_doppler", "rcs", "received_power", "save_frame", "set_num_threads", "simulate",
+    "speed_of_light", "synthesize", "trace", "view",
 ]

@@ -21,7 +21,8 @@ def itu_p2040(a, c, d):
 
 
 def test_library_has_the_promised_names():
-    assert set(ep.materials) >= {"metal", "concrete", "asphalt", "glass", "skin", "clothing", "wood", "plastic"}
+    assert set(ep.materials) >= {"metal", "concrete", "asphalt", "glass", "skin", "clothing", "wood", "plastic",
+                                 "bumper"}
     assert len(ep.materials) == len(list(ep.materials))
     assert "metal" in ep.materials and "metl" not in ep.materials
 
@@ -44,6 +45,13 @@ def test_clothing_reflects_like_skin_behind_a_decibel():
     index = np.sqrt(debye_skin(77e9))
     skin = abs((1 - index) / (1 + index)) ** 2
     assert ep.materials["clothing"].reflectivity == pytest.approx(skin * 10**-0.1, abs=0.005)
+
+
+def test_bumper_is_the_mean_over_the_thickness_of_a_sheet():
+    index, phase = 1.48, np.linspace(0.0, np.pi, 2001)[:-1]  # of the sheet, one way
+    r = (1 - index) / (1 + index)
+    sheet = np.abs(r * (1 - np.exp(-2j * phase)) / (1 - r**2 * np.exp(-2j * phase))) ** 2
+    assert ep.materials["bumper"].reflectivity == pytest.approx(sheet.mean(), abs=0.001)
 
 
 def test_bodies_are_rough_and_everything_has_a_source():

@@ -28,6 +28,8 @@ void validate_antenna(const Antenna& antenna, const std::string& name) {
   require(std::abs(polarization_norm - 1.0) <= kUnitTolerance, name + ".polarization",
           "must have norm 1 within 1e-6", polarization_norm);
   require_positive(antenna.pattern.peak_gain, name + ".pattern.peak_gain");
+  require((antenna.pattern.kind == AntennaPattern::Kind::kTable) == (antenna.pattern.table != nullptr),
+          name + ".pattern.table", "must be given for the kind table and for no other", antenna.pattern.table != nullptr);
   const double exponent = antenna.pattern.exponent;
   require(std::isfinite(exponent) && exponent >= 0.0, name + ".pattern.exponent", "must be finite and not negative",
           exponent);
@@ -73,18 +75,39 @@ double ChirpSequence::max_velocity(int num_slots) const { return 0.5 * num_chirp
 
 AntennaPattern AntennaPattern::isotropic(double gain) {
   require_positive(gain, "gain");
-  return {Kind::kIsotropic, gain, 0.0};
+  return {Kind::kIsotropic, gain, 0.0, nullptr};
 }
 
 AntennaPattern AntennaPattern::cosine_power(double exponent, double peak_gain) {
   require(std::isfinite(exponent) && exponent >= 0.0, "exponent", "must be finite and not negative", exponent);
   require(std::isfinite(peak_gain), "peak_gain", "must be finite", peak_gain);
-  return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : 2.0 * (exponent + 1.0), exponent};
+  return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : 2.0 * (exponent + 1.0), exponent, nullptr};
+}
+
+AntennaPattern AntennaPattern::of_table(GainTable table) {
+  const double peak_gain = table.peak_gain();
+  return {Kind::kTable, peak_gain, 0.0, std::make_shared<const GainTable>(std::move(table))};
 }
 
 double AntennaPattern::gain(double cos_boresight) const {
+  require(kind != Kind::kTable, "cos_boresight", "tells no gain of a table, which needs a direction", cos_boresight);
   if (kind == Kind::kIsotropic) return peak_gain;
   return cos_boresight > 0.0 ? peak_gain * std::pow(cos_boresight, exponent) : 0.0;
+}
+
+AntennaGain AntennaPattern::toward(const Vec3& direction) const {
+  if (kind != Kind::kTable) return {gain(direction.x()), 0.0};
+  const std::complex<double> field = table->field(direction);
+  return {std::norm(field), table->phase().empty() ? 0.0 : std::arg(field)};
+}
+
+double AntennaPattern::efficiency() const {
+  if (kind == Kind::kTable) return table->efficiency();
+  return kind == Kind::kIsotropic ? peak_gain : peak_gain / (2.0 * (exponent + 1.0));
+}
+
+bool AntennaPattern::is_dark_behind() const {
+  return kind == Kind::kTable ? table->is_dark_behind() : kind == Kind::kCosinePower;
 }
 
 void Radar::validate() const {

@@ -6,6 +6,7 @@
 
 #include "echopath/base/geometry.h"
 #include "echopath/motion/motion.h"
+#include "echopath/radar/gain_table.h"
 
 namespace echopath {
 
@@ -31,17 +32,29 @@ struct ChirpSequence {
   double max_velocity(int num_slots) const;                                              // m/s, unambiguous +-
 };
 
+// Gain and phase of an antenna toward a direction.
+struct AntennaGain {
+  double power = 1.0;  // linear
+  double phase = 0.0;  // rad, of the field; enters path amplitudes as e^{j phase}, in transmission and reception
+};
+
 // Power gain over direction. Boresight is +x of the antenna's frame.
 struct AntennaPattern {
-  enum class Kind { kIsotropic, kCosinePower };
+  enum class Kind { kIsotropic, kCosinePower, kTable };
   Kind kind = Kind::kIsotropic;
   double peak_gain = 1.0;  // linear
   double exponent = 0.0;   // gain = peak_gain cos^exponent(theta) in front, 0 behind (kCosinePower)
+  std::shared_ptr<const GainTable> table;  // kTable
 
   static AntennaPattern isotropic(double gain = 1.0);
   // peak_gain <= 0: that of a lossless antenna, 2 (exponent + 1).
   static AntennaPattern cosine_power(double exponent, double peak_gain = 0.0);
-  double gain(double cos_boresight) const;  // linear power gain
+  static AntennaPattern of_table(GainTable table);
+  // Linear power gain of patterns that are round about the boresight; a table raises invalid_argument.
+  double gain(double cos_boresight) const;
+  AntennaGain toward(const Vec3& direction) const;  // unit, in the antenna's frame
+  double efficiency() const;      // integral of the gain over the sphere / 4 pi
+  bool is_dark_behind() const;    // no gain where x < 0
 };
 
 struct Antenna {

@@ -66,7 +66,7 @@ std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits
   if (cos_in * cos_out <= 0) return 0.0;
   const HitGeometry at{hit, arrival, out.travel, in.length + inner.length, out.length, std::abs(cos_in), std::abs(cos_out)};
   const double spreading = root_tube_area(path.cell, at) * out.length;
-  return std::sqrt(radio.transmit_power * in.gain * out.gain) / kFourPi * at.cos_in / spreading *
+  return std::sqrt(radio.transmit_power * in.gain.power * out.gain.power) / kFourPi * at.cos_in / spreading *
          cell_filter(path.cell, at, radio.wavenumber, radio.footprint);
 }
 
@@ -80,7 +80,7 @@ double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPa
   if (!lit) return 0.0;
   const double first_leg = in.length + inner.to_first_diffuse;
   const double spreading = std::abs(cos_in * cos_out) * kLambert / (first_leg * first_leg * out.length * out.length);
-  const double antennas = radio.transmit_power * in.gain * out.gain * radio.wavelength * radio.wavelength / (kFourPi * kFourPi);
+  const double antennas = radio.transmit_power * in.gain.power * out.gain.power * radio.wavelength * radio.wavelength / (kFourPi * kFourPi);
   return std::sqrt(antennas * spreading * inner.power_factor);
 }
 
@@ -95,6 +95,11 @@ std::complex<double> polarization_factor(const JonesMatrix* jones, const PosedAn
          to[1] * (from[0] * std::complex<double>(j[2]) + from[1] * std::complex<double>(j[3]));
 }
 
+// Phase of both antennas; most have none.
+void turn(std::complex<double>& amplitude, double phase) {
+  if (phase != 0.0) amplitude *= std::polar(1.0, phase);
+}
+
 void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const Instant& instant, const RadioConstants& radio,
                            const ChannelValues& out) {
   int64_t channel = 0;
@@ -105,7 +110,9 @@ void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const In
       out.length[at] = leg.length;
       out.amplitude[at] = path.weight * radio.wavelength *
                           polarization_factor(path.jones, transmitter, leg.departure, receiver, leg.arrival) *
-                          std::sqrt(radio.transmit_power * leg.transmit_gain * leg.receive_gain) / (kFourPi * leg.length);
+                          std::sqrt(radio.transmit_power * leg.transmit_gain.power * leg.receive_gain.power) /
+                          (kFourPi * leg.length);
+      turn(out.amplitude[at], leg.transmit_gain.phase + leg.receive_gain.phase);
     }
   }
 }
@@ -139,6 +146,7 @@ void evaluate_path(const LocalPath& path, const Instant& instant, const RadioCon
                             polarization_factor(path.jones, starts[start], in.at_antenna, ends[end], back.at_antenna);
       }
       else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
+      turn(out.amplitude[at], in.gain.phase + back.gain.phase);
     }
   }
 }

@@ -11,8 +11,13 @@ struct PosedAntenna {
   Vec3 boresight;   // unit, world axes
   Vec3 polarization;  // world axes
   const AntennaPattern* pattern = nullptr;
+  Mat3 antenna_from_world = Mat3::Identity();  // only tables need it
 
-  double gain(const Vec3& direction) const { return pattern->gain(boresight.dot(direction)); }  // unit direction, outward
+  // Toward a unit direction in the world, outward.
+  AntennaGain toward(const Vec3& direction) const {
+    if (pattern->kind != AntennaPattern::Kind::kTable) return {pattern->gain(boresight.dot(direction)), 0.0};
+    return pattern->toward(antenna_from_world * direction);
+  }
 };
 
 class Instant {

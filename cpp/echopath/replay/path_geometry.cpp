@@ -74,7 +74,7 @@ AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const Posed
   leg.length = line.norm();
   leg.travel = line / leg.length;
   leg.at_antenna = direction_before(leg.travel, hits, 0, last);
-  leg.gain = antenna.gain(leg.at_antenna);
+  leg.gain = antenna.toward(leg.at_antenna);
   return leg;
 }
 
@@ -87,7 +87,7 @@ AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedA
   leg.length = line.norm();
   leg.travel = line / leg.length;
   leg.at_antenna = direction_behind(leg.travel, hits, first, path.count);
-  leg.gain = antenna.gain(-leg.at_antenna);
+  leg.gain = antenna.toward(-leg.at_antenna);
   return leg;
 }
 
@@ -96,7 +96,7 @@ MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const
   const Vec3 line = receiver.position - forward_image(transmitter.position, hits, 0, path.count);
   const double length = line.norm();
   const Vec3 arrival = line / length, departure = direction_before(arrival, hits, 0, path.count);
-  return {length, transmitter.gain(departure), receiver.gain(-arrival), departure, arrival};
+  return {length, transmitter.toward(departure), receiver.toward(-arrival), departure, arrival};
 }
 
 InnerLeg inner_leg(const PosedHit* hits, int from, int to) {

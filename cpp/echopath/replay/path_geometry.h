@@ -59,7 +59,7 @@ struct AntennaLeg {
   double length = 0.0;  // m
   Vec3 travel;          // unit direction of travel at the material point
   Vec3 at_antenna;      // unit direction of travel at the antenna
-  double gain = 1.0;    // power gain of the antenna toward the leg
+  AntennaGain gain;     // of the antenna toward the leg
 };
 
 // TX -> first material point, and last material point -> RX.
@@ -68,7 +68,8 @@ AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedA
 
 // TX -> RX over mirrors alone: unfolded length and both gains.
 struct MirrorOnlyLeg {
-  double length, transmit_gain, receive_gain;
+  double length;
+  AntennaGain transmit_gain, receive_gain;
   Vec3 departure, arrival;  // unit directions of travel at the antennas
 };
 MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,

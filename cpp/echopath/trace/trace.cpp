@@ -22,8 +22,7 @@ void set_field_of_view(const Radar& radar, const Transform& world_from_radar, La
   const Vec3 first = boresight(radar.transmitters.front());
   launch.boresight = (world_from_radar.linear() * first).normalized();
   for (const Antenna& antenna : radar.transmitters) {
-    const bool half_space = antenna.pattern.kind == AntennaPattern::Kind::kCosinePower;
-    if (!half_space || boresight(antenna).dot(first) < 1.0 - 1e-9) return;
+    if (!antenna.pattern.is_dark_behind() || boresight(antenna).dot(first) < 1.0 - 1e-9) return;
   }
   launch.field_versine = 1.0;
 }

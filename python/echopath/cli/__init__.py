@@ -100,8 +100,9 @@ def _run(options) -> None:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, progress=progress)
         written = write_outputs(frame, options.out, partitions=scene_file.partitions())
-    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.stages(frame.stages),
-                 *report.powers(frame.cube, frame.parts), *report.mean_powers(frame), *report.files(written)]:
+    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.paths.effects),
+                 *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
+                 *report.files(written)]:
         print(text)
 
 

@@ -1,6 +1,8 @@
 """What a run prints: figures of a frame in plain words."""
 from __future__ import annotations
 
+import textwrap
+
 import numpy as np
 
 import echopath as ep
@@ -30,6 +32,13 @@ def _target(frame) -> list[str]:
         return []
     verdict = "met" if frame.error_db <= frame.target_error_db else "NOT met with the most rays allowed"
     return [line("error", f"{frame.error_db:.3g} dB, target {frame.target_error_db:g} dB: {verdict}")]
+
+
+def effects(all_effects) -> list[str]:
+    """The modelled effects with what asked for them, and the names of the others."""
+    lines = [line(effect.name, effect.reason) for effect in all_effects if effect.modelled]
+    others = ", ".join(effect.name for effect in all_effects if not effect.modelled)
+    return ["effects modelled", *lines, *textwrap.wrap(f"not modelled: {others}", 110, subsequent_indent="  ")]
 
 
 def stages(all_stages) -> list[str]:

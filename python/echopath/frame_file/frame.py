@@ -109,8 +109,16 @@ def _write_record(file, paths, min_power: float, power=None):
     write_scene(file.create_group("scene"), paths.scene)
     write_radar(file.create_group("radar"), paths.radar)
     group = file.create_group("record")
+    _write_effects(group.create_group("effects"), paths.effects)
     is_kept = write_paths(group, paths, min_power, power)
     return _left_out(group), is_kept
+
+
+def _write_effects(group, effects) -> None:
+    """For whoever reads the file without this program, which infers them from scene, radar and settings."""
+    write_texts(group, "name", [effect.name for effect in effects])
+    write_array(group, "modelled", np.array([effect.modelled for effect in effects], np.uint8))
+    write_texts(group, "reason", [effect.reason for effect in effects])
 
 
 def _read_record(file):

@@ -46,6 +46,30 @@ def _write_antennas(group, antennas) -> None:
     write_texts(group, "pattern", [pattern.kind for pattern in patterns])
     write_array(group, "peak_gain", np.array([pattern.peak_gain for pattern in patterns], np.float64))
     write_array(group, "exponent", np.array([pattern.exponent for pattern in patterns], np.float64))
+    _write_tables(group, patterns)
+
+
+def _write_tables(group, patterns) -> None:
+    """The gain tables of antennas, each once, and which antenna has which."""
+    if not any(pattern.kind == "table" for pattern in patterns):
+        return
+    numbers = {}
+    table_of_antenna = [-1 if pattern.kind != "table" else numbers.setdefault(_table_key(pattern), len(numbers))
+                        for pattern in patterns]
+    write_array(group, "table", np.array(table_of_antenna, np.int32))
+    tables = group.create_group("tables")
+    for number in range(len(numbers)):
+        pattern, table = patterns[table_of_antenna.index(number)], tables.create_group(str(number))
+        write_array(table, "azimuth", pattern.azimuth, unit="rad")
+        write_array(table, "elevation", pattern.elevation, unit="rad")
+        write_array(table, "gain", pattern.table_gain)
+        if pattern.table_phase is not None:
+            write_array(table, "phase", pattern.table_phase, unit="rad")
+
+
+def _table_key(pattern) -> tuple:
+    arrays = (pattern.azimuth, pattern.elevation, pattern.table_gain, pattern.table_phase)
+    return tuple(None if array is None else array.tobytes() for array in arrays)
 
 
 def _read_antennas(group) -> list:
@@ -56,11 +80,31 @@ def _read_antennas(group) -> list:
     position = read_array(group, "position", np.float64, (count, 3))
     orientation = read_array(group, "orientation", np.float64, (count, 4))
     polarization = read_array(group, "polarization", np.float64, (count, 3))
-    return [ep.Antenna(position[i], orientation=orientation[i], pattern=_pattern(kinds[i], peak_gain[i], exponent[i]),
-                       polarization=polarization[i]) for i in range(count)]
+    tables = _read_tables(group, count) if "table" in kinds else [None] * count
+    patterns = [_pattern(kinds[i], peak_gain[i], exponent[i], tables[i]) for i in range(count)]
+    return [ep.Antenna(position[i], orientation=orientation[i], pattern=patterns[i], polarization=polarization[i])
+            for i in range(count)]
 
 
-def _pattern(kind: str, peak_gain: float, exponent: float):
+def _read_tables(group, count: int) -> list:
+    """The table of each antenna, None for those without."""
+    patterns = [_read_table(read_group(read_group(group, "tables"), str(number)))
+                for number in range(len(read_group(group, "tables")))]
+    return [patterns[number] if number >= 0 else None for number in read_array(group, "table", np.int32, (count,))]
+
+
+def _read_table(group):
+    azimuth = read_array(group, "azimuth", np.float64, (None,))
+    elevation = read_array(group, "elevation", np.float64, (None,))
+    shape = (len(elevation), len(azimuth))
+    phase = read_array(group, "phase", np.float64, shape) if "phase" in group else None
+    return ep.GainTable(azimuth=azimuth, elevation=elevation, gain=read_array(group, "gain", np.float64, shape),
+                        phase=phase)
+
+
+def _pattern(kind: str, peak_gain: float, exponent: float, table):
+    if kind == "table" and table is not None:
+        return table
     if kind == "isotropic":
         return ep.Isotropic(gain=peak_gain)
     if kind == "cosine_power":

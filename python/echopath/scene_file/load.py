@@ -65,7 +65,7 @@ def load_scene(path) -> SceneFile:
     try:
         settings = validated(SceneTable, table)
         return SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
-                         radar=_build_radar(settings.radar), trace=settings.trace, spectrum=settings.spectrum,
+                         radar=_build_radar(settings.radar, path.parent), trace=settings.trace, spectrum=settings.spectrum,
                          parts=dict(settings.parts), noise_seed=settings.noise.seed)
     except ValueError as error:
         raise ValueError("\n".join(f"{path}: {line}" for line in str(error).splitlines())) from None
@@ -92,7 +92,7 @@ def _blame(key: str):
         raise ValueError(f"{key}: {text}") from None
 
 
-def _build_radar(table: RadarTable):
+def _build_radar(table: RadarTable, folder: Path):
     with _blame("radar.waveform"):
         waveform = ep.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
@@ -100,17 +100,17 @@ def _build_radar(table: RadarTable):
         antennas[side] = []
         for index, antenna in enumerate(getattr(table, side)):
             with _blame(f"radar.{side}[{index}]"):
-                antennas[side].append(_antenna(antenna, table))
+                antennas[side].append(_antenna(antenna, table, folder))
     with _blame("radar"):
         return ep.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                         noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                         motion=_motion(table.motion, "radar.motion"))
 
 
-def _antenna(antenna, radar: RadarTable):
+def _antenna(antenna, radar: RadarTable, folder: Path):
     orientation = antenna.orientation or _turned_left(antenna.yaw_deg or 0.0)
     return ep.Antenna(tuple(antenna.position), orientation=tuple(orientation),
-                      pattern=_pattern(antenna.pattern or radar.pattern),
+                      pattern=_pattern(antenna.pattern or radar.pattern, folder),
                       polarization=tuple(antenna.polarization or radar.polarization))
 
 
@@ -120,11 +120,13 @@ def _turned_left(yaw_deg: float) -> tuple:
     return (math.cos(half), 0.0, 0.0, math.sin(half))
 
 
-def _pattern(table):
+def _pattern(table, folder: Path):
     if table is None:
         return ep.Isotropic()
     if table.kind == "isotropic":
         return ep.Isotropic(gain=table.gain)
+    if table.kind == "table":
+        return ep.load_antenna(folder / table.file)
     return ep.CosinePower(table.exponent, peak_gain=table.peak_gain)
 
 

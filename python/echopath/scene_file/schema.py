@@ -101,8 +101,14 @@ class CosinePowerTable(Table):
     peak_gain: Optional[Positive] = Field(None, description="power gain, linear; none: of a lossless antenna")
 
 
+class GainFileTable(Table):
+    kind: Literal["table"] = Field(description="gain, and phase where given, sampled over direction")
+    file: str = Field(min_length=1, description="CSV file (echopath.load_antenna), relative to the scene file")
+
+
 PatternTable = Annotated[
-    Union[Annotated[IsotropicTable, Tag("<isotropic>")], Annotated[CosinePowerTable, Tag("<cosine_power>")]],
+    Union[Annotated[IsotropicTable, Tag("<isotropic>")], Annotated[CosinePowerTable, Tag("<cosine_power>")],
+          Annotated[GainFileTable, Tag("<table>")]],
     Discriminator(by_kind("kind"))]
 
 

@@ -1,0 +1,61 @@
+#pragma once
+// Measured or computed antenna patterns: gain and phase over azimuth and elevation.
+#include <complex>
+#include <vector>
+
+#include "echopath/base/geometry.h"
+
+namespace echopath {
+
+// Gain over direction in the antenna's frame: boresight +x, azimuth about z (left, +y, positive), elevation from the xy-plane.
+//
+// Between the samples the field sqrt(gain) e^{j phase} is interpolated by bicubics with a continuous slope (cubic Hermite,
+// slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets and nulls stay
+// nulls. Phases of neighbours should differ by less than 1 rad, or their power is lost between them. A cell whose four
+// corners have no gain has none, and there is none outside the table. Azimuths that cover the whole turn, up to a gap of one
+// step, are closed to a ring.
+class GainTable {
+ public:
+  // azimuth [A] rad, ascending, over at most a turn; elevation [E] rad, ascending, in [-pi/2, pi/2]; A, E >= 2
+  // gain [E, A] linear power gain, >= 0 and not all 0; phase [E, A] rad or empty: of the far field in the e^{+jwt}
+  // convention, relative to the antenna's position (an element that sits at d instead has +k d.u toward u)
+  // Raises invalid_argument naming the argument, also when the integral of the gain over the sphere exceeds 1.02 times 4 pi.
+  GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
+            std::vector<double> phase = {});
+
+  // As given.
+  const std::vector<double>& azimuth() const { return azimuth_; }
+  const std::vector<double>& elevation() const { return elevation_; }
+  const std::vector<double>& gain() const { return gain_; }
+  const std::vector<double>& phase() const { return phase_; }
+
+  // sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
+  std::complex<double> field(const Vec3& direction) const;
+  double peak_gain() const;                              // of the samples
+  double efficiency() const { return efficiency_; }      // integral of the gain over the sphere / 4 pi
+  bool is_dark_behind() const { return dark_behind_; }   // no gain where x < 0
+
+ private:
+  // Four samples along one axis and the weights of a point between the middle ones.
+  struct Stencil {
+    int index[4];
+    double weight[4];
+  };
+  bool find_azimuth(double azimuth, Stencil& out) const;
+  bool find_elevation(double elevation, Stencil& out) const;
+  double azimuth_at(int column) const;  // also beyond the ends of a ring
+  size_t sample(int row, int column) const;
+  std::complex<double> field_at(double azimuth, double elevation) const;
+  bool has_gain(int row, int column) const;  // of the cell above and left of a sample
+  void close_ring();
+  double integrate() const;
+  bool all_cells_in_front() const;
+
+  std::vector<double> azimuth_, elevation_, gain_, phase_;
+  std::vector<std::complex<double>> field_;  // [E, A]
+  int period_ = 0;                           // columns of a closed ring, 0: open
+  double efficiency_ = 0.0;
+  bool dark_behind_ = false;
+};
+
+}  // namespace echopath

@@ -1,0 +1,105 @@
+"""Which effects a run models, which it leaves out, and why."""
+from __future__ import annotations
+
+import dataclasses
+
+from . import _core
+from .tessellation import COHERENT_SHARE, coherent_share
+
+MAX_NAMES = 3  # of meshes or materials in a reason
+
+
+@dataclasses.dataclass(frozen=True)
+class Effect:
+    """One effect. name; modelled: whether it is; reason: what in the scene or the settings asks for it, or why not."""
+
+    name: str
+    modelled: bool
+    reason: str
+
+
+def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order") -> list[Effect]:
+    """Which effects a trace of `scene` with `radar` models, and why.
+
+    max_bounces, footprint: as in `trace`. Returns a list of Effect, modelled ones first. Effects that no scene can ask for
+    stand last, under reasons that begin with "out of scope" or "not modelled".
+    """
+    found = [*_of_surfaces(scene, radar, max_bounces, footprint), *_of_motion(scene, radar), *_of_radar(radar)]
+    return [effect for effect in found if effect.modelled] + [effect for effect in found if not effect.modelled] + OUT_OF_SCOPE
+
+
+def of_paths(paths) -> list[Effect]:
+    """The effects of a trace, from the scene, radar and settings that it recorded."""
+    return effects(paths.scene, paths.radar, max_bounces=paths.frame.max_bounces, footprint=paths.frame.footprint)
+
+
+def _of_surfaces(scene, radar, max_bounces: int, footprint: str) -> list[Effect]:
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    meshes, nodes = list(scene.meshes), scene.nodes
+    mirrors = [mesh for mesh in meshes if mesh.material.mirror]
+    coherent = [mesh for mesh in meshes
+                if not mesh.material.mirror and coherent_share(mesh.material, wavelength) >= COHERENT_SHARE]
+    diffuse = [mesh for mesh in meshes if coherent_share(mesh.material, wavelength) < 1.0]
+    ament = [mesh for mesh in meshes if mesh.material.roughness_height > 0.0]
+    dielectric = [mesh for mesh in meshes if mesh.material.permittivity is not None]
+    smooth = [mesh for mesh in meshes if nodes[mesh.node].smooth]
+    filtered = bool(coherent) and footprint != "none"
+    return [
+        Effect("coherent physical optics", bool(coherent), _because(coherent, "no mesh with a specular share but mirrors")),
+        Effect("footprint filter", filtered, _footprint_reason(coherent, footprint)),
+        Effect("smooth surfaces", bool(smooth), _because(smooth, "no mesh is marked smooth")),
+        Effect("diffuse lobe, random phase", bool(diffuse), _because(diffuse, "no material scatters diffusely")),
+        Effect("loss by roughness height", bool(ament), _because(ament, "no material has a roughness height")),
+        Effect("Fresnel coefficients", bool(dielectric), _because(dielectric, "no material has a permittivity")),
+        Effect("mirrors by images", bool(mirrors), _because(mirrors, "no mesh is marked mirror")),
+        Effect("multiple bounces", max_bounces > 1, f"max_bounces = {max_bounces}"),
+    ]
+
+
+def _footprint_reason(coherent, footprint: str) -> str:
+    if footprint == "none":
+        return 'footprint = "none"'
+    return f"{footprint.replace('_', ' ')}, for the coherent echoes" if coherent else "no coherent echoes to filter"
+
+
+def _of_motion(scene, radar) -> list[Effect]:
+    moving = [mesh for mesh in scene.meshes if scene.is_moving(mesh.id)]
+    own = radar.motion is not None
+    reason = "; ".join(["the radar moves"] * own + [_because(moving, "")] * bool(moving)) or "nothing moves"
+    deforming = [mesh for mesh in moving if scene.nodes[mesh.node].sequence is not None]
+    return [Effect("motion over chirps", bool(moving) or own, reason),
+            Effect("motion within chirps", bool(moving) or own, "linear; with motion" if moving or own else reason),
+            Effect("deforming meshes", bool(deforming), _because(deforming, "no mesh has a vertex sequence"))]
+
+
+def _of_radar(radar) -> list[Effect]:
+    slots = len(radar.transmitters)
+    antennas = [*radar.transmitters, *radar.receivers]
+    shaped = sorted({antenna.pattern.kind for antenna in antennas} - {"isotropic"})
+    phased = any(antenna.pattern.table_phase is not None for antenna in antennas)
+    return [Effect("antenna patterns", bool(shaped), ", ".join(shaped) or "all antennas are isotropic"),
+            Effect("antenna phases", phased, "phase of a table" if phased else "no pattern has a phase"),
+            Effect("transmitters take turns (TDM)", slots > 1, f"{slots} transmitter" + "s" * (slots > 1)),
+            Effect("real samples", radar.waveform.real, "real = true" if radar.waveform.real else "complex samples")]
+
+
+def _because(meshes, otherwise: str) -> str:
+    """Count of meshes and the first of their names, or what to say when there are none."""
+    if not meshes:
+        return otherwise
+    names = list(dict.fromkeys(mesh.name for mesh in meshes))
+    shown = ", ".join(names[:MAX_NAMES]) + (", ..." if len(names) > MAX_NAMES else "")
+    return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {shown}"
+
+
+OUT_OF_SCOPE = [
+    Effect("depolarisation", False, "not modelled: each hit takes the TE or TM coefficient nearer to the polarization"),
+    Effect("transmission through sheets", False, "not modelled"),
+    Effect("edge diffraction, creeping waves", False, "out of scope: deep sidelobes are wrong, main lobes within 1 dB"),
+    Effect("atmospheric loss", False, "not modelled: about 0.4 dB/km"),
+    Effect("phase noise, quantisation", False, "not modelled"),
+    Effect("interference", False, "not modelled"),
+]
+
+# The core knows no reports: its record of paths gets this property here.
+_core.Paths.effects = property(of_paths, doc="list of Effect: what the trace modelled, what not, and why")

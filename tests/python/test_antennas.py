@@ -1,0 +1,162 @@
+"""Antenna tables: the closed forms they were sampled from, files and what is wrong with them."""
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "antennas"
+INTERPOLATION = 2e-3      # of the peak: bicubics on steps of 5 degrees
+WRITTEN = 2e-4            # relative: three decimals of dB
+AZIMUTH = np.radians(np.arange(-90, 91, 5))
+ELEVATION = np.radians(np.arange(-90, 91, 5))
+FILE = "azimuth_deg,elevation_deg,gain_db,phase_deg\n" + "\n".join(
+    f"{a},{e},{-0.1 * abs(a) + 0.02 * e},{a + 2 * e}" for a in (-10, 0, 20) for e in (-5, 5))
+
+
+def direction(azimuth, elevation):
+    return np.stack([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation),
+                     np.sin(elevation) + 0 * azimuth], axis=-1)
+
+
+def cosine4(u):
+    return 10.0 * np.maximum(u[..., 0], 0.0) ** 4
+
+
+def grid():
+    return direction(AZIMUTH[None, :], ELEVATION[:, None])
+
+
+def fault_of(tmp_path, text):
+    path = tmp_path / "bad.csv"
+    path.write_text(text)
+    with pytest.raises(ep.FileError) as fault:
+        ep.load_antenna(path)
+    assert str(path) in str(fault.value)
+    return str(fault.value)
+
+
+def test_table_gives_the_gain_that_was_sampled():
+    pattern = ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=cosine4(grid()))
+    u = direction(np.radians([0, 12.5, -33.3, 71.0, 120.0]), np.radians([0, 7.5, -21.0, 44.4, 3.0]))
+    np.testing.assert_allclose(np.abs(pattern.field(u)) ** 2, cosine4(u), atol=10 * INTERPOLATION)
+    assert pattern.kind == "table" and pattern.peak_gain == pytest.approx(10.0)
+    assert pattern.efficiency == pytest.approx(1.0, abs=INTERPOLATION)
+    np.testing.assert_array_equal(pattern.azimuth, AZIMUTH)
+    np.testing.assert_array_equal(pattern.table_gain, cosine4(grid()))
+    assert pattern.table_phase is None
+    with pytest.raises(ValueError, match="needs a direction"):
+        pattern.gain(1.0)
+
+
+def test_other_patterns_have_no_table():
+    for pattern, efficiency in ((ep.Isotropic(0.5), 0.5), (ep.CosinePower(3.0), 1.0)):
+        assert pattern.efficiency == pytest.approx(efficiency)
+        assert pattern.azimuth is None and pattern.table_gain is None
+    np.testing.assert_allclose(ep.CosinePower(2.0).field([[0.6, 0.8, 0.0]]), [np.sqrt(6 * 0.36)])
+
+
+def test_more_gain_than_the_sphere_has_is_an_error():
+    with pytest.raises(ValueError, match="^gain: .*1.02 times 4 pi"):
+        ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=1.1 * cosine4(grid()))
+
+
+def test_shapes_are_checked():
+    with pytest.raises(ValueError, match="^gain: .*row for each elevation"):
+        ep.GainTable(azimuth=AZIMUTH[:5], elevation=ELEVATION[:3], gain=np.ones((5, 3)))
+    with pytest.raises(ValueError, match="^phase"):
+        ep.GainTable(azimuth=AZIMUTH[:2], elevation=ELEVATION[:2], gain=np.ones((2, 2)), phase=np.ones((2, 3)))
+    with pytest.raises(TypeError, match="'elevation'"):
+        ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=cosine4(grid()), elevatoin=1)
+
+
+def test_file_means_what_its_units_say(tmp_path):
+    path = tmp_path / "small.csv"
+    lines = FILE.splitlines()
+    path.write_text("\n".join(["# a comment", lines[0], "", *reversed(lines[1:])]))  # rows in any order
+    pattern = ep.load_antenna(str(path))
+    np.testing.assert_allclose(np.degrees(pattern.azimuth), [-10, 0, 20])
+    np.testing.assert_allclose(np.degrees(pattern.elevation), [-5, 5])
+    np.testing.assert_allclose(10 * np.log10(pattern.table_gain), [[-1.1, -0.1, -2.1], [-0.9, 0.1, -1.9]], atol=1e-12)
+    np.testing.assert_allclose(np.degrees(pattern.table_phase), [[-20, -10, 10], [0, 10, 30]], atol=1e-12)
+
+
+@pytest.mark.parametrize("change, complaint", [
+    (lambda text: "", "no line of column names"),
+    (lambda text: text.replace("gain_db", "gain"), "line 1: column 'gain' is none of"),
+    (lambda text: text.replace(",phase_deg", ",gain_db"), "line 1: column 'gain_db' stands twice"),
+    (lambda text: text.replace("azimuth_deg,", "", 1), "line 1: column 'azimuth_deg' is missing"),
+    (lambda text: text.splitlines()[0], "holds no directions"),
+    (lambda text: text.replace("0,5,0.1", "0,5,x"), "line 5: gain_db must be a number, got 'x'"),
+    (lambda text: text.replace("0,5,0.1", "0,nan,0.1"), "line 5: elevation_deg must be finite"),
+    (lambda text: text.replace("0,5,0.1,10", "0,5,0.1"), "line 5: must have 4 values, has 3"),
+    (lambda text: text.replace("0,5,0.1", "0,-5,0.1"), "line 5: direction (0, -5) deg stands already in line 4"),
+    (lambda text: text.rsplit("\n", 1)[0], "direction (20, 5) deg is missing"),
+    (lambda text: text.replace("0,5,0.1", "0,5,30").replace("-0.1", "30").replace("-10,", "-170,").replace("20,", "170,"),
+     "gain: must have an integral"),
+])
+def test_what_is_wrong_with_a_file_is_named_with_its_line(tmp_path, change, complaint):
+    assert complaint in fault_of(tmp_path, change(FILE))
+
+
+def test_missing_file_is_a_file_error(tmp_path):
+    with pytest.raises(ep.FileError, match="nowhere.csv"):
+        ep.load_antenna(tmp_path / "nowhere.csv")
+
+
+def test_example_patch_is_the_formula_in_its_head():
+    pattern = ep.load_antenna(DATA / "patch_77ghz.csv")
+    k = 2 * np.pi * 77e9 / ep.speed_of_light
+    u = direction(pattern.azimuth[None, :], pattern.elevation[:, None])
+    shape = (np.sinc(k * 0.688e-3 * u[..., 1] / np.pi) * np.cos(k * 0.565e-3 * u[..., 2])) ** 2 * (1 - u[..., 1] ** 2)
+    scale = pattern.table_gain.max() / shape.max()
+    np.testing.assert_allclose(pattern.table_gain, scale * shape, rtol=WRITTEN, atol=1e-9)
+    assert pattern.efficiency == pytest.approx(0.8, abs=INTERPOLATION)
+
+
+def test_table_survives_a_frame_file(tmp_path):
+    tables = [ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=cosine4(grid()), phase=grid()[..., 1]),
+              ep.load_antenna(DATA / "patch_77ghz.csv")]
+    receivers = [ep.Antenna((0, 0.002 * i, 0), pattern=pattern)
+                 for i, pattern in enumerate([tables[0], ep.Isotropic(2.0), tables[1], tables[0]])]
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="clothing", position=(5, 0, 0))
+    waveform = ep.ChirpSequence(num_chirps=2)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna(pattern=tables[1])], receivers=receivers)
+    paths = ep.trace(scene, radar, num_rays=1000)
+    paths.save(tmp_path / "paths.h5")
+    back = ep.Paths.load(tmp_path / "paths.h5")
+    for one, other in zip([*radar.transmitters, *receivers], [*back.radar.transmitters, *back.radar.receivers]):
+        assert one.pattern.kind == other.pattern.kind
+        for name in ("azimuth", "elevation", "table_gain", "table_phase"):
+            np.testing.assert_array_equal(getattr(one.pattern, name), getattr(other.pattern, name))
+    for rx in range(4):
+        np.testing.assert_array_equal(paths.amplitudes([0.0], 0, rx), back.amplitudes([0.0], 0, rx))
+
+
+def test_scene_file_finds_the_table_beside_it(tmp_path):
+    (tmp_path / "small.csv").write_text(FILE)
+    text = """
+[radar]
+pattern = {kind = "table", file = "small.csv"}
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 64
+sampling_rate = 20e6
+num_chirps = 8
+chirp_interval = 100e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 1.0]
+pattern = {kind = "isotropic"}
+"""
+    (tmp_path / "scene.toml").write_text(text)
+    radar = ep.load_scene(tmp_path / "scene.toml").radar
+    assert (radar.transmitters[0].pattern.kind, radar.receivers[0].pattern.kind) == ("table", "isotropic")
+    assert radar.transmitters[0].pattern.table_gain.shape == (2, 3)
+    (tmp_path / "scene.toml").write_text(text.replace("file", "path"))
+    with pytest.raises(ValueError, match="file"):
+        ep.load_scene(tmp_path / "scene.toml")

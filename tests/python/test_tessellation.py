@@ -1,0 +1,106 @@
+"""The warning of coarse curved surfaces, against levels of icospheres known from an independent simulator."""
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import tessellation
+
+WAVELENGTH = ep.speed_of_light / 77e9
+RADIUS = 0.1
+LEVELS = {2: (1.52, 5.0), 3: (0.76, 1.8), 4: (0.38, 0.30), 5: (0.19, 0.01)}  # edge / sqrt(a lambda), |error| in dB
+RATIO_TOLERANCE = 0.02    # relative: edges of an icosphere differ among themselves
+ERROR_TOLERANCE = 0.1     # relative, of an error read from a table over such a ratio
+
+
+def icosphere(subdivisions):
+    return ep.actors.sphere(RADIUS, subdivisions=subdivisions)
+
+
+def radar():
+    return ep.Radar(ep.ChirpSequence(num_chirps=1), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+
+
+def warnings_of(shape, *, smooth=False, material="metal"):
+    scene = ep.Scene()
+    scene.add(shape, name="thing", material=material, position=(5, 0, 0), smooth=smooth)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ep.trace(scene, radar(), num_rays=10, max_bounces=1)
+    return [str(one.message) for one in caught if issubclass(one.category, ep.TessellationWarning)]
+
+
+def measured(mesh):
+    return tessellation.tessellation(mesh.vertices, mesh.triangles)
+
+
+def as_mesh(shape):
+    return shape if isinstance(shape, ep.Mesh) else shape.parts[0].mesh
+
+
+@pytest.mark.parametrize("subdivisions", LEVELS)
+def test_icospheres_have_their_radius_and_their_known_error(subdivisions):
+    found = measured(as_mesh(icosphere(2**subdivisions)))
+    ratio, error = LEVELS[subdivisions]
+    assert found.ratio(WAVELENGTH) == pytest.approx(ratio, rel=RATIO_TOLERANCE)
+    assert found.radius == pytest.approx(RADIUS, rel=0.05)
+    assert tessellation.facet_error_db(found.ratio(WAVELENGTH)) == pytest.approx(error, rel=ERROR_TOLERANCE)
+
+
+def test_coarse_spheres_are_warned_of_and_fine_ones_are_not():
+    for subdivisions in (2, 3):
+        (text,) = warnings_of(icosphere(2**subdivisions))
+        assert "'thing'" in text and "mm" in text and "smooth=True" in text
+    assert "7.8 mm would do" in text  # 0.4 sqrt(0.1 m 3.89 mm) = 7.89 mm
+    for subdivisions in (4, 5):
+        assert warnings_of(icosphere(2**subdivisions)) == []
+
+
+def test_smooth_spheres_may_be_four_times_coarser():
+    assert warnings_of(icosphere(4), smooth=True) == []
+    (text,) = warnings_of(icosphere(2), smooth=True)
+    assert "smooth=True" not in text
+
+
+def test_strips_of_a_cylinder_count_by_their_width():
+    sides, radius, length = 48, 0.2, 1.0
+    angle = 2 * np.pi * np.arange(sides) / sides
+    ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], axis=1)
+    i = np.arange(sides)
+    j = (i + 1) % sides
+    triangles = np.concatenate([np.stack([i, j, j + sides], 1), np.stack([i, j + sides, i + sides], 1)])
+    found = tessellation.tessellation(np.concatenate([ring, ring + [0, 0, length]]), triangles)
+    width = 2 * radius * np.sin(np.pi / sides)
+    # A triangle of half a strip lies sqrt(2/3) as far from the surface, in mean, as an equilateral one of that edge.
+    assert found.edge == pytest.approx(width * np.sqrt(2 / 3), rel=0.01)
+    assert found.radius == pytest.approx(radius, rel=0.01)
+
+
+def bent_plate(pieces):
+    """Two planes that meet at 20 degrees."""
+    grid = np.arange(pieces + 1) / pieces
+    x, y = (values.ravel() for values in np.meshgrid(grid, grid, indexing="ij"))
+    corner = (np.arange(pieces)[:, None] * (pieces + 1) + np.arange(pieces)).ravel()
+    right, up = pieces + 1, 1
+    triangles = np.concatenate([np.stack([corner, corner + right, corner + right + up], 1),
+                                np.stack([corner, corner + right + up, corner + up], 1)])
+    return ep.Mesh(np.stack([x, y, np.tan(np.radians(10)) * np.abs(x - 0.5)], axis=1), triangles)
+
+
+@pytest.mark.parametrize("shape", [
+    ep.actors.plate(1.0, 2.0), ep.actors.plate(1.0, 1.0, edge=0.1), ep.actors.box((1.0, 2.0, 0.5)),
+    ep.actors.box((1.0, 1.0, 1.0), edge=0.1), ep.actors.trihedral(0.3), bent_plate(2), bent_plate(10),
+], ids=["plate", "fine plate", "box", "fine box", "trihedral", "bend", "fine bend"])
+def test_planes_and_their_edges_are_no_curved_surfaces(shape):
+    assert warnings_of(shape) == []
+
+
+def test_what_has_no_coherent_echo_is_not_asked_for_fineness():
+    assert warnings_of(icosphere(4), material="clothing") == []
+    assert warnings_of(icosphere(4), material=ep.Material(permittivity=4.0, roughness_height=2e-3)) == []
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(), name="pedestrian", position=(5, 0, 0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ep.TessellationWarning)
+        ep.trace(scene, radar(), num_rays=10)

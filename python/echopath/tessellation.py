@@ -145,10 +145,13 @@ def warn_of_coarse_meshes(scene, radar, stacklevel: int = 2) -> None:
     """Warns (TessellationWarning) of each curved mesh whose coherent echo would err by more than 0.3 dB."""
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     nodes = scene.nodes
+    known = getattr(scene, "__dict__", {}).setdefault("_tessellation", {})  # by mesh ID; meshes of a scene never change
     for mesh in scene.meshes:
         if mesh.material.mirror or coherent_share(mesh.material, wavelength) < COHERENT_SHARE:
             continue
-        measured = tessellation(mesh.mesh.vertices, mesh.mesh.triangles)
+        if mesh.id not in known:
+            known[mesh.id] = tessellation(mesh.mesh.vertices, mesh.mesh.triangles)
+        measured = known[mesh.id]
         text = measured and _complaint(mesh.name, measured, wavelength, nodes[mesh.node].smooth)
         if text:
             warnings.warn(text, TessellationWarning, stacklevel=stacklevel + 1)

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMaxEfficiency = 1.02;      // above it the gain is no power gain; below, tables are noisy
 constexpr double kAngleTolerance = 1e-6;     // rad, degrees with five written digits
+constexpr double kNothing = 1e-12;           // of the peak: what rounding leaves of a zero
 constexpr double kSeamTolerance = 1e-3;      // of the peak: samples one turn apart are the same direction
 
 void require_axis(const std::vector<double>& values, const std::string& name) {
@@ -73,7 +74,10 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
   for (const double value : gain_) require(value >= 0.0, "gain", "must not be negative", value);
   require(peak_gain() > 0.0, "gain", "must not be 0 everywhere", peak_gain());
 
-  for (size_t i = 0; i < count; ++i) field_.push_back(std::polar(std::sqrt(gain_[i]), phase_.empty() ? 0.0 : phase_[i]));
+  const double least = kNothing * peak_gain();
+  for (size_t i = 0; i < count; ++i) {
+    field_.push_back(std::polar(gain_[i] < least ? 0.0 : std::sqrt(gain_[i]), phase_.empty() ? 0.0 : phase_[i]));
+  }
   close_ring();
   efficiency_ = integrate();
   require(efficiency_ <= kMaxEfficiency, "gain", "must have an integral over the sphere of at most 1.02 times 4 pi",
@@ -152,11 +156,7 @@ bool GainTable::find_elevation(double elevation, Stencil& out) const {
 std::complex<double> GainTable::field_at(double azimuth, double elevation) const {
   Stencil along, up;
   if (!find_elevation(elevation, up) || !find_azimuth(azimuth, along)) return 0.0;
-  double corners = 0.0;
-  for (int row = 1; row <= 2; ++row) {
-    for (int column = 1; column <= 2; ++column) corners += gain_[sample(up.index[row], along.index[column])];
-  }
-  if (corners == 0.0) return 0.0;
+  if (!has_gain(up.index[1], along.index[1])) return 0.0;
   std::complex<double> sum = 0.0;
   for (int row = 0; row < 4; ++row) {
     std::complex<double> line = 0.0;
@@ -195,8 +195,8 @@ double GainTable::integrate() const {
 
 bool GainTable::has_gain(int row, int column) const {
   const int next = period_ ? (column + 1) % period_ : column + 1;
-  return gain_[sample(row, column)] > 0.0 || gain_[sample(row, next)] > 0.0 || gain_[sample(row + 1, column)] > 0.0 ||
-         gain_[sample(row + 1, next)] > 0.0;
+  return field_[sample(row, column)] != 0.0 || field_[sample(row, next)] != 0.0 ||
+         field_[sample(row + 1, column)] != 0.0 || field_[sample(row + 1, next)] != 0.0;
 }
 
 bool GainTable::all_cells_in_front() const {

@@ -12,7 +12,7 @@ namespace echopath {
 // Between the samples the field sqrt(gain) e^{j phase} is interpolated by bicubics with a continuous slope (cubic Hermite,
 // slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets and nulls stay
 // nulls. Phases of neighbours should differ by less than 1 rad, or their power is lost between them. A cell whose four
-// corners have no gain has none, and there is none outside the table. Azimuths that cover the whole turn, up to a gap of one
+// corners have no gain (below 1e-12 of the peak) has none, and there is none outside the table. Azimuths that cover the whole turn, up to a gap of one
 // step, are closed to a ring.
 class GainTable {
  public:

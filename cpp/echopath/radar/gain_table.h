@@ -7,18 +7,20 @@
 
 namespace echopath {
 
-// Gain over direction in the antenna's frame: boresight +x, azimuth about z (left, +y, positive), elevation from the xy-plane.
+// Gain over direction in the antenna's frame: boresight +x, azimuth about z (left, +y, positive), elevation from the
+// xy-plane.
 //
-// Between the samples the field sqrt(gain) e^{j phase} is interpolated by bicubics with a continuous slope (cubic Hermite,
-// slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets and nulls stay
-// nulls. Phases of neighbours should differ by less than 1 rad, or their power is lost between them. A cell whose four
-// corners have no gain (below 1e-12 of the peak) has none, and there is none outside the table. Azimuths that cover the whole turn, up to a gap of one
-// step, are closed to a ring.
+// Between the samples the field sqrt(gain) e^{j phase} is interpolated by bicubics with a continuous slope (cubic
+// Hermite, slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets
+// and nulls stay nulls. Phases of neighbours should differ by less than 1 rad, or their power is lost between them. A
+// cell whose four corners have no gain (below 1e-12 of the peak) has none, and there is none outside the table.
+// Azimuths that cover the whole turn, up to a gap of one step, are closed to a ring.
 class GainTable {
  public:
   // azimuth [A] rad, ascending, over at most a turn; elevation [E] rad, ascending, in [-pi/2, pi/2]; A, E >= 2
-  // gain [E, A] linear power gain, >= 0 and not all 0; phase [E, A] rad or empty: of the far field in the e^{+jwt}
-  // convention, relative to the antenna's position (an element that sits at d instead has +k d.u toward u)
+  // gain [E, A] linear power gain, >= 0 and not all 0
+  // phase [E, A] rad or empty: of the far field in the e^{+jwt} convention, relative to the antenna's position (an
+  //   element that sits at d instead has +k d.u toward u)
   // Raises invalid_argument naming the argument, also when the integral of the gain over the sphere exceeds 1.02 times 4 pi.
   GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
             std::vector<double> phase = {});

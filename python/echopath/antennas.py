@@ -18,10 +18,10 @@ def load_antenna(path):
     """Reads an antenna pattern from a CSV file.
 
     path: of a text file with a line of column names and then a line for each direction, in any order: azimuth_deg and
-        elevation_deg in the antenna's frame (boresight +x, azimuth about z to the left, elevation from the xy-plane),
-        gain_db over isotropic ("-inf": none) and optionally phase_deg. Every azimuth needs every elevation. Empty lines
-        and lines that begin with # are passed over.
-    Returns an AntennaPattern as `GainTable` makes it. Raises FileError naming the file, and the line where there is one.
+        elevation_deg in the antenna's frame (boresight +x, azimuth about z to the left, elevation from the
+        xy-plane), gain_db over isotropic ("-inf": none) and optionally phase_deg. Every azimuth needs every
+        elevation. Empty lines and lines that begin with # are passed over.
+    Returns an AntennaPattern as `GainTable` makes it. Raises FileError naming the file, and the line if there is one.
     """
     path = Path(path)
     try:
@@ -87,7 +87,8 @@ def _grid(names: list, samples: dict):
     for elevation in elevations:
         for azimuth in azimuths:
             if (azimuth, elevation) not in samples:
-                raise ValueError(f"direction ({azimuth:g}, {elevation:g}) deg is missing; every azimuth needs every elevation")
+                raise ValueError(f"direction ({azimuth:g}, {elevation:g}) deg is missing; every azimuth needs every "
+                                 "elevation")
 
     def column(name: str):
         return np.array([[samples[azimuth, elevation][1][name] for azimuth in azimuths] for elevation in elevations])

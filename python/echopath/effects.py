@@ -21,11 +21,11 @@ class Effect:
 def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order") -> list[Effect]:
     """Which effects a trace of `scene` with `radar` models, and why.
 
-    max_bounces, footprint: as in `trace`. Returns a list of Effect, modelled ones first. Effects that no scene can ask for
-    stand last, under reasons that begin with "out of scope" or "not modelled".
+    max_bounces, footprint: as in `trace`. Returns a list of Effect, modelled ones first. Effects that no scene can ask
+    for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
     found = [*_of_surfaces(scene, radar, max_bounces, footprint), *_of_motion(scene, radar), *_of_radar(radar)]
-    return [effect for effect in found if effect.modelled] + [effect for effect in found if not effect.modelled] + OUT_OF_SCOPE
+    return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
 
 
 def of_paths(paths) -> list[Effect]:
@@ -45,7 +45,8 @@ def _of_surfaces(scene, radar, max_bounces: int, footprint: str) -> list[Effect]
     smooth = [mesh for mesh in meshes if nodes[mesh.node].smooth]
     filtered = bool(coherent) and footprint != "none"
     return [
-        Effect("coherent physical optics", bool(coherent), _because(coherent, "no mesh with a specular share but mirrors")),
+        Effect("coherent physical optics", bool(coherent),
+               _because(coherent, "no mesh but mirrors has a specular share")),
         Effect("footprint filter", filtered, _footprint_reason(coherent, footprint)),
         Effect("smooth surfaces", bool(smooth), _because(smooth, "no mesh is marked smooth")),
         Effect("diffuse lobe, random phase", bool(diffuse), _because(diffuse, "no material scatters diffusely")),
@@ -53,6 +54,8 @@ def _of_surfaces(scene, radar, max_bounces: int, footprint: str) -> list[Effect]
         Effect("Fresnel coefficients", bool(dielectric), _because(dielectric, "no material has a permittivity")),
         Effect("mirrors by images", bool(mirrors), _because(mirrors, "no mesh is marked mirror")),
         Effect("multiple bounces", max_bounces > 1, f"max_bounces = {max_bounces}"),
+        Effect("reversals behind small mirrors", bool(coherent) and max_bounces > 1,
+               _reversal_reason(coherent, max_bounces)),
     ]
 
 
@@ -60,6 +63,12 @@ def _footprint_reason(coherent, footprint: str) -> str:
     if footprint == "none":
         return 'footprint = "none"'
     return f"{footprint.replace('_', ' ')}, for the coherent echoes" if coherent else "no coherent echoes to filter"
+
+
+def _reversal_reason(coherent, max_bounces: int) -> str:
+    if max_bounces == 1:
+        return "max_bounces = 1"
+    return "surfaces below their Fresnel zone" if coherent else "no coherent echoes"
 
 
 def _of_motion(scene, radar) -> list[Effect]:

@@ -55,8 +55,8 @@ def facet_error_db(ratio: float) -> float:
 def tessellation(vertices, triangles) -> Tessellation | None:
     """Measures the curvature that a mesh's facets stand for, from the turns between neighbours.
 
-    vertices [V, 3] in m, triangles [F, 3]. Returns None for meshes without curved surfaces: planes, and planes that meet in
-    edges of more than 40 degrees or in single bends.
+    vertices [V, 3] in m, triangles [F, 3]. Returns None for meshes without curved surfaces: planes, and planes that
+    meet in edges of more than 40 degrees or in single bends.
 
     Each edge contributes its turn across it to the curvature tensor of both facets (Cohen-Steiner and Morvan 2003); the
     mean depth of the surface over a facet is that tensor times the facet's second moments.
@@ -76,7 +76,7 @@ def tessellation(vertices, triangles) -> Tessellation | None:
 
 
 def _turns(triangles, corners, normals):
-    """Edges with two facets: both facets, angle in rad, length in m and the direction across it out of the first facet."""
+    """Edges with two facets: both facets, angle in rad, length in m and the direction across, out of the first one."""
     count = len(triangles)
     one, two = triangles[:, [1, 2, 0]].T.ravel(), triangles[:, [2, 0, 1]].T.ravel()
     edges = np.minimum(one, two) * (triangles.max() + 1) + np.maximum(one, two)
@@ -94,7 +94,7 @@ def _turns(triangles, corners, normals):
 
 
 def _turns_on_both_sides(count, first, second, soft, flat, across):
-    """Facets [F] that turn, themselves or with a neighbour in their plane, on more than one side. across [E, 3] in m."""
+    """Facets [F] that turn, alone or with a neighbour in their plane, on more than one side. across [E, 3] in m."""
     one, two, step = first[soft], second[soft], across[soft]
     outward = _summed(one, step, count) - _summed(two, step, count)
     length = np.linalg.norm(step, axis=1)[:, None]

@@ -93,7 +93,7 @@ def test_file_means_what_its_units_say(tmp_path):
     (lambda text: text.replace("0,5,0.1,10", "0,5,0.1"), "line 5: must have 4 values, has 3"),
     (lambda text: text.replace("0,5,0.1", "0,-5,0.1"), "line 5: direction (0, -5) deg stands already in line 4"),
     (lambda text: text.rsplit("\n", 1)[0], "direction (20, 5) deg is missing"),
-    (lambda text: text.replace("0,5,0.1", "0,5,30").replace("-0.1", "30").replace("-10,", "-170,").replace("20,", "170,"),
+    (lambda text: text.splitlines()[0] + "".join(f"\n{a},{e},3.1,0" for a in (-90, 90, 270) for e in (-90, 0, 90)),
      "gain: must have an integral"),
 ])
 def test_what_is_wrong_with_a_file_is_named_with_its_line(tmp_path, change, complaint):

@@ -56,8 +56,9 @@ def test_all_files_are_written(demo):
 def test_the_report_tells_what_was_asked_for(demo):
     _, frame, lines = demo
     text = "\n".join(lines)
-    for word in ("rays", "hits", "paths", "trace", "synthesis", "MiB", "received power, route", "received power, body",
-                 "arms", "legs", "received power, legs by route", "|whole - sum of parts|", "frame.h5"):
+    for word in ("rays", "hits", "paths", "effects modelled", "mirrors by images", "not modelled", "trace",
+                 "synthesis", "MiB", "received power, route", "received power, body", "arms", "legs",
+                 "received power, legs by route", "|whole - sum of parts|", "frame.h5"):
         assert word in text
     assert f"{NUM_RAYS:,}" in text and f"{frame.paths.num_paths:,}" in text
 

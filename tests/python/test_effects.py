@@ -18,7 +18,8 @@ def make_radar(num_transmitters=1, motion=None, real=False, **antenna):
 
 def make_scene(material=SPECULAR, motion=None, smooth=False):
     scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=material, motion=motion, position=(5, 0, 0), smooth=smooth)
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=material, motion=motion, position=(5, 0, 0),
+              smooth=smooth)
     return scene
 
 

@@ -21,7 +21,8 @@ class GainTable {
   // gain [E, A] linear power gain, >= 0 and not all 0
   // phase [E, A] rad or empty: of the far field in the e^{+jwt} convention, relative to the antenna's position (an
   //   element that sits at d instead has +k d.u toward u)
-  // Raises invalid_argument naming the argument, also when the integral of the gain over the sphere exceeds 1.02 times 4 pi.
+  // Raises invalid_argument naming the argument, also when the integral of the gain over the sphere exceeds 1.02 times
+  // 4 pi.
   GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
             std::vector<double> phase = {});
 

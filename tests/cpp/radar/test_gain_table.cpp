@@ -23,11 +23,13 @@ using Pattern = std::function<double(double azimuth, double elevation)>;
 
 std::vector<double> axis(double first_deg, double last_deg, double step_deg) {
   std::vector<double> values;
-  for (int i = 0; first_deg + i * step_deg <= last_deg + 1e-9; ++i) values.push_back((first_deg + i * step_deg) * kDegree);
+  const long count = std::lround((last_deg - first_deg) / step_deg) + 1;
+  for (long i = 0; i < count; ++i) values.push_back((first_deg + static_cast<double>(i) * step_deg) * kDegree);
   return values;
 }
 
-std::vector<double> sampled(const Pattern& pattern, const std::vector<double>& azimuth, const std::vector<double>& elevation) {
+std::vector<double> sampled(const Pattern& pattern, const std::vector<double>& azimuth,
+                            const std::vector<double>& elevation) {
   std::vector<double> samples;
   for (const double up : elevation) {
     for (const double along : azimuth) samples.push_back(pattern(along, up));
@@ -44,7 +46,9 @@ Vec3 toward(double azimuth, double elevation) {
 }
 
 // Lossless, 2 (n + 1) cos^n of the angle from +x, n = 4: no edge at the rim of the half space.
-double cosine4(double azimuth, double elevation) { return 10.0 * std::pow(std::max(0.0, toward(azimuth, elevation).x()), 4); }
+double cosine4(double azimuth, double elevation) {
+  return 10.0 * std::pow(std::max(0.0, toward(azimuth, elevation).x()), 4);
+}
 
 // Not symmetric in anything: left and up must not be taken for each other or for right and down.
 double lopsided(double azimuth, double elevation) {
@@ -61,16 +65,21 @@ TEST(GainTable, SamplesAreMetAndTheFieldBetweenThemIsSmooth) {
           << azimuth << " " << elevation;
     }
   }
-  EXPECT_NEAR(std::norm(table.field(toward(-35 * kDegree, 20 * kDegree))), lopsided(-35 * kDegree, 20 * kDegree), kRounding);
+  const double left = -35 * kDegree, up = 20 * kDegree;  // a sample
+  EXPECT_NEAR(std::norm(table.field(toward(left, up))), lopsided(left, up), kRounding);
 }
 
 // A cubic field along the azimuth is a parabola in each slope: unequal steps must lose nothing.
 TEST(GainTable, ParabolicFieldsAreExactOnUnequalSteps) {
   const std::vector<double> azimuth = {-0.9, -0.7, -0.2, -0.1, 0.3, 1.0}, elevation = {-0.4, 0.1, 0.2, 0.5};
-  const auto field = [](double along, double up) { return 0.6 + 0.1 * along - 0.2 * along * along + 0.3 * up * up + 0.1 * up * along; };
+  const auto field = [](double along, double up) {
+    return 0.6 + 0.1 * along - 0.2 * along * along + 0.3 * up * up + 0.1 * up * along;
+  };
   const GainTable table = table_of([&](double a, double e) { return std::pow(field(a, e), 2); }, azimuth, elevation);
   for (const double along : {-0.85, -0.3, 0.0, 0.1, 0.9}) {
-    for (const double up : {-0.3, 0.15, 0.4}) EXPECT_NEAR(std::abs(table.field(toward(along, up))), field(along, up), kRounding);
+    for (const double up : {-0.3, 0.15, 0.4}) {
+      EXPECT_NEAR(std::abs(table.field(toward(along, up))), field(along, up), kRounding);
+    }
   }
 }
 
@@ -78,15 +87,17 @@ TEST(GainTable, IntegralIsThatOfTheClosedForm) {
   EXPECT_NEAR(table_of(cosine4, axis(-180, 180, 5), axis(-90, 90, 5)).efficiency(), 1.0, kInterpolation);
   EXPECT_NEAR(table_of(cosine4, axis(-90, 90, 5), axis(-90, 90, 5)).efficiency(), 1.0, kInterpolation);
   const Pattern isotropic = [](double, double) { return 0.8; };
-  EXPECT_NEAR(table_of(isotropic, axis(-180, 170, 10), axis(-90, 90, 10)).efficiency(), 0.8, 1e-6);  // Gauss on the cosine
+  constexpr double kGauss = 1e-6;  // of three points on the cosine over 10 degrees
+  EXPECT_NEAR(table_of(isotropic, axis(-180, 170, 10), axis(-90, 90, 10)).efficiency(), 0.8, kGauss);
   // A quarter of the azimuths, half of the sines of the elevation.
-  EXPECT_NEAR(table_of(isotropic, axis(0, 90, 10), axis(-30, 30, 10)).efficiency(), 0.8 / 8, 1e-6);
+  EXPECT_NEAR(table_of(isotropic, axis(0, 90, 10), axis(-30, 30, 10)).efficiency(), 0.8 / 8, kGauss);
 }
 
 TEST(GainTable, MoreThanTheSphereIsAnError) {
   const Pattern decibel_off = [](double a, double e) { return 1.03 * cosine4(a, e); };
   EXPECT_THROW(table_of(decibel_off, axis(-90, 90, 5), axis(-90, 90, 5)), std::invalid_argument);
-  EXPECT_NO_THROW(table_of([](double a, double e) { return 1.01 * cosine4(a, e); }, axis(-90, 90, 5), axis(-90, 90, 5)));
+  const Pattern noisy = [](double a, double e) { return 1.01 * cosine4(a, e); };
+  EXPECT_NO_THROW(table_of(noisy, axis(-90, 90, 5), axis(-90, 90, 5)));
 }
 
 TEST(GainTable, ThereIsNoGainOutsideTheTable) {
@@ -129,12 +140,13 @@ TEST(GainTable, BadTablesNameTheArgument) {
   expect_error<std::invalid_argument>([&] { GainTable({0.0, 6.4}, two, ones); }, {"azimuth: must cover"});
   expect_error<std::invalid_argument>([&] { GainTable(two, {0.0, 1.6}, ones); }, {"elevation: must lie"});
   expect_error<std::invalid_argument>([&] { GainTable(two, three, ones); }, {"gain: must have"});
-  expect_error<std::invalid_argument>([&] { GainTable(two, two, {1.0, 1.0, -1.0, 1.0}); }, {"gain: must not be negative"});
+  expect_error<std::invalid_argument>([&] { GainTable(two, two, {1.0, 1.0, -1.0, 1.0}); }, {"gain: must not be neg"});
   expect_error<std::invalid_argument>([&] { GainTable(two, two, {1.0, 1.0, nan, 1.0}); }, {"gain: must be finite"});
-  expect_error<std::invalid_argument>([&] { GainTable(two, two, std::vector<double>(4, 0.0)); }, {"gain: must not be 0"});
+  expect_error<std::invalid_argument>([&] { GainTable(two, two, {0.0, 0.0, 0.0, 0.0}); }, {"gain: must not be 0"});
   expect_error<std::invalid_argument>([&] { GainTable(two, two, ones, {0.0, 1.0}); }, {"phase: must have"});
   const Pattern torn = [](double azimuth, double) { return azimuth > 3.0 ? 0.5 : 0.4; };
-  expect_error<std::invalid_argument>([&] { table_of(torn, axis(-180, 180, 10), axis(-90, 90, 10)); }, {"gain: must agree"});
+  const auto turn = axis(-180, 180, 10), height = axis(-90, 90, 10);
+  expect_error<std::invalid_argument>([&] { table_of(torn, turn, height); }, {"gain: must agree"});
 }
 
 TEST(AntennaPattern, KnowsItsEfficiency) {

@@ -54,6 +54,7 @@ def _of_surfaces(scene, radar, max_bounces: int, footprint: str) -> list[Effect]
         Effect("Fresnel coefficients", bool(dielectric), _because(dielectric, "no material has a permittivity")),
         Effect("mirrors by images", bool(mirrors), _because(mirrors, "no mesh is marked mirror")),
         Effect("multiple bounces", max_bounces > 1, f"max_bounces = {max_bounces}"),
+        Effect("Russian roulette behind bounce 3", max_bounces > 3, f"max_bounces = {max_bounces}"),
         Effect("reversals behind small mirrors", bool(coherent) and max_bounces > 1,
                _reversal_reason(coherent, max_bounces)),
     ]

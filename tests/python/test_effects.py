@@ -65,6 +65,7 @@ def test_an_effect_is_on_where_something_asks_for_it(name, scene, radar, because
 
 def test_settings_switch_effects_off():
     assert not found(footprint="none")["footprint filter"].modelled
+    assert not found(max_bounces=3)["Russian roulette behind bounce 3"].modelled
     assert not found(max_bounces=1)["multiple bounces"].modelled
     assert found(max_bounces=2)["multiple bounces"].modelled
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import report
+from echopath.cli import report
 
 SPECULAR, ROUGH = "metal", "clothing"
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))

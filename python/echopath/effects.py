@@ -18,19 +18,22 @@ class Effect:
     reason: str
 
 
-def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order") -> list[Effect]:
+def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order",
+            polarization: str = "scalar") -> list[Effect]:
     """Which effects a trace of `scene` with `radar` models, and why.
 
-    max_bounces, footprint: as in `trace`. Returns a list of Effect, modelled ones first. Effects that no scene can ask
+    max_bounces, footprint, polarization: as in `trace`. Returns a list [E] of Effect, modelled ones first. Effects that no scene can ask
     for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
-    found = [*_of_surfaces(scene, radar, max_bounces, footprint), *_of_motion(scene, radar), *_of_radar(radar)]
+    found = [*_of_surfaces(scene, radar, max_bounces, footprint), *_of_motion(scene, radar), *_of_radar(radar),
+             _of_polarization(polarization)]
     return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
 
 
 def of_paths(paths) -> list[Effect]:
     """The effects of a trace, from the scene, radar and settings that it recorded."""
-    return effects(paths.scene, paths.radar, max_bounces=paths.frame.max_bounces, footprint=paths.frame.footprint)
+    return effects(paths.scene, paths.radar, max_bounces=paths.frame.max_bounces, footprint=paths.frame.footprint,
+                   polarization=paths.frame.polarization)
 
 
 def _of_surfaces(scene, radar, max_bounces: int, footprint: str) -> list[Effect]:
@@ -93,6 +96,12 @@ def _of_radar(radar) -> list[Effect]:
             Effect("real samples", radar.waveform.real, "real = true" if radar.waveform.real else "complex samples")]
 
 
+def _of_polarization(polarization: str) -> Effect:
+    if polarization == "jones":
+        return Effect("polarised fields", True, 'polarization = "jones", for the coherent echoes')
+    return Effect("polarised fields", False, "each hit takes the TE or TM coefficient nearer to the polarization")
+
+
 def _because(meshes, otherwise: str) -> str:
     """Count of meshes and the first of their names, or what to say when there are none."""
     if not meshes:
@@ -103,7 +112,6 @@ def _because(meshes, otherwise: str) -> str:
 
 
 OUT_OF_SCOPE = [
-    Effect("depolarisation", False, "not modelled: each hit takes the TE or TM coefficient nearer to the polarization"),
     Effect("transmission through sheets", False, "not modelled"),
     Effect("edge diffraction, creeping waves", False, "out of scope: deep sidelobes are wrong, main lobes within 1 dB"),
     Effect("atmospheric loss", False, "not modelled: about 0.4 dB/km"),

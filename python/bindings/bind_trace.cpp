@@ -36,6 +36,15 @@ PolarizationModel as_polarization(const std::string& name) {
   throw std::invalid_argument("polarization: must be 'scalar' or 'jones', got '" + name + "'");
 }
 
+constexpr std::array<const char*, 4> kSamplers = {"lattice", "fibonacci", "r2", "random"};
+
+Sampler as_sampler(const std::string& name) {
+  for (size_t i = 0; i < kSamplers.size(); ++i) {
+    if (name == kSamplers[i]) return static_cast<Sampler>(i);
+  }
+  throw std::invalid_argument("sampler: must be 'lattice', 'fibonacci', 'r2' or 'random', got '" + name + "'");
+}
+
 // --- TraceFrame and what it holds ---
 
 void bind_frame(py::module_& m) {
@@ -81,14 +90,17 @@ void bind_frame(py::module_& m) {
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
                        std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
-                       const std::string& footprint, const TraceStatistics& statistics, int num_batches, double target_error_db, double error_db) {
+                       const std::string& footprint, const TraceStatistics& statistics, int num_batches,
+                       double target_error_db, double error_db, const std::string& sampler) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, as_polarization(polarization), as_footprint(footprint),
-                               statistics, num_batches, target_error_db, error_db};
+                               std::move(strata), seed, max_bounces, as_polarization(polarization),
+                               as_footprint(footprint), as_sampler(sampler), statistics, num_batches, target_error_db,
+                               error_db};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
            py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"), py::arg("footprint"),
-           py::arg("statistics"),           py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0)
+           py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0,
+           py::arg("sampler") = "lattice")
       .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
@@ -108,6 +120,9 @@ void bind_frame(py::module_& m) {
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
+      .def_property_readonly("sampler",
+                             [](const TraceFrame& self) { return kSamplers[static_cast<size_t>(self.sampler)]; },
+                             "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
 }
 
@@ -343,12 +358,13 @@ void warn_of_missed_target(const TraceFrame& frame) {
 
 PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
                      uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
-                     std::optional<int> batches, std::optional<double> target_error_db, int64_t max_rays,
-                     const py::object& progress, const py::kwargs& unknown) {
+                     const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
+                     int64_t max_rays, const py::object& progress, const py::kwargs& unknown) {
   refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
-                                    "batches", "target_error_db", "max_rays", "progress"});
+                                    "sampler", "batches", "target_error_db", "max_rays", "progress"});
   TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time,
                          as_polarization(polarization), as_footprint(footprint), batches.value_or(1)};
+  settings.sampler = as_sampler(sampler);
   if (!target_error_db) {
     return std::make_shared<Paths>(
         run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
@@ -460,8 +476,8 @@ Raises ValueError where an index leads nowhere.)")
 
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
-        py::arg("footprint") = "second_order", py::arg("batches") = py::none(), py::arg("target_error_db") = py::none(),
-        py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
+        py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
+        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
         R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
 num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count
@@ -470,6 +486,7 @@ start_time: s, first sample of the frame
 polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation) or "jones" (field vectors, co- and
 cross-polar echoes; 32 bytes a path more)
 footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
+sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
 batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
 fine as its share of the rays; 1 unless given
 target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, until the error of the

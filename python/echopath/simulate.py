@@ -54,12 +54,12 @@ class Frame:
 
 
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
-             footprint="second_order", batches=None, target_error_db=None, max_rays=2**24, parts=None, tolerance=1e-7,
-             method="auto", noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
+             footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
+             parts=None, tolerance=1e-7, method="auto", noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
-    num_rays, max_bounces, seed, start_time (s), polarization, footprint, batches, target_error_db (dB), max_rays: as in
-        `trace`
+    num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
+        max_rays: as in `trace`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
     tolerance, method: as in `synthesize`; window, zero_pad: as in `range_doppler`
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
@@ -70,8 +70,8 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     clock = StageClock()
     with clock("trace"):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                         polarization=polarization, footprint=footprint, batches=batches,
-                         target_error_db=target_error_db, max_rays=max_rays, progress=progress)
+                         polarization=polarization, footprint=footprint, sampler=sampler,
+                         batches=batches, target_error_db=target_error_db, max_rays=max_rays, progress=progress)
     with clock("synthesis"):
         settings = {"tolerance": tolerance, "method": method, "progress": progress}
         cubes, whole = _cubes(paths, radar, partitions, settings)

@@ -27,7 +27,7 @@ std::complex<double> second_order_footprint(const FootprintPhase& phase, double 
 double flat_top_footprint(const FootprintPhase& phase) {
   const auto axis = [](double g) {
     const double loss = -std::expm1(-g * g / 8.0);
-    return 1.0 - loss * loss * loss;
+    return 1.0 - (loss * loss) * (loss * loss);
   };
   return axis(phase.g1) * axis(phase.g2);
 }

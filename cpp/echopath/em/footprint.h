@@ -24,8 +24,9 @@ double first_order_footprint(const FootprintPhase& phase);
 // for small cells. spread: 0.6 for spherical Fibonacci points.
 std::complex<double> second_order_footprint(const FootprintPhase& phase, double spread);
 
-// Flat surface on a flat chain: product over both axes of 1 - (1 - exp(-g^2/8))^3, flatter near g = 0 than the Gaussian, so
-// that plates lose nothing in their main lobe. In [0, 1].
+// Flat surface on a flat chain: product over both axes of 1 - (1 - exp(-g^2/8))^4, flatter near g = 0 than the Gaussian,
+// so that plates lose nothing while phases turn less than a quarter between rays. In [0, 1]. Higher powers are flatter
+// still but let facets of a curved mesh alias: a sphere of facets errs by .10, .13, .19 dB with power 3, 4, 6 (2^14 rays).
 double flat_top_footprint(const FootprintPhase& phase);
 
 }  // namespace echopath

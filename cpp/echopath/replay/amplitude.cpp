@@ -67,7 +67,7 @@ std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits
   const HitGeometry at{hit, arrival, out.travel, in.length + inner.length, out.length, std::abs(cos_in), std::abs(cos_out)};
   const double spreading = root_tube_area(path.cell, at) * out.length;
   return std::sqrt(radio.transmit_power * in.gain.power * out.gain.power) / kFourPi * at.cos_in / spreading *
-         cell_filter(path.cell, at, radio.wavenumber, radio.footprint);
+         cell_filter(path.cell, at, {radio.wavenumber, radio.spread, radio.footprint});
 }
 
 double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,

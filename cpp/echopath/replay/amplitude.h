@@ -21,6 +21,7 @@ struct RadioConstants {
   double wavelength;      // m, at the start frequency
   double wavenumber;      // rad/m
   Footprint footprint = Footprint::kSecondOrder;
+  double spread = 0.65;  // of a launch cell (trace/sampler.h)
 };
 
 // Work space of one thread.

@@ -6,7 +6,6 @@
 namespace echopath {
 namespace {
 
-constexpr double kSpread = 0.6;             // standard deviation of the cell of a spherical Fibonacci point, in cells
 constexpr double kFlatPhase = 0.05;         // rad: quadratic phase (spread^2 h) below which a flat facet is flat-top
 constexpr double kFlatRatio = 1e-3;         // of both principal curvatures: below it the lesser direction is flat
 constexpr double kFlatCurvature = 1e-6;     // 1/m: below it a surface is flat
@@ -64,23 +63,23 @@ Eigen::Matrix2d surface_phase(const HitGeometry& at, const Tangents& tangents) {
 }
 
 std::complex<double> second_order(const LaunchCell& cell, const HitGeometry& at, const Tangents& tangents,
-                                  const Eigen::Vector2d& g, double wavenumber) {
-  const Eigen::Matrix2d front = wavenumber * front_phase(cell, at, tangents);
-  const Eigen::Matrix2d surface = wavenumber * surface_phase(at, tangents);
+                                  const Eigen::Vector2d& g, const CellFilter& filter) {
+  const Eigen::Matrix2d front = filter.wavenumber * front_phase(cell, at, tangents);
+  const Eigen::Matrix2d surface = filter.wavenumber * surface_phase(at, tangents);
   const Eigen::Matrix2d h = front + surface;
   const FootprintPhase whole{g[0], g[1], h(0, 0), h(0, 1), h(1, 1)};
   const Flatness flatness = flatness_of(at.hit);
-  if (cell.is_curved || flatness == Flatness::kCurved) return second_order_footprint(whole, kSpread);
+  if (cell.is_curved || flatness == Flatness::kCurved) return second_order_footprint(whole, filter.spread);
   if (flatness == Flatness::kFlat) {
-    const bool is_flat = h.cwiseAbs().maxCoeff() * kSpread * kSpread < kFlatPhase;
-    return is_flat ? flat_top_footprint(whole) : second_order_footprint(whole, kSpread);
+    const bool is_flat = h.cwiseAbs().maxCoeff() * filter.spread * filter.spread < kFlatPhase;
+    return is_flat ? flat_top_footprint(whole) : second_order_footprint(whole, filter.spread);
   }
   // Along the axis of a cylinder the facets are as long as the cylinder: flat-top there, second order across.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(surface);
   const int flat = std::abs(axes.eigenvalues()[0]) < std::abs(axes.eigenvalues()[1]) ? 0 : 1;
   const Eigen::Vector2d along = axes.eigenvectors().col(flat), across = axes.eigenvectors().col(1 - flat);
   return flat_top_footprint({along.dot(g), 0.0, 0.0, 0.0, 0.0}) *
-         second_order_footprint({across.dot(g), 0.0, across.dot(h * across), 0.0, 0.0}, kSpread);
+         second_order_footprint({across.dot(g), 0.0, across.dot(h * across), 0.0, 0.0}, filter.spread);
 }
 
 }  // namespace
@@ -91,13 +90,13 @@ double root_tube_area(const LaunchCell& cell, const HitGeometry& at) {
   return std::sqrt(tangents.t[0].cross(tangents.t[1]).norm() * at.cos_in * cell.ray_density);
 }
 
-std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& at, double wavenumber, Footprint order) {
-  if (order == Footprint::kNone || !cell.is_known) return 1.0;
+std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& at, const CellFilter& filter) {
+  if (filter.order == Footprint::kNone || !cell.is_known) return 1.0;
   const Tangents tangents = tangents_of(cell, at.hit);
-  const Vec3 mismatch = wavenumber * (at.arrival - at.departure);
+  const Vec3 mismatch = filter.wavenumber * (at.arrival - at.departure);
   const Eigen::Vector2d g(mismatch.dot(tangents.t[0]), mismatch.dot(tangents.t[1]));
-  if (order == Footprint::kFirstOrder) return first_order_footprint({g[0], g[1], 0.0, 0.0, 0.0});
-  return second_order(cell, at, tangents, g, wavenumber);
+  if (filter.order == Footprint::kFirstOrder) return first_order_footprint({g[0], g[1], 0.0, 0.0, 0.0});
+  return second_order(cell, at, tangents, g, filter);
 }
 
 }  // namespace echopath

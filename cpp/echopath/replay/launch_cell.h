@@ -18,10 +18,16 @@ struct HitGeometry {
 // Tube area per launch solid angle, square root, m / sqrt(sr): the unfolded length on flat chains.
 double root_tube_area(const LaunchCell& cell, const HitGeometry& geometry);
 
-// Footprint filter F of the cell, |F| <= 1. wavenumber [rad/m].
+struct CellFilter {
+  double wavenumber = 0.0;  // rad/m
+  double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
+  Footprint order = Footprint::kSecondOrder;
+};
+
+// Footprint filter F of the cell, |F| <= 1.
 //   first order:  g_a = k T_a.(u - s)
 //   second order: h_ab = k [T_a.U_b + (T_a.T_b - (T_a.s)(T_b.s))/r + (cos_in + cos_out) II(T_a, T_b)]; directions in which the
 //   surface and the chain are flat keep the flat-top filter, so that plates and the axes of cylinders lose nothing.
-std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& geometry, double wavenumber, Footprint order);
+std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& geometry, const CellFilter& filter);
 
 }  // namespace echopath

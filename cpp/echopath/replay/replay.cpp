@@ -48,6 +48,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   radio_.wavelength = kSpeedOfLight / radar.waveform.start_frequency;
   radio_.wavenumber = kTwoPi / radio_.wavelength;
   radio_.footprint = paths.frame.footprint;
+  radio_.spread = footprint_spread(paths.frame.sampler);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
     mesh_moves_.push_back(paths.scene->is_moving(id));
     const Node& node = paths.scene->node_of(id);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "echopath/trace/sampler.h"
+
 namespace echopath {
 
 // The lattice {(m + n phi, m + n phi')} of the golden ratio phi and its conjugate (Frolov 1976): no line of it is parallel to
@@ -12,15 +14,15 @@ namespace echopath {
 // disc; its area then differs a little from pi / num_points. Neighbours in order are neighbours in the disc.
 // Several shifts give as many independent batches, one after the other: lattices of one and the same wider cell, so
 // that each batch stands for the disc in the same way and their sizes differ by a few points.
-class DiscLattice {
+class DiscLattice : public DiscPoints {
  public:
   DiscLattice(int64_t num_points, const Eigen::Vector2d& shift)
       : DiscLattice(num_points, std::vector<Eigen::Vector2d>{shift}) {}
   DiscLattice(int64_t num_points, const std::vector<Eigen::Vector2d>& shifts);
-  int64_t size() const { return first_.back(); }
-  double cell_area() const { return cell_area_; }  // what one point of the whole set stands for
-  Eigen::Vector2d point(int64_t index) const;  // index in [0, size())
-  int batch_of(int64_t index) const;           // index of its shift
+  int64_t size() const override { return first_.back(); }
+  double cell_area() const override { return cell_area_; }
+  Eigen::Vector2d point(int64_t index) const override;
+  int batch_of(int64_t index) const override;
 
  private:
   void fill(double cell_area, const std::vector<Eigen::Vector2d>& shifts);

@@ -41,6 +41,20 @@ Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name) {
   return stratum;
 }
 
+// No wider than the vertices need, as seen from `apex`, in `mirror` where there is one: a long object seen end-on fills
+// little of its bounding sphere.
+void tighten(Stratum& cone, const EmbreeScene& geometry, const std::vector<uint32_t>& mesh_ids, const Vec3& apex,
+             const Mirror* mirror) {
+  double widest = 0.0;
+  for (const uint32_t id : mesh_ids) {
+    for (const Vec3& vertex : geometry.vertices(id)) {
+      const Vec3 toward = ((mirror ? mirror->image(vertex) : vertex) - apex).normalized();
+      widest = std::max(widest, 0.5 * (toward - cone.axis).squaredNorm());
+    }
+  }
+  cone.versine = std::min(cone.versine, widest * (1.0 + 1e-4));
+}
+
 bool image_is_in_reach(const Mirror& mirror, const Sphere& sphere, const Vec3& transmitter) {
   const double antenna_side = mirror.signed_distance(transmitter);
   const double object_side = mirror.signed_distance(sphere.centre);
@@ -74,11 +88,13 @@ Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mir
     if ((sphere.centre - settings.transmitter).norm() <= sphere.radius) continue;
     const std::string& name = scene.nodes()[static_cast<size_t>(object)].name;
     cones.objects.push_back(cone_around(sphere, settings.transmitter, name));
+    tighten(cones.objects.back(), geometry, mesh_ids, settings.transmitter, nullptr);
     if (!settings.with_images) continue;
     for (const Mirror& mirror : mirrors) {
       if (!image_is_in_reach(mirror, sphere, settings.transmitter)) continue;
       const Sphere image{mirror.image(sphere.centre), sphere.radius};
       cones.images.push_back(cone_around(image, settings.transmitter, name + " over " + scene.node_of(mirror.mesh_id).name));
+      tighten(cones.images.back(), geometry, mesh_ids, settings.transmitter, &mirror);
     }
   }
   return cones;
@@ -108,16 +124,16 @@ std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batch
   return shifts;
 }
 
-void share_rays(LaunchPlan& plan, int64_t num_rays) {
+void share_rays(LaunchPlan& plan, int64_t num_rays, Sampler sampler) {
   const auto num_cones = static_cast<int64_t>(plan.strata.size()) - 1;
   const auto aimed = num_cones > 0 ? static_cast<int64_t>(std::llround((1.0 - kDefensiveShare) * static_cast<double>(num_rays))) : 0;
   plan.first_ray.assign(1, 0);
   for (int64_t k = 0; k <= num_cones; ++k) {
     const int64_t share = k < num_cones ? aimed * (k + 1) / num_cones - aimed * k / num_cones : num_rays - aimed;
     Stratum& stratum = plan.strata[static_cast<size_t>(k)];
-    plan.points.emplace_back(share, shifts_of(plan.seed, k, plan.batches));
-    stratum.num_rays = plan.points.back().size();
-    if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back().cell_area() / stratum.solid_angle();
+    plan.points.push_back(disc_points(sampler, share, shifts_of(plan.seed, k, plan.batches)));
+    stratum.num_rays = plan.points.back()->size();
+    if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back()->cell_area() / stratum.solid_angle();
     plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
   }
 }
@@ -134,7 +150,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   defensive.axis = settings.boresight;
   defensive.versine = settings.field_versine;
   defensive.name = "field of view";
-  share_rays(plan, settings.num_rays);
+  share_rays(plan, settings.num_rays, settings.sampler);
   return plan;
 }
 
@@ -144,13 +160,13 @@ int LaunchPlan::stratum_of(int64_t ray) const {
 
 int LaunchPlan::batch_of(int stratum, int64_t ray) const {
   const auto k = static_cast<size_t>(stratum);
-  return points[k].batch_of(ray - first_ray[k]);
+  return points[k]->batch_of(ray - first_ray[k]);
 }
 
 Vec3 LaunchPlan::direction(int index, int64_t ray) const {
   const auto k = static_cast<size_t>(index);
   const Stratum& stratum = strata[k];
-  const Eigen::Vector2d point = points[k].point(ray - first_ray[k]);
+  const Eigen::Vector2d point = points[k]->point(ray - first_ray[k]);
   // In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
   const double versine = stratum.versine * std::min(1.0, point.squaredNorm());
   const Eigen::Vector2d across = point * std::sqrt(stratum.versine * (2.0 - versine));

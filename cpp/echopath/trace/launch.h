@@ -2,19 +2,20 @@
 // Where rays start: strata of directions and the low-discrepancy set inside each.
 #include <vector>
 
-#include "echopath/trace/disc_lattice.h"
 #include "echopath/trace/mirrors.h"
+#include "echopath/trace/sampler.h"
 
 namespace echopath {
 
-// One cone around the bounding sphere of each object as seen from `transmitter`, one around its image in each mirror, and a
-// defensive stratum over the antenna's field of view. Objects are the children of the scene's root, without their mirrors,
+// One cone around each object as seen from `transmitter`, about the centre of its box, one around its image in each
+// mirror, and a defensive stratum over the antenna's field of view. Objects are the children of the scene's root, without their mirrors,
 // whose bounding sphere does not hold the antenna. Objects and images share 85 % of the rays equally, the defensive stratum
 // has the rest (all, where there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
 // At most 255 strata: images are left out first, then the objects of the smallest solid angle.
 struct LaunchPlan {
   std::vector<Stratum> strata;
-  std::vector<DiscLattice> points;  // of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc
+  // Of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc.
+  std::vector<std::unique_ptr<const DiscPoints>> points;
   std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
   uint64_t seed = 0;
   int batches = 1;
@@ -33,6 +34,7 @@ struct LaunchPlan {
 struct LaunchSettings {
   int64_t num_rays = 0;
   uint64_t seed = 0;
+  Sampler sampler = Sampler::kLattice;
   int batches = 1;  // independent shifts of the set of each stratum, which share its rays
   bool with_images = true;
   Vec3 transmitter = Vec3::Zero();

@@ -12,6 +12,7 @@
 #include "echopath/em/jones.h"
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"
+#include "echopath/trace/sampler.h"
 
 namespace echopath {
 
@@ -63,6 +64,7 @@ struct TraceFrame {
   int max_bounces = 4;
   PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;
+  Sampler sampler = Sampler::kLattice;
   TraceStatistics statistics;
   int num_batches = 1;             // independent lattices of launch directions, which share the rays of each stratum
   double target_error_db = 0.0;    // dB, the error of the received power that was asked for; 0: none

@@ -37,6 +37,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.seed = settings.seed;
   frame.max_bounces = settings.max_bounces;
   frame.footprint = settings.footprint;
+  frame.sampler = settings.sampler;
   frame.num_batches = settings.batches;
   frame.polarization = settings.polarization;
   return frame;
@@ -87,6 +88,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   LaunchSettings launch;
   launch.num_rays = settings.num_rays;
   launch.seed = settings.seed;
+  launch.sampler = settings.sampler;
   launch.batches = settings.batches;
   launch.with_images = settings.max_bounces > 1;
   launch.transmitter = paths.frame.transmitter - origin;

@@ -16,6 +16,7 @@ struct TraceSettings {
   // rays.
   int batches = 1;
   double specular_probability = 0.0;  // 0: the specular share; any other leaves the expected echo as it is (for tests)
+  Sampler sampler = Sampler::kLattice;  // of the launch directions
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | info."""
+"""The command line: echopath demo | run | info | bench."""
 from __future__ import annotations
 
 import argparse
@@ -49,6 +49,14 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
     info.set_defaults(command=_info)
+
+    bench = commands.add_parser("bench", help="measure error and speed against closed forms")
+    bench.add_argument("what", choices=["physics"], help="physics: levels of canonical targets")
+    bench.add_argument("--out", required=True, metavar="DIR", help="folder of physics.json and physics.png")
+    bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look")
+    bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
+                       help="most rays of a trace (default: %(default)s)")
+    bench.set_defaults(command=_bench)
     return parser
 
 
@@ -110,3 +118,13 @@ def _info(options) -> None:
     from .info import describe_file
 
     print("\n".join(describe_file(options.file)))
+
+
+def _bench(options) -> None:
+    from .bench import run_physics
+    from .bench.report import describe
+    from .progress import progress_bars
+
+    with progress_bars() as progress:
+        results = run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress)
+    print("\n".join(describe(results)))

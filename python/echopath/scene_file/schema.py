@@ -214,6 +214,8 @@ class TraceTable(Table):
     polarization: Literal["scalar", "jones"] = Field("scalar", description="field vectors, or one coefficient a hit")
     footprint: Literal["second_order", "first_order", "none"] = Field(
         "second_order", description="filter of a ray's footprint")
+    sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(
+        "lattice", description="how rays are spread over the cone of an object")
     batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
         None, description="independent parts of the rays, which give standard errors; none: 1, with target_error_db 8")
     target_error_db: Optional[Positive] = Field(

@@ -46,9 +46,9 @@ double level_dbw(const Vec3& centre, double radius, const Vec3& plate) {
   const double reach = (plate - specular).norm();
   const double half_angle = 4.0 * kSide / (2.0 * reach / radius * specular.norm() + reach);
   cone.versine = 0.5 * half_angle * half_angle;
-  plan.points.emplace_back(1 << 14, Eigen::Vector2d(0.3, 0.6));
-  cone.num_rays = plan.points[0].size();
-  cone.ray_density = kPi / plan.points[0].cell_area() / cone.solid_angle();
+  plan.points.push_back(disc_points(Sampler::kLattice, 1 << 14, {{0.3, 0.6}}));
+  cone.num_rays = plan.points[0]->size();
+  cone.ray_density = kPi / plan.points[0]->cell_area() / cone.solid_angle();
   plan.strata = {cone};
   plan.first_ray = {0, cone.num_rays};
   SbrSettings settings;

@@ -1,0 +1,40 @@
+#pragma once
+// How the rays of one stratum are spread over its cone.
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace echopath {
+
+enum class Sampler {
+  kLattice,    // shifted algebraic lattice (disc_lattice.h): even, and the same everywhere
+  kFibonacci,  // spherical Fibonacci spiral about the cone's axis
+  kR2,         // additive recurrence of the plastic number: any first part of it is even
+  kRandom,     // independent uniform points: what even sets are measured against
+};
+
+// Points in the unit disc, uniform in area; launch directions follow by the equal-area projection of the cone.
+class DiscPoints {
+ public:
+  virtual ~DiscPoints() = default;
+  virtual int64_t size() const = 0;
+  virtual double cell_area() const = 0;                     // what one point stands for
+  virtual Eigen::Vector2d point(int64_t index) const = 0;  // index in [0, size())
+  virtual int batch_of(int64_t index) const = 0;           // index of its shift
+};
+
+// Exactly num_points points, in as many independent batches, one after the other, as there are shifts [2] in [0, 1). A
+// shift moves its batch (lattice, R2: Cranley and Patterson 1976), turns it and moves it along the spiral (Fibonacci) or
+// seeds it (random).
+std::unique_ptr<const DiscPoints> disc_points(Sampler sampler, int64_t num_points,
+                                              const std::vector<Eigen::Vector2d>& shifts);
+
+// Standard deviation, in launch cells per axis, of the Gaussian that stands for one ray in the second-order footprint:
+// the wider, the less the gaps between rays show; the narrower, the less is lost where the surface bends within a cell.
+// Best of a scan over spheres of ka 161 and 3228 and an ellipsoid of a car's size (2^10 to 2^16 rays): on the spheres the
+// lattice errs by 0.3 dB at 0.4, 0.06 at 0.5, below 0.01 from 0.6 to 0.8; on the ellipsoid the loss at few rays grows with
+// the square. R2 and random points have wide gaps: no spread makes up for them.
+double footprint_spread(Sampler sampler);
+
+}  // namespace echopath

@@ -1,0 +1,75 @@
+"""The physics benchmark: its closed forms computed another way, its targets at one number of rays, its files."""
+import json
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.bench import closed_forms, targets
+from echopath.bench.physics import DEFAULT, Variant, _point
+from echopath.bench.report import describe
+from echopath.cli import main
+
+MULTI_BOUNCE_DB = 0.2   # the promise of PHYSICS for corners
+MEAN_DB = 0.1           # mean power of diffuse targets and mirrors
+PLATE_DB = 0.3          # beyond the first null
+
+
+def test_ellipsoid_of_three_equal_axes_is_a_sphere():
+    assert closed_forms.ellipsoid_rcs((0.3, 0.3, 0.3), (0.6, 0.0, 0.8)) == pytest.approx(np.pi * 0.09)
+
+
+def test_ellipsoid_along_an_axis_has_the_radii_of_curvature_of_its_sections():
+    # At the end of the x axis: b^2 / a and c^2 / a.
+    assert closed_forms.ellipsoid_rcs((2.0, 1.0, 0.5), (1.0, 0.0, 0.0)) == pytest.approx(np.pi * 0.5 * 0.125)
+
+
+def test_plate_integrates_its_currents():
+    angle, side = np.radians(3.0), 0.1
+    x = (np.arange(4000) + 0.5) / 4000 * side - side / 2
+    field = np.mean(np.exp(2j * closed_forms.WAVENUMBER * x * np.sin(angle))) * np.cos(angle) * side ** 2
+    expected = 4 * np.pi / closed_forms.WAVELENGTH ** 2 * abs(field) ** 2
+    assert closed_forms.plate_rcs(side, angle) == pytest.approx(expected, rel=1e-5)
+
+
+def test_lambert_plate_far_away_is_four_rho_area():
+    assert closed_forms.lambert_plate_rcs(1.0, 0.3, 1000.0) == pytest.approx(1.2, rel=1e-5)
+
+
+LIMITS = {"sphere_161": 0.1, "sphere_3228": 0.1, "plate_0": 0.1, "plate_5": PLATE_DB, "dihedral": MULTI_BOUNCE_DB,
+          "trihedral": MULTI_BOUNCE_DB, "lambert_plate": MEAN_DB, "two_ray": MEAN_DB, "wall_ghost": MEAN_DB}
+
+
+@pytest.mark.parametrize("target", [target for target in targets.all_targets() if target.name in LIMITS],
+                         ids=lambda target: target.name)
+def test_target_is_its_closed_form(target):
+    assert _point(target, DEFAULT, 2 ** 14, 3)["rms_db"] < LIMITS[target.name]
+
+
+@pytest.mark.parametrize("sampler", ["fibonacci", "r2", "random"])
+def test_every_sampler_finds_the_dihedral(sampler):
+    dihedral = next(target for target in targets.all_targets() if target.name == "dihedral")
+    limit = 1.0 if sampler == "random" else MULTI_BOUNCE_DB  # shot noise of 2^14 independent rays
+    assert _point(dihedral, Variant("second_order", sampler), 2 ** 14, 3)["rms_db"] < limit
+
+
+def test_sampler_is_checked_and_kept(tmp_path):
+    target = targets.all_targets()[0]
+    with pytest.raises(ValueError, match="sampler: must be 'lattice', 'fibonacci', 'r2' or 'random', got 'sobol'"):
+        ep.trace(target.scene, targets.radar(), num_rays=10, sampler="sobol")
+    for sampler in ("lattice", "fibonacci", "r2", "random"):
+        paths = ep.trace(target.scene, targets.radar(), num_rays=1000, sampler=sampler)
+        assert paths.frame.sampler == sampler
+        assert paths.frame.statistics.num_rays == 1000
+
+
+def test_command_writes_numbers_and_picture(tmp_path, capsys):
+    assert main(["bench", "physics", "--out", str(tmp_path / "b"), "--quick", "--rays-max", "1024"]) == 0
+    results = json.loads((tmp_path / "b" / "physics.json").read_text())
+    assert (tmp_path / "b" / "physics.png").stat().st_size > 10_000
+    assert set(results["targets"]) >= set(LIMITS)
+    assert all(point["num_rays"] <= 1024 for target in results["targets"].values() for curve in target["curves"].values()
+               for point in curve)
+    printed = capsys.readouterr().out
+    assert "bytes per hit" in printed and "sphere, ka 161" in printed
+    assert describe(results)[0] in printed

@@ -61,6 +61,9 @@ def test_sampler_is_checked_and_kept(tmp_path):
         paths = ep.trace(target.scene, targets.radar(), num_rays=1000, sampler=sampler)
         assert paths.frame.sampler == sampler
         assert paths.frame.statistics.num_rays == 1000
+        paths.save(tmp_path / "paths.h5")
+        again = ep.Paths.load(tmp_path / "paths.h5")
+        assert again.frame.sampler == sampler and np.array_equal(again.amplitude, paths.amplitude)
 
 
 def test_command_writes_numbers_and_picture(tmp_path, capsys):

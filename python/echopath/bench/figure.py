@@ -14,6 +14,7 @@ CURVES = {
     "second_order random": ("second order, random", "#d55e00", ":", 1.2),
 }
 GOAL_DB = 0.1
+TIME_RANGE = (0.3, 1000.0)  # ms
 
 
 def draw_physics(results: dict, path) -> None:
@@ -22,11 +23,11 @@ def draw_physics(results: dict, path) -> None:
         axes = figure.subplots(2, len(SHOWN), sharey=True)
         for column, name in enumerate(SHOWN):
             target = results["targets"][name]
-            axes[0, column].set_title(target["title"])
+            axes[0, column].set_title(target["title"].partition(", double")[0])
             for row, quantity in enumerate(("num_rays", "seconds")):
                 _draw(axes[row, column], target["curves"], quantity)
             axes[0, column].set_xlabel("rays launched")
-            axes[1, column].set_xlabel("time of trace and replay [ms]")
+            axes[1, column].set_xlabel("trace and replay [ms]")
         for row in range(2):
             axes[row, 0].set_ylabel("error [dB rms]")
         handles, labels = axes[0, 0].get_legend_handles_labels()
@@ -39,9 +40,13 @@ def _draw(axes, curves: dict, quantity: str) -> None:
     for label, (text, colour, line, width) in CURVES.items():
         points = curves.get(label, [])
         axes.plot([scale * point[quantity] for point in points], [max(point["rms_db"], 1e-3) for point in points], line,
-                  color=colour, linewidth=width, marker=".", markersize=3 + 1.5 * width, label=text)
+                  zorder=3 if width > 2.0 else 2, color=colour, linewidth=width, marker=".", markersize=3 + 1.5 * width, label=text)
     axes.axhline(GOAL_DB, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_xscale("log", base=2 if quantity == "num_rays" else 10)
+    if quantity == "seconds":
+        axes.set_xlim(TIME_RANGE)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.minorticks_off()
     axes.set_yscale("log")
-    axes.set_ylim(3e-3, 60.0)
+    axes.set_ylim(1e-3, 60.0)
     axes.grid(alpha=0.25)

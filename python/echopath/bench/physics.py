@@ -18,6 +18,7 @@ from .targets import Target, all_targets, radar
 EXPONENTS = (10, 11, 12, 13, 14, 15, 16, 18, 20)   # of two: numbers of rays
 NUM_SHIFTS, NUM_SHIFTS_ABOVE, MANY_RAYS = 20, 8, 2 ** 15
 QUICK_SHIFTS, QUICK_RAYS = 6, 2 ** 12
+FLOOR_DB, FLOOR_MARGIN = 0.01, 1.5  # error that counts as settled: absolute, and over the least of the curve
 LEAST_POWER = 1e-12  # of the truth: what a sum of nothing counts as
 
 
@@ -89,15 +90,21 @@ def _point(target: Target, variant: Variant, num_rays: int, shifts: int) -> dict
     errors = np.array(errors)
     return {"num_rays": num_rays, "shifts": count, "rms_db": float(np.sqrt(np.mean(errors ** 2))),
             "mean_db": float(errors.mean()), "worst_db": float(np.abs(errors).max()),
-            "seconds": float(np.median(seconds))}
+            "seconds": min(seconds)}
 
 
 def _slope(points: list[dict]) -> float | None:
-    """Of log error over log rays, least squares; None for fewer than three numbers of rays."""
-    if len(points) < 3:
+    """Of log error over log rays, least squares, until the error reaches what mesh and closed form leave, not the rays.
+
+    None for fewer than three numbers of rays.
+    """
+    errors = np.array([max(point["rms_db"], 1e-9) for point in points])
+    floor = max(FLOOR_DB, FLOOR_MARGIN * errors.min())
+    used = int(np.argmax(errors <= floor)) + 1 if np.any(errors <= floor) else len(errors)
+    if len(points) < 3 or used < 3:
         return None
-    error = np.log([max(point["rms_db"], 1e-9) for point in points])
-    return float(np.polyfit(np.log([point["num_rays"] for point in points]), error, 1)[0])
+    rays = [point["num_rays"] for point in points[:used]]
+    return float(np.polyfit(np.log(rays), np.log(errors[:used]), 1)[0])
 
 
 def _machine() -> dict:

@@ -52,12 +52,13 @@ def test_recorded_hits_are_those_of_a_slow_loop():
             assert np.allclose(points[paths.offsets[path] + k], point, atol=1e-12)
             direction = (point - start) / np.linalg.norm(point - start)
             index, slow_u, slow_v, distance = closest_hit(start + 1e-4 * direction, direction, soup)
+            origin, start = start, point
             if min(u, v, 1 - u - v) < BARYCENTRIC_TOLERANCE:
                 continue  # at an edge either neighbour may be met
             assert index == hit["mesh_id"] and hit["triangle_id"] == 0
             assert abs(slow_u - u) < BARYCENTRIC_TOLERANCE and abs(slow_v - v) < BARYCENTRIC_TOLERANCE
-            assert np.linalg.norm(start + 1e-4 * direction + distance * direction - point) < ON_RAY_TOLERANCE
-            start, checked = point, checked + 1
+            assert np.linalg.norm(origin + 1e-4 * direction + distance * direction - point) < ON_RAY_TOLERANCE
+            checked += 1
     assert checked > 500
 
 

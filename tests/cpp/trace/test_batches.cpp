@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "echopath/trace/embree_scene.h"
+#include "echopath/trace/disc_lattice.h"
 #include "echopath/trace/launch.h"
 #include "support/scenes.h"
 

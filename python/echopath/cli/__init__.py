@@ -121,8 +121,8 @@ def _info(options) -> None:
 
 
 def _bench(options) -> None:
-    from .bench import run_physics
-    from .bench.report import describe
+    from ..bench import run_physics
+    from ..bench.report import describe
     from .progress import progress_bars
 
     with progress_bars() as progress:

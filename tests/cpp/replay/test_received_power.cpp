@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kSeeds = 200;
+constexpr int kSeeds = 1000;
 constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 200 values is known to 5 %, of lattices less well
 constexpr double kFourSigma = 4.0;
 

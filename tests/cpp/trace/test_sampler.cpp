@@ -53,7 +53,9 @@ TEST_P(EverySampler, ShiftsMoveThePointsAndMakeBatches) {
   for (int64_t i = 0; i < 1001; ++i) {
     ++count[batches->batch_of(i)];
     ASSERT_LE(batches->point(i).norm(), 1.0 + 1e-12);
-    if (i > 0) ASSERT_GE(batches->batch_of(i), batches->batch_of(i - 1));
+    if (i > 0) {
+      ASSERT_GE(batches->batch_of(i), batches->batch_of(i - 1));
+    }
   }
   for (const int64_t each : count) EXPECT_NEAR(static_cast<double>(each), 1001.0 / 3, 8.0);  // the lattice by its rim
 }

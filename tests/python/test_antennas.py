@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.scene_text import WAVEFORM
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "antennas"
 INTERPOLATION = 2e-3      # of the peak: bicubics on steps of 5 degrees
@@ -140,13 +141,7 @@ def test_scene_file_finds_the_table_beside_it(tmp_path):
     text = """
 [radar]
 pattern = {kind = "table", file = "small.csv"}
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 8
-chirp_interval = 100e-6
+""" + WAVEFORM + """\
 [[radar.transmitters]]
 position = [0.0, 0.0, 1.0]
 [[radar.receivers]]

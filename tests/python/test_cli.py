@@ -10,18 +10,13 @@ import time
 import pytest
 
 import echopath as ep
+from support.scene_text import WAVEFORM
 
 STOP_SECONDS = 2.0  # half a second is promised; the rest is for a machine with other work
 MANY_RAYS = "50_000_000"  # more than a machine traces while the test waits
 SCENE = """
 title = "a plate"
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 8
-chirp_interval = 100e-6
+""" + WAVEFORM + """\
 [[radar.transmitters]]
 position = [0.0, 0.0, 0.0]
 [[radar.receivers]]

@@ -9,15 +9,9 @@ import pytest
 
 import echopath as ep
 from echopath.scene_file import schema as scene_schema
+from support.scene_text import WAVEFORM
 
-RADAR = """
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 8
-chirp_interval = 100e-6
+RADAR = WAVEFORM + """\
 [[radar.transmitters]]
 position = [0.0, 0.0, 1.0]
 [[radar.receivers]]

@@ -82,7 +82,7 @@ def seconds_to_stop(work) -> float:
 
 
 @pytest.mark.parametrize("name", WORK)
-def test_ctrl_c_stops_work_on_a_large_record(paths, tmp_path_factory, name):
+def test_ctrl_c_stops_work_on_a_large_record(ctrl_c_is_heard, paths, tmp_path_factory, name):
     folder = tmp_path_factory.getbasetemp()
     if name == "load":
         saved_once(paths, folder)

@@ -13,14 +13,6 @@ LONG = 20.0  # s, longer than any test waits
 HALF_A_SECOND = 0.5  # s, the promise for Ctrl-C
 
 
-@pytest.fixture
-def ctrl_c_is_heard():
-    """Python's usual handler of Ctrl-C, which a process started in the background does not have."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 def test_ctrl_c_stops_a_job_within_half_a_second(ctrl_c_is_heard):
     sent = []
 

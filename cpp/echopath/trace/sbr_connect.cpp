@@ -1,0 +1,195 @@
+// Connections of a hit: to the receiver, to its images, and back to the transmitter.
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/random.h"
+#include "echopath/scene/smooth.h"
+#include "echopath/trace/sbr_state.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kNearAntenna = 1e-3;       // m
+constexpr double kPolarizedGrazing = 0.05;  // cosine of incidence that bounds the quotient of jones_matrix
+
+}  // namespace
+
+// Whether the way back, over this hit as a mirror, would have to be dropped.
+bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const {
+  const MirrorBounce mirror{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
+                            curvature_along(surface.point, direction)};
+  return !suffices(mirror, to_receiver, surface.point.distance);
+}
+
+void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
+  const Vec3& point = surface.point.position;
+  if ((point - settings_.receiver).norm() < kNearAntenna || (point - settings_.transmitter).norm() < kNearAntenna) {
+    ++block.statistics.num_near_antenna;
+    return;
+  }
+  const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
+  const bool radiates_power = surface.response.diffuse > 0;
+  if (!radiates_field && !radiates_power) return;
+  legs_.find(point, surface.point.normal, settings_.receiver, ray.depth < settings_.max_bounces, kOther, scratch.receive,
+             block.statistics.num_queries);
+  if (scratch.receive.empty()) return;
+  if (radiates_field) connect_coherent(ray, surface, scratch, block);
+  if (!radiates_power) return;
+  if (ray.coherent && ray.chain != kOther) {
+    connect_all_pairs(ray, surface, scratch, block);
+  } else {
+    connect_diffuse(ray, surface, scratch, block);
+  }
+}
+
+void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
+  // `field` holds 1/q for each bounce, the area of the launch alone must not: hence field and not coefficient, and the
+  // density without the probabilities.
+  const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
+  const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
+  // Polarised, all coefficients are in the matrix.
+  const std::complex<double> scalar = settings_.is_polarized ? 1.0 : ray.field * surface.response.gamma * surface.response.coherent;
+  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * scalar * launch_area;
+  for (const Leg& leg : scratch.receive) {
+    const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);
+    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
+  }
+}
+
+// One path over the ray's own hits and a receive leg, and its reversal.
+void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
+                        bool with_reversal, PathBlock& block) const {
+  std::array<Hit, 65> hits;
+  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
+  int count = ray.depth;
+  if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
+  if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
+  else block.add(hits.data(), count, bits, weight, ray.stratum);
+  if (bits == 0) set_columns(ray, surface, leg, block);
+  if (!with_reversal) return;
+  block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
+  if (bits == 0) set_columns(ray, surface, leg, block);
+}
+
+// What the last path needs beside its weight, if the scene asks for it.
+void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const {
+  if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (settings_.is_polarized) block.set_jones(jones_matrix(ray, surface, leg));
+}
+
+// From the launched components to those that arrive at the receiver (Paths::jones).
+JonesMatrix RayShooter::jones_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
+  const double frequency = settings_.frequency;
+  const ModeCoefficients here = mode_coefficients(*surface.material, frequency, surface.cos_incidence);
+  // Replay multiplies by cos_i; a conductor's TM part does not vanish with it, so the quotient is bounded.
+  const double scale = surface.response.coherent / std::max(surface.cos_incidence, kPolarizedGrazing);
+  const TransverseBasis arrival = transverse_basis(-leg.at_antenna);
+  JonesMatrix matrix;
+  for (size_t column = 0; column < 2; ++column) {
+    FieldVector field = scale * radiated_field(ray.polarized[column], ray.direction, surface.point.normal, leg.to_antenna, here);
+    if (leg.mirror >= 0) {
+      const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
+      const double cos_mirror = -leg.to_antenna.dot(leg.mirror_normal);
+      field = std::sqrt(leg.specular_share) *
+              reflected_field(field, leg.to_antenna, leg.mirror_normal, mode_coefficients(material, frequency, cos_mirror));
+    }
+    matrix[column] = std::complex<float>(field.transpose() * arrival.horizontal.cast<std::complex<double>>());
+    matrix[2 + column] = std::complex<float>(field.transpose() * arrival.vertical.cast<std::complex<double>>());
+  }
+  return matrix;
+}
+
+// The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
+std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surface& surface) const {
+  const Hit& hit = surface.point.hit;
+  const auto [a, b, c] = geometry_.corners(hit.mesh_id, hit.triangle_id);
+  const double side = 1.0 / std::sqrt(plan_.lattice_density(ray.stratum));
+  // A tube that the caustic limit widened keeps its proportions.
+  const double widened = std::sqrt(surface.tube_area / std::max(std::abs(ray.rays.area(ray.direction, 0.0)), 1e-30));
+  const double scale = side * std::min(widened, 1e6);
+  std::array<float, 7> cell{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d at = edge_coordinates(b - a, c - a, surface.point.normal, ray.rays.point[axis] * scale);
+    cell[2 * axis] = static_cast<float>(at[0]);
+    cell[2 * axis + 1] = static_cast<float>(at[1]);
+  }
+  const auto turn = [&](int i, int j) { return side * scale * ray.rays.point[i].dot(ray.rays.turn[j]); };
+  cell[4] = static_cast<float>(turn(0, 0));
+  cell[5] = static_cast<float>(0.5 * (turn(0, 1) + turn(1, 0)));
+  cell[6] = static_cast<float>(turn(1, 1));
+  return cell;
+}
+
+void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
+  const double magnitude = std::sqrt(ray.area * surface.area) * std::abs(surface.response.gamma) * surface.response.diffuse;
+  const std::complex<double> weight = ray.coefficient * magnitude * phase_factor(ray);
+  const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
+  // Behind a diffuse hit the opposite order is sampled by itself.
+  const bool with_reversal = ray.coherent && ray.mirror.mesh >= 0;
+  for (const Leg& leg : scratch.receive) record(ray, surface, leg, bits, weight * leg.gain, with_reversal, block);
+}
+
+Leg RayShooter::own_leg(const Ray& ray) const {
+  Leg leg;
+  leg.mirror = ray.chain;
+  leg.length = ray.leg_length;
+  leg.to_antenna = -ray.direction;
+  leg.at_antenna = ray.launch_direction;
+  leg.gain = ray.coefficient;
+  leg.specular_share = ray.chain_share;
+  leg.mirror_hit = ray.hits[0];
+  return leg;
+}
+
+// The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here.
+double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const {
+  double hits_per_area = 0.0;
+  for (const Leg& leg : legs) {
+    const int own_stratum = leg.mirror == ray.chain ? ray.stratum : -1;
+    hits_per_area += plan_.ray_density(leg.at_antenna, own_stratum) * leg.specular_share *
+                     surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
+  }
+  return 1.0 / hits_per_area;
+}
+
+void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
+  legs_.find(surface.point.position, surface.point.normal, settings_.transmitter, settings_.max_bounces > 1, ray.chain,
+             scratch.transmit, block.statistics.num_queries);
+  std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
+  scratch.transmit.push_back(own_leg(ray));
+  const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
+  const std::complex<double> phase = phase_factor(ray);
+
+  for (const Leg& in : scratch.transmit) {
+    const Vec3 arrival = -in.to_antenna;
+    const SurfaceResponse response =
+        respond(*surface.material, settings_.frequency, surface.point.normal.dot(in.to_antenna),
+                polarization_mode(settings_.polarization, arrival, surface.point.normal));
+    const std::complex<double> weight = root_area * std::abs(response.gamma) * response.diffuse * in.gain * phase;
+    const int first = in.mirror >= 0 ? 1 : 0;
+    const uint64_t bits = uint64_t{1} << first;
+    for (const Leg& out : scratch.receive) {
+      const int count = first + 1 + (out.mirror >= 0 ? 1 : 0);
+      if (count > settings_.max_bounces) continue;
+      if (out.mirror < 0 && in.mirror == ray.chain) {
+        block.add_prefix(0, count, bits, weight, ray.stratum);
+      } else if (out.mirror < 0 && in.mirror < 0) {
+        block.add_prefix(ray.depth - 1, count, bits, weight, ray.stratum);
+      } else {
+        std::array<Hit, 3> hits{in.mirror_hit};
+        hits[static_cast<size_t>(first)] = surface.point.hit;
+        if (out.mirror >= 0) hits[static_cast<size_t>(first + 1)] = out.mirror_hit;
+        block.add(hits.data(), count, bits, weight * out.gain, ray.stratum);
+      }
+    }
+  }
+}
+
+std::complex<double> RayShooter::phase_factor(const Ray& ray) const {
+  const double turn = uniform2(settings_.seed, Stream::kPhase, static_cast<uint64_t>(ray.index),
+                               static_cast<uint32_t>(ray.depth))[0];
+  return std::polar(1.0, kTwoPi * turn);
+}
+
+}  // namespace echopath

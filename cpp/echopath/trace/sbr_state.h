@@ -1,0 +1,65 @@
+#pragma once
+// What sbr.cpp and sbr_connect.cpp share: the state of a ray. Internal to the module.
+#include <array>
+
+#include "echopath/em/jones.h"
+#include "echopath/trace/ray_differential.h"
+#include "echopath/trace/sbr.h"
+
+namespace echopath {
+
+inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
+inline constexpr int kDirect = -1;        // transmit chains, besides the index of a mirror
+inline constexpr int kOther = -2;
+
+// A specular bounce off an unflagged surface.
+struct RayShooter::MirrorBounce {
+  int mesh = -1;               // -1: none
+  double cos_incidence = 1.0;
+  double curvature = 0.0;      // 1/m, in the plane of incidence, positive where convex
+};
+
+struct RayShooter::Ray {
+  int64_t index = 0;
+  int stratum = 0;
+  Vec3 from, direction, launch_direction;
+  std::array<Hit, 64> hits;
+  int depth = 0;              // hits so far
+  uint64_t diffuse = 0;       // bit per hit
+  bool coherent = true;       // regime C
+  int chain = kDirect;        // how the transmitter was left: directly, over one mirror, otherwise
+  double chain_share = 1.0;   // s_m^2 of that mirror
+  // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
+  // probabilities included.
+  double leg_length = 0.0, leg_density = 0.0;
+  std::complex<double> field = 1.0;        // product of Gamma s / q; regime C
+  std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
+  FieldVector polarized[2];   // fields of a horizontal and a vertical launch with 1/q; regime C, where polarised
+  RayDifferential rays;       // regime C, where the scene has smooth meshes
+  bool is_curved = false;     // some bounce so far was on a curved surface
+  MirrorBounce mirror;            // the last specular bounce off an unflagged surface since the last anchor
+  bool last_was_mirror = false;   // and it was the last bounce
+  double area = 1.0;                       // product of the material areas of the diffuse anchors
+};
+
+struct RayShooter::Surface {
+  RayHit point;
+  const Material* material = nullptr;
+  double cos_incidence = 0.0;
+  SurfaceResponse response;
+  double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
+};
+
+struct RayShooter::Odds {
+  double specular = 0.0, diffuse = 0.0;
+};
+
+struct RayShooter::Scratch {
+  std::vector<Leg> transmit, receive;
+};
+
+// Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
+double curvature_along(const RayHit& point, const Vec3& direction);
+
+}  // namespace echopath

@@ -23,6 +23,21 @@ TransverseBasis transverse_basis(const Vec3& direction) {
   return {horizontal, direction.cross(horizontal)};
 }
 
+FieldPair launched_fields(const Vec3& direction) {
+  const TransverseBasis basis = transverse_basis(direction);
+  return {basis.horizontal.cast<std::complex<double>>(), basis.vertical.cast<std::complex<double>>()};
+}
+
+JonesMatrix arriving_components(const FieldPair& fields, const Vec3& direction) {
+  const TransverseBasis basis = transverse_basis(direction);
+  JonesMatrix matrix;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    matrix[launch] = std::complex<float>(dot(basis.horizontal, fields[launch]));
+    matrix[2 + launch] = std::complex<float>(dot(basis.vertical, fields[launch]));
+  }
+  return matrix;
+}
+
 Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
   const TransverseBasis basis = transverse_basis(direction);
   const Eigen::Vector2d components(polarization.dot(basis.horizontal), polarization.dot(basis.vertical));

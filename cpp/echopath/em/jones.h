@@ -1,5 +1,6 @@
 #pragma once
 // Polarised fields: reflection and physical optics of a complex field vector, e^{+jwt}.
+#include <array>
 #include <complex>
 
 #include "echopath/base/geometry.h"
@@ -8,6 +9,12 @@
 namespace echopath {
 
 using FieldVector = Eigen::Vector3cd;
+
+// Fields of a horizontal and of a vertical launch of unit strength, as they are somewhere along a path.
+using FieldPair = std::array<FieldVector, 2>;
+
+// (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v): from launched to arriving components.
+using JonesMatrix = std::array<std::complex<float>, 4>;
 
 enum class PolarizationModel {
   kScalar,  // one coefficient a hit, TE or TM by the transmit polarisation; costs nothing
@@ -20,6 +27,10 @@ struct TransverseBasis {
   Vec3 horizontal, vertical;
 };
 TransverseBasis transverse_basis(const Vec3& direction);
+
+// The two launches along a direction, and the components across the direction of arrival of what has become of them.
+FieldPair launched_fields(const Vec3& direction);
+JonesMatrix arriving_components(const FieldPair& fields, const Vec3& direction);
 
 // Components (horizontal, vertical) of a polarisation vector across a direction, of length 1; zero along the direction.
 Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction);

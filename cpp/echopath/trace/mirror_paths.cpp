@@ -115,8 +115,7 @@ class ImageSearch {
 
   JonesMatrix jones_matrix() const {
     Vec3 direction = departure();
-    const TransverseBasis start = transverse_basis(direction);
-    FieldVector fields[2] = {start.horizontal.cast<std::complex<double>>(), start.vertical.cast<std::complex<double>>()};
+    FieldPair fields = launched_fields(direction);
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vec3 normal = direction.dot(mirror(k).normal) < 0 ? mirror(k).normal : Vec3(-mirror(k).normal);
       const double cos_incidence = -direction.dot(normal);
@@ -125,13 +124,7 @@ class ImageSearch {
       for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
       direction = mirror(k).reflect(direction);
     }
-    const TransverseBasis arrival = transverse_basis(direction);
-    JonesMatrix matrix;
-    for (size_t column = 0; column < 2; ++column) {
-      matrix[column] = std::complex<float>(fields[column].transpose() * arrival.horizontal.cast<std::complex<double>>());
-      matrix[2 + column] = std::complex<float>(fields[column].transpose() * arrival.vertical.cast<std::complex<double>>());
-    }
-    return matrix;
+    return arriving_components(fields, direction);
   }
 
   std::complex<double> field() const {

@@ -66,6 +66,7 @@ void PathBlock::shrink_to_fit() {
   weight.shrink_to_fit();
   stratum.shrink_to_fit();
   curved_cell.shrink_to_fit();
+  jones.shrink_to_fit();
 }
 
 namespace {

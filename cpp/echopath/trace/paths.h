@@ -42,8 +42,6 @@ inline constexpr uint8_t kNoBatch = 255;
 // it was traced with the antennas exchanged.
 inline constexpr uint32_t kReversedPath = 1;
 
-using JonesMatrix = std::array<std::complex<float>, 4>;
-
 struct TraceStatistics {
   int64_t num_rays = 0;        // launched
   int64_t num_queries = 0;     // closest-hit and shadow queries
@@ -90,8 +88,7 @@ struct Paths {
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
   std::vector<std::array<float, 7>> curved_cell;
 
-  // [P] or empty (scalar): of coherent paths, (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v) in the transverse bases of
-  // em/jones.h; takes the place of Gamma in the weight, over cos_i at the last surface. Zero for diffuse paths, which carry
+  // [P] or empty (scalar): of coherent paths, in the transverse bases of em/jones.h; takes the place of Gamma in the weight, over cos_i at the last surface. Zero for diffuse paths, which carry
   // power whatever the polarisation.
   std::vector<JonesMatrix> jones;
 

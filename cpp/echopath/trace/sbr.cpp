@@ -63,11 +63,7 @@ void RayShooter::shoot(int64_t index, PathBlock& block) const {
   ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
   block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, index));
   ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
-  if (settings_.is_polarized) {
-    const TransverseBasis basis = transverse_basis(ray.direction);
-    ray.polarized[0] = basis.horizontal.cast<std::complex<double>>();
-    ray.polarized[1] = basis.vertical.cast<std::complex<double>>();
-  }
+  if (settings_.is_polarized) ray.polarized = launched_fields(ray.direction);
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   thread_local Scratch scratch;
   Surface surface;
@@ -116,7 +112,7 @@ bool RayShooter::suffices(const MirrorBounce& mirror, double before, double behi
 void RayShooter::follow_tube(Ray& ray, Surface& surface) const {
   const double distance = surface.point.distance;
   if (ray.is_curved) {
-    for (int n = ray.rays.num_caustics(ray.direction, distance); n > 0; --n) ray.field *= std::complex<double>(0.0, 1.0);
+    for (int n = ray.rays.num_caustics(ray.direction, distance); n > 0; --n) ray.field_factor *= std::complex<double>(0.0, 1.0);
     // Geometrical optics is singular at a caustic: no tube is narrower than the wave allows.
     surface.tube_area = std::max(std::abs(ray.rays.area(ray.direction, distance)), wavelength_ * ray.leg_length);
   }
@@ -155,7 +151,9 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
 void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probability) const {
   const SurfaceResponse& response = surface.response;
   const RayHit& point = surface.point;
-  if (ray.coherent) reflect_field(ray, surface, probability);
+  ray.field_factor /= probability;
+  if (ray.coherent && has_smooth_) reflect_tube(ray, surface);
+  if (settings_.is_polarized) reflect_polarized(ray, surface);
   const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
   ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
   ray.coefficient *= response.gamma * response.coherent;
@@ -166,22 +164,12 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probab
   if (mirror < 0) ray.mirror = bounced;
 }
 
-// Field, polarisation and tube of a coherent ray, before its direction changes.
-void RayShooter::reflect_field(Ray& ray, const Surface& surface, double probability) const {
-  const SurfaceResponse& response = surface.response;
+// The tube of a coherent ray, before its direction changes.
+void RayShooter::reflect_tube(Ray& ray, const Surface& surface) const {
   const RayHit& point = surface.point;
-  ray.field *= response.gamma * response.coherent / probability;
-  if (settings_.is_polarized) {
-    const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, surface.cos_incidence);
-    for (FieldVector& field : ray.polarized) {
-      field = response.coherent / probability * reflected_field(field, ray.direction, point.normal, modes);
-    }
-  }
-  if (has_smooth_) {
-    const Mat3 flat = Mat3::Zero();
-    ray.rays.reflect(ray.direction, point.normal, point.is_smooth ? point.curvature : flat);
-    ray.is_curved = ray.is_curved || point.is_smooth;
-  }
+  const Mat3 flat = Mat3::Zero();
+  ray.rays.reflect(ray.direction, point.normal, point.is_smooth ? point.curvature : flat);
+  ray.is_curved = ray.is_curved || point.is_smooth;
 }
 
 void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability) const {

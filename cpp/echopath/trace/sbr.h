@@ -39,7 +39,6 @@ class RayShooter {
   struct Scratch;
   struct Odds;     // of going on
 
-  JonesMatrix jones_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   struct MirrorBounce;
@@ -57,9 +56,13 @@ class RayShooter {
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
   bool bounce(Ray& ray, const Surface& surface) const;
   void bounce_specular(Ray& ray, const Surface& surface, double probability) const;
-  void reflect_field(Ray& ray, const Surface& surface, double probability) const;
+  void reflect_tube(Ray& ray, const Surface& surface) const;
   void bounce_diffuse(Ray& ray, const Surface& surface, double probability) const;
   Odds odds_of(const Surface& surface) const;
+  // sbr_polarization.cpp: only where polarised.
+  void reflect_polarized(Ray& ray, const Surface& surface) const;
+  JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
+  JonesMatrix received_over(const Leg& leg, FieldPair fields) const;
   std::complex<double> phase_factor(const Ray& ray) const;
 
   const Scene& scene_;

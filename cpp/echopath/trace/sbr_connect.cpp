@@ -10,8 +10,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kNearAntenna = 1e-3;       // m
-constexpr double kPolarizedGrazing = 0.05;  // cosine of incidence that bounds the quotient of jones_matrix
+constexpr double kNearAntenna = 1e-3;  // m
 
 }  // namespace
 
@@ -44,13 +43,13 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
 }
 
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
-  // `field` holds 1/q for each bounce, the area of the launch alone must not: hence field and not coefficient, and the
-  // density without the probabilities.
+  // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
   const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
   // Polarised, all coefficients are in the matrix.
-  const std::complex<double> scalar = settings_.is_polarized ? 1.0 : ray.field * surface.response.gamma * surface.response.coherent;
-  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * scalar * launch_area;
+  const std::complex<double> scalar =
+      settings_.is_polarized ? 1.0 : ray.coefficient * surface.response.gamma * surface.response.coherent;
+  const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field_factor * scalar * launch_area;
   for (const Leg& leg : scratch.receive) {
     const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);
     record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
@@ -75,29 +74,7 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
 // What the last path needs beside its weight, if the scene asks for it.
 void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const {
   if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
-  if (settings_.is_polarized) block.set_jones(jones_matrix(ray, surface, leg));
-}
-
-// From the launched components to those that arrive at the receiver (Paths::jones).
-JonesMatrix RayShooter::jones_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
-  const double frequency = settings_.frequency;
-  const ModeCoefficients here = mode_coefficients(*surface.material, frequency, surface.cos_incidence);
-  // Replay multiplies by cos_i; a conductor's TM part does not vanish with it, so the quotient is bounded.
-  const double scale = surface.response.coherent / std::max(surface.cos_incidence, kPolarizedGrazing);
-  const TransverseBasis arrival = transverse_basis(-leg.at_antenna);
-  JonesMatrix matrix;
-  for (size_t column = 0; column < 2; ++column) {
-    FieldVector field = scale * radiated_field(ray.polarized[column], ray.direction, surface.point.normal, leg.to_antenna, here);
-    if (leg.mirror >= 0) {
-      const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
-      const double cos_mirror = -leg.to_antenna.dot(leg.mirror_normal);
-      field = std::sqrt(leg.specular_share) *
-              reflected_field(field, leg.to_antenna, leg.mirror_normal, mode_coefficients(material, frequency, cos_mirror));
-    }
-    matrix[column] = std::complex<float>(field.transpose() * arrival.horizontal.cast<std::complex<double>>());
-    matrix[2 + column] = std::complex<float>(field.transpose() * arrival.vertical.cast<std::complex<double>>());
-  }
-  return matrix;
+  if (settings_.is_polarized) block.set_jones(coherent_matrix(ray, surface, leg));
 }
 
 // The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).

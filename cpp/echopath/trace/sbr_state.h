@@ -32,9 +32,10 @@ struct RayShooter::Ray {
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
-  std::complex<double> field = 1.0;        // product of Gamma s / q; regime C
   std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
-  FieldVector polarized[2];   // fields of a horizontal and a vertical launch with 1/q; regime C, where polarised
+  FieldPair polarized;                     // likewise of vectors, where polarised
+  // What a field has beside its coefficients: 1/q of every bounce, j of every caustic; regime C.
+  std::complex<double> field_factor = 1.0;
   RayDifferential rays;       // regime C, where the scene has smooth meshes
   bool is_curved = false;     // some bounce so far was on a curved surface
   MirrorBounce mirror;            // the last specular bounce off an unflagged surface since the last anchor

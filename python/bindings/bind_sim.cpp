@@ -13,14 +13,15 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "phase_tolerance", "progress"};
+const std::vector<std::string> kKeywords = {"tolerance", "method", "evaluate", "phase_tolerance", "progress"};
 
-CubeSettings settings_of(double tolerance, const std::string& method, const std::string& replay, double phase_tolerance) {
+CubeSettings settings_of(double tolerance, const std::string& method, const std::string& evaluate, double phase_tolerance) {
   CubeSettings settings;
-  settings.synthesis = {tolerance, as_method(method)};
+  require(evaluate == "interpolated" || evaluate == "chirps" || evaluate == "samples", "evaluate",
+          "must be 'interpolated', 'chirps' or 'samples'", evaluate);
+  settings.synthesis = {tolerance, as_method(method), evaluate == "samples"};
   settings.replay.phase_tolerance = phase_tolerance;
-  require(replay == "interpolated" || replay == "exact", "replay", "must be 'interpolated' or 'exact'", replay);
-  settings.replay.exact = replay == "exact";
+  settings.replay.exact = evaluate == "chirps";
   return settings;
 }
 
@@ -32,10 +33,10 @@ py::array cube_array(Cube&& cube) {
 const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
-                          const std::string& replay, double phase_tolerance, const py::object& progress,
+                          const std::string& evaluate, double phase_tolerance, const py::object& progress,
                           const py::kwargs& unknown) {
   refuse_unknown(unknown, "synthesize", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, replay, phase_tolerance);
+  const CubeSettings settings = settings_of(tolerance, method, evaluate, phase_tolerance);
   return cube_array(run_job("synthesize", progress, [&](Job& job) {
     return synthesize(paths, radar_or_own(paths, radar), settings, &job);
   }));
@@ -57,10 +58,10 @@ bool is_nested(const py::dict& parts) {
 }
 
 py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict& parts, double tolerance,
-                         const std::string& method, const std::string& replay, double phase_tolerance,
+                         const std::string& method, const std::string& evaluate, double phase_tolerance,
                          const py::object& progress, const py::kwargs& unknown) {
   refuse_unknown(unknown, "decompose", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, replay, phase_tolerance);
+  const CubeSettings settings = settings_of(tolerance, method, evaluate, phase_tolerance);
   const bool nested = is_nested(parts);
   std::vector<std::string> names;
   std::vector<std::vector<NamedSelection>> partitions;
@@ -90,24 +91,26 @@ py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict&
 
 void bind_sim(py::module_& m) {
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "interpolated",
+        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("evaluate") = "interpolated",
         py::arg("phase_tolerance") = 1e-5, py::arg("progress") = py::none(),
         R"(The noise-free IF signal of paths.
 
 radar: another waveform, array or motion than that of the trace, or None
 tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
 method: "auto", "direct" (the reference), "recurrence" or "nufft"
-replay: "interpolated" (lengths and amplitudes by polynomials in time, to phase_tolerance in rad) or "exact" at each chirp
+evaluate: "interpolated" (lengths and amplitudes by polynomials in time, to phase_tolerance in rad), "chirps" (in every chirp: the
+    reference), or "samples" (interpolated, and moving echoes with the delay of every sample: for fast rotors, a sine and a
+    cosine per path and sample)
 progress: callable(stage, fraction) or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar") = py::none(), py::arg("parts") = py::dict(),
-        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "interpolated",
+        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("evaluate") = "interpolated",
         py::arg("phase_tolerance") = 1e-5, py::arg("progress") = py::none(),
         R"(The signals of parts of the paths, in one pass.
 
 parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at once
 Returns {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; one such mapping
-per view for several views. radar, tolerance, method, replay, phase_tolerance and progress are as in synthesize.)");
+per view for several views. radar, tolerance, method, evaluate, phase_tolerance and progress are as in synthesize.)");
 }
 
 }  // namespace echopath::bindings

@@ -119,9 +119,43 @@ def test_rotating_scatterer_has_the_exact_phase():
 def test_interpolated_replay_is_the_exact_one():
     radar = make_radar()
     paths = ep.trace(walking_scene(), radar, num_rays=3000)
-    exact = ep.synthesize(paths, radar, replay="exact", method="direct")
+    exact = ep.synthesize(paths, radar, evaluate="chirps", method="direct")
     error = np.linalg.norm(ep.synthesize(paths, radar, method="direct") - exact) / np.linalg.norm(exact)
     assert error < 1e-4  # of 1e-5 rad and of amplitudes to the same order
+
+
+def rotor_scene(rate, radius):
+    """A small facet on a circle about (10, 0, 1), `rate` in rad/s."""
+    size = 1e-4
+    facet = ep.Mesh([[radius, -size, -size], [radius, size, -size], [radius, 0, size]], [[0, 1, 2]])
+    scene = ep.Scene()
+    scene.add(facet, name="tip", material=ROUGH, position=(10, 0, 1), motion=ep.LinearMotion(angular_velocity=(0, 0, rate)))
+    return scene
+
+
+def test_fast_rotor_has_the_delay_of_every_sample():
+    """Blade tip of 0.3 m at 800 rad/s: the signal of one path is the phase model at every sample, its delay that of the circle."""
+    rate, radius = 800.0, 0.3
+    radar = make_radar(num_chirps=16)
+    paths = ep.trace(rotor_scene(rate, radius), radar, num_rays=200, max_bounces=1)
+    one = paths.select(np.arange(paths.num_paths) == 0)
+    local = one.points(0.0)[0] - [10, 0, 1]  # at rest: angle 0
+    waveform = radar.waveform
+    at = np.arange(waveform.num_samples) / waveform.sampling_rate + (np.arange(16) * waveform.chirp_interval)[:, None]
+    c, s = np.cos(rate * at), np.sin(rate * at)
+    points = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1], 0 * at + local[2]], axis=-1) + [10, 0, 1]
+    delay = (np.linalg.norm(points - [0, 0, 1], axis=-1) + np.linalg.norm(points - [0, 0.01, 1], axis=-1)) / ep.speed_of_light
+    cycles = FREQUENCY * delay + waveform.slope * (at - at[:, :1]) * delay - 0.5 * waveform.slope * delay**2
+    expected = np.exp(2j * np.pi * cycles)
+
+    def phase_error(evaluate):
+        cube = ep.synthesize(one, radar, evaluate=evaluate, tolerance=1e-10)[0, 0]
+        assert np.abs(cube).min() > 0
+        ratio = cube / expected
+        return np.abs(np.angle(ratio / ratio[0, 0])).max()
+
+    assert phase_error("samples") < 2 * DELAY_PHASE_TOLERANCE  # the first sample is the reference: its error counts too
+    assert phase_error("interpolated") > 0.04
 
 
 def test_static_scene_has_identical_chirps():
@@ -193,7 +227,7 @@ def test_another_waveform_needs_no_trace():
 
 @pytest.mark.parametrize("keywords, text", [
     ({"method": "fft"}, "method: must be"),
-    ({"replay": "none"}, "replay: must be"),
+    ({"evaluate": "none"}, "evaluate: must be"),
     ({"tolerance": 0.0}, "tolerance"),
     ({"phase_tolerance": -1.0}, "phase_tolerance"),
 ])

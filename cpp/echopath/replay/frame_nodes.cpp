@@ -1,6 +1,7 @@
 #include "echopath/replay/frame_nodes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "echopath/base/constants.h"
@@ -24,19 +25,23 @@ std::vector<double> coefficient_row(int n, int order) {
   return row;
 }
 
-// T_n(x) and its derivative n U_{n-1}(x), both stable on [-1, 1].
-std::pair<double, double> chebyshev(int n, double x) {
-  double t0 = 1.0, t1 = x, u0 = 0.0, u1 = 1.0;  // T_0, T_1 and U_{-1}, U_0
-  if (n == 0) return {1.0, 0.0};
+// T_n(x) and its first three derivatives.
+std::array<double, 4> chebyshev(int n, double x) {
+  std::array<double, 4> before = {1.0, 0.0, 0.0, 0.0}, here = {x, 1.0, 0.0, 0.0};  // T_0, T_1
+  if (n == 0) return before;
   for (int i = 1; i < n; ++i) {
-    std::tie(t0, t1) = std::pair(t1, 2.0 * x * t1 - t0);
-    std::tie(u0, u1) = std::pair(u1, 2.0 * x * u1 - u0);
+    std::array<double, 4> next;
+    for (int d = 0; d < 4; ++d) next[d] = 2.0 * (x * here[d] + (d > 0 ? d * here[d - 1] : 0.0)) - before[d];
+    before = here;
+    here = next;
   }
-  return {t1, n * u1};
+  return here;
 }
 
 struct Piece {
   double begin, end;  // s
+  double middle() const { return 0.5 * (begin + end); }
+  double half() const { return 0.5 * (end - begin); }
 };
 
 std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>& breakpoints) {
@@ -51,18 +56,40 @@ std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>
   return pieces;
 }
 
-void fill_row(TimeSampling& sampling, int chirp, double x, double scale, const std::vector<std::vector<double>>& rows) {
-  const int order = sampling.order;
-  double* value = sampling.value.data() + static_cast<ptrdiff_t>(chirp) * order;
-  double* slope = sampling.slope.data() + static_cast<ptrdiff_t>(chirp) * order;
-  for (int n = 0; n < order; ++n) {
-    const auto [t, derivative] = chebyshev(n, x);
-    for (int k = 0; k < order; ++k) {
-      value[k] += t * rows[static_cast<size_t>(n)][static_cast<size_t>(k)];
-      slope[k] += scale * derivative * rows[static_cast<size_t>(n)][static_cast<size_t>(k)];
+// Lobatto nodes of one piece, and weights for values and derivatives inside it.
+class NodeSet {
+ public:
+  explicit NodeSet(int order) : order_(order) {
+    for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
+  }
+  const std::vector<double>& coefficients(int n) const { return rows_[static_cast<size_t>(n)]; }
+
+  void append_times(const Piece& piece, std::vector<double>& times) const {
+    for (int k = 0; k < order_; ++k) times.push_back(piece.middle() + piece.half() * lobatto(k, order_));
+  }
+
+  // One more chirp, at `time` in `piece`, whose nodes begin at `first_node`.
+  void append_chirp(const Piece& piece, double time, int first_node, TimeSampling& sampling) const {
+    // A frame of one sample has no duration and no derivatives.
+    const double scale = piece.half() > 0 ? 1.0 / piece.half() : 0.0;
+    const double x = std::clamp((time - piece.middle()) * scale, -1.0, 1.0);
+    sampling.order = order_;
+    sampling.first_node.push_back(first_node);
+    std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
+    for (std::vector<double>* weights : out) weights->resize(weights->size() + static_cast<size_t>(order_), 0.0);
+    for (int n = 0; n < order_; ++n) {
+      const std::array<double, 4> basis = chebyshev(n, x);
+      for (int d = 0; d < 4; ++d) {
+        double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
+        for (int k = 0; k < order_; ++k) weights[k] += std::pow(scale, d) * basis[d] * coefficients(n)[static_cast<size_t>(k)];
+      }
     }
   }
-}
+
+ private:
+  int order_;
+  std::vector<std::vector<double>> rows_;  // [n, k]: Chebyshev coefficient n from the values at the nodes
+};
 
 }  // namespace
 
@@ -76,60 +103,43 @@ FrameNodes static_nodes(const Radar& radar, double time) {
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
   require(order >= 2, "order", "must be >= 2", order);
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
+  const NodeSet set(order);
   FrameNodes nodes;
   nodes.order = order;
-  for (const Piece& piece : pieces) {
-    for (int k = 0; k < order; ++k) {
-      nodes.times.push_back(0.5 * (piece.begin + piece.end) + 0.5 * (piece.end - piece.begin) * lobatto(k, order));
-    }
+  for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
+  for (int n : {order - 2, order - 1}) {
+    nodes.tail.insert(nodes.tail.end(), set.coefficients(n).begin(), set.coefficients(n).end());
   }
-  std::vector<std::vector<double>> rows;
-  for (int n = 0; n < order; ++n) rows.push_back(coefficient_row(n, order));
-  for (int n : {order - 2, order - 1}) nodes.tail.insert(nodes.tail.end(), rows[static_cast<size_t>(n)].begin(), rows[static_cast<size_t>(n)].end());
-
-  const int num_chirps = radar.waveform.num_chirps;
-  for (int tx = 0; tx < static_cast<int>(radar.transmitters.size()); ++tx) {
-    TimeSampling sampling;
+  for (int tx = 0; tx < radar.num_slots(); ++tx) {
+    TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_nodes = static_cast<int>(nodes.times.size());
-    sampling.order = order;
-    sampling.value.assign(static_cast<size_t>(num_chirps) * order, 0.0);
-    sampling.slope = sampling.value;
-    for (int chirp = 0; chirp < num_chirps; ++chirp) {
+    for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) {
       const double time = start_time + radar.chirp_time(tx, chirp);
-      const auto behind = std::find_if(pieces.begin(), pieces.end() - 1, [&](const Piece& p) { return time < p.end; });
-      const double half = 0.5 * (behind->end - behind->begin);
-      sampling.first_node.push_back(static_cast<int>(behind - pieces.begin()) * order);
-      fill_row(sampling, chirp, std::clamp((time - behind->begin) / half - 1.0, -1.0, 1.0), 1.0 / half, rows);
+      const auto piece = std::find_if(pieces.begin(), pieces.end() - 1, [&](const Piece& p) { return time < p.end; });
+      set.append_chirp(*piece, time, static_cast<int>(piece - pieces.begin()) * order, sampling);
     }
-    nodes.sampling.push_back(std::move(sampling));
   }
   return nodes;
 }
 
-FrameNodes exact_nodes(const Radar& radar, double start_time) {
+FrameNodes exact_nodes(const Radar& radar, double start_time, int order) {
+  require(order >= 3 && order % 2 == 1, "order", "must be odd and >= 3", order);
   const int num_slots = radar.num_slots(), num_chirps = radar.waveform.num_chirps;
+  const double half = radar.waveform.window_centre();
+  const NodeSet set(order);
   FrameNodes nodes;
   nodes.is_exact = true;
+  nodes.order = order;
+  nodes.sampling.resize(static_cast<size_t>(num_slots));
   for (int chirp = 0; chirp < num_chirps; ++chirp) {
-    for (int tx = 0; tx < num_slots; ++tx) nodes.times.push_back(start_time + radar.chirp_time(tx, chirp));
-  }
-  // Slots alternate in time, so the differences are those of neighbouring slots.
-  const TimeSampling all = exact_sampling(nodes.times);
-  nodes.order = all.order;
-  const auto order = static_cast<size_t>(all.order);
-  for (int tx = 0; tx < num_slots; ++tx) {
-    TimeSampling sampling;
-    sampling.num_nodes = all.num_nodes;
-    sampling.order = all.order;
-    for (int chirp = 0; chirp < num_chirps; ++chirp) {
-      const auto slot = static_cast<size_t>(chirp) * num_slots + tx;
-      sampling.first_node.push_back(all.first_node[slot]);
-      const auto row = static_cast<ptrdiff_t>(slot * order);
-      sampling.value.insert(sampling.value.end(), all.value.begin() + row, all.value.begin() + row + all.order);
-      sampling.slope.insert(sampling.slope.end(), all.slope.begin() + row, all.slope.begin() + row + all.order);
+    for (int tx = 0; tx < num_slots; ++tx) {
+      const double time = start_time + radar.chirp_time(tx, chirp);
+      const Piece piece{time - half, time + half};
+      set.append_chirp(piece, time, static_cast<int>(nodes.times.size()), nodes.sampling[static_cast<size_t>(tx)]);
+      set.append_times(piece, nodes.times);
     }
-    nodes.sampling.push_back(std::move(sampling));
   }
+  for (TimeSampling& sampling : nodes.sampling) sampling.num_nodes = static_cast<int>(nodes.times.size());
   return nodes;
 }
 

@@ -11,7 +11,7 @@ struct FrameNodes {
   std::vector<double> times;            // [num_nodes] s
   std::vector<TimeSampling> sampling;   // by transmitter
   int order = 1;                        // nodes per piece; 1: one node for all
-  bool is_exact = false;                // one node per chirp
+  bool is_exact = false;                // nodes in every chirp
 
   // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: what the polynomial
   // has left. Empty for order 1 and exact nodes.
@@ -22,9 +22,9 @@ struct FrameNodes {
 // One node, at `time`.
 FrameNodes static_nodes(const Radar& radar, double time);
 // `order` Chebyshev-Lobatto nodes in each piece between the breakpoints (s, ascending) that lie inside the frame that starts
-// at start_time. Polynomial interpolation in barycentric form; slopes from the derivative of the same polynomial.
+// at start_time. Derivatives are those of the same polynomial.
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
-// A node at the window centre of each chirp of each transmitter; slopes by central differences.
-FrameNodes exact_nodes(const Radar& radar, double start_time);
+// `order` (odd) such nodes in every chirp of every transmitter, the middle one at the window centre.
+FrameNodes exact_nodes(const Radar& radar, double start_time, int order);
 
 }  // namespace echopath

@@ -69,10 +69,12 @@ bool Replayer::is_static(int64_t path) const {
   return std::none_of(hits, hits + count, [&](const Hit& hit) { return mesh_moves_[hit.mesh_id] != 0; });
 }
 
-size_t Replayer::num_slots() const { return radar_.transmitters.size() * static_cast<size_t>(radar_.waveform.num_chirps); }
+// Nodes in a chirp: value and slope in its middle, or its delay throughout.
+int Replayer::exact_order() const { return settings_.per_sample ? 5 : 3; }
 
-// Differences between chirps need three of them; shorter frames stay with the polynomial.
-int Replayer::last_level() const { return num_slots() >= 3 ? kExactLevel : kExactLevel - 1; }
+int64_t Replayer::num_exact_nodes() const {
+  return int64_t{radar_.num_slots()} * radar_.waveform.num_chirps * exact_order();
+}
 
 const Replayer::Level& Replayer::level(int index) const {
   const std::lock_guard lock(levels_mutex_);
@@ -81,7 +83,7 @@ const Replayer::Level& Replayer::level(int index) const {
   auto made = std::make_unique<Level>();
   const double start = paths_.frame.start_time;
   if (index == kStaticLevel) made->nodes = static_nodes(radar_, paths_.frame.trace_time);
-  else if (index == kExactLevel) made->nodes = exact_nodes(radar_, start);
+  else if (index == kExactLevel) made->nodes = exact_nodes(radar_, start, exact_order());
   else {
     std::vector<double> breakpoints = paths_.scene->breakpoints();
     if (radar_.motion) {
@@ -219,25 +221,43 @@ bool Replayer::evaluate_level(const Block& block, const Level& level, bool check
   return true;
 }
 
-std::vector<Echoes> Replayer::echoes(std::span<const int64_t> indices, bool moving) const {
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  evaluate_level(localise(indices), level(kStaticLevel), false, lengths, amplitudes);
+  return by_channel(level(kStaticLevel), indices.size(), lengths, amplitudes);
+}
+
+std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices) const {
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  evaluate_level(localise(indices), level(kExactLevel), false, lengths, amplitudes);
+  return by_channel(level(kExactLevel), indices.size(), lengths, amplitudes);
+}
+
+std::optional<std::vector<Echoes>> Replayer::interpolated(std::span<const int64_t> indices) const {
+  if (settings_.exact) return std::nullopt;
   const Block block = localise(indices);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  int index = moving ? (settings_.exact ? last_level() : 1) : kStaticLevel;
-  // More nodes than chirps would be work for nothing.
-  const auto is_costly = [&](int at) { return at < last_level() && at > 0 && level(at).nodes.times.size() >= num_slots(); };
-  while (is_costly(index) ||
-         !evaluate_level(block, level(index), index != kStaticLevel && index != last_level(), lengths, amplitudes)) {
-    ++index;
+  for (int index = kStaticLevel + 1; index < kExactLevel; ++index) {
+    if (std::ssize(level(index).nodes.times) > num_exact_nodes()) break;
+    if (evaluate_level(block, level(index), true, lengths, amplitudes)) {
+      return by_channel(level(index), indices.size(), lengths, amplitudes);
+    }
   }
+  return std::nullopt;
+}
 
-  const FrameNodes& nodes = level(index).nodes;
-  const size_t num_paths = indices.size(), num_nodes = nodes.times.size();
+// From [node, channel, path] to the form that synthesis takes.
+std::vector<Echoes> Replayer::by_channel(const Level& level, size_t num_paths, const std::vector<double>& lengths,
+                                         const std::vector<std::complex<double>>& amplitudes) const {
+  const size_t num_nodes = level.nodes.times.size();
   const auto channels = static_cast<size_t>(num_channels());
   std::vector<Echoes> out(channels);
   for (size_t channel = 0; channel < channels; ++channel) {
     Echoes& echoes = out[channel];
-    echoes.sampling = nodes.sampling[channel / radar_.receivers.size()];
+    echoes.sampling = level.nodes.sampling[channel / radar_.receivers.size()];
     echoes.num_echoes = static_cast<int64_t>(num_paths);
     echoes.delay.resize(num_nodes * num_paths);
     echoes.amplitude.resize(num_nodes * num_paths);

@@ -5,6 +5,7 @@
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide).
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "echopath/replay/amplitude.h"
@@ -14,7 +15,8 @@ namespace echopath {
 
 struct ReplaySettings {
   double phase_tolerance = 1e-5;  // rad: aim for the interpolated phase, see Replayer::echoes
-  bool exact = false;             // evaluate at every chirp instead of interpolating
+  bool exact = false;             // evaluate in every chirp instead of interpolating
+  bool per_sample = false;        // for signals with the delay of every sample (signal/per_sample.h)
 };
 
 class Replayer {
@@ -28,10 +30,15 @@ class Replayer {
   // Nothing on the way of the path moves, nor does the radar.
   bool is_static(int64_t path) const;
 
-  // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty. `moving`: false evaluates once, for
-  // paths that are all static. Otherwise in order 6, 10, 16, 24, 32 of a Chebyshev polynomial per smooth piece of the frame:
-  // the first whose last two coefficients stay below the phase tolerance for all paths of the call, else every chirp.
-  std::vector<Echoes> echoes(std::span<const int64_t> paths, bool moving) const;
+  // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
+  // Of paths that are all static: evaluated once.
+  std::vector<Echoes> still(std::span<const int64_t> paths) const;
+  // By a Chebyshev polynomial of order 6, 10, 16, 24 or 32 per smooth piece of the frame: the first whose last two coefficients
+  // stay below the phase tolerance for all these paths. Nothing where none does, or where it would cost more than `exact`.
+  std::optional<std::vector<Echoes>> interpolated(std::span<const int64_t> paths) const;
+  // At nodes in every chirp, num_exact_nodes() in all.
+  std::vector<Echoes> exact(std::span<const int64_t> paths) const;
+  int64_t num_exact_nodes() const;
 
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
@@ -40,14 +47,15 @@ class Replayer {
  private:
   struct Block;
   struct Level;
-  size_t num_slots() const;
-  int last_level() const;
+  int exact_order() const;
   const Level& level(int index) const;
   Block localise(std::span<const int64_t> paths) const;
   void add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;
   void set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const;
   bool evaluate_level(const Block& block, const Level& level, bool check, std::vector<double>& lengths,
                       std::vector<std::complex<double>>& amplitudes) const;
+  std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const std::vector<double>& lengths,
+                                 const std::vector<std::complex<double>>& amplitudes) const;
 
   const Paths& paths_;
   const Radar& radar_;

@@ -4,17 +4,18 @@
 // Model "lin": over one chirp the delay is linear in time about the window centre t_m. With n the sample, t = n / fs,
 //   s[n] = sum conj(a) exp(j 2 pi {f0 tau + mu t_m tau - mu tau^2 / 2 + f_b (t - t_m)}),
 //   f_b  = mu tau + (f0 + mu t_m - mu tau) taudot.
-// Against the exact phase this errs by 2 pi mu taudot (Tc / 2)^2: 0.0027 rad at 10 m/s, 1 GHz, 25.6 us.
+// Against the exact phase this errs by 2 pi mu taudot (Tc / 2)^2: 0.0027 rad at 10 m/s, 1 GHz, 25.6 us; per_sample.h is
+// the way without that error.
 #include <cstdint>
 
 #include "echopath/radar/radar.h"
-#include "echopath/signal/echoes.h"
+#include "echopath/signal/echo_states.h"
 
 namespace echopath {
 
 // At most kCapacity echoes at one chirp: echo p is (re + j im)[p] e^{j 2 pi frequency[p] (n - reference sample)}.
 struct Carriers {
-  static constexpr int kCapacity = 256;  // delays, amplitudes and carriers of a block stay in the first-level cache
+  static constexpr int kCapacity = EchoStates::kCapacity;
   int count = 0;
   const uint32_t* group = nullptr;       // [count]
   alignas(64) double frequency[kCapacity];  // cycles per sample, in [0, 1)

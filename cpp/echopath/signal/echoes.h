@@ -7,20 +7,23 @@
 namespace echopath {
 
 // How values at a few nodes give values at each chirp: value(chirp j) = sum_k value[j][k] * node[first_node[j] + k],
-// likewise `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K
-// nodes per piece) and exact evaluation (one node per chirp with central differences).
+// likewise `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K nodes per
+// piece of the frame) and exact evaluation (a few nodes in every chirp).
 struct TimeSampling {
   int num_nodes = 1;
   int order = 1;                 // nodes that take part in one chirp
   std::vector<int> first_node;   // [T]
   std::vector<double> value;     // [T, order]
   std::vector<double> slope;     // [T, order], 1/s
+  // [T, order] each, second and third derivative in 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
+  std::vector<double> bend, twist;
   // All chirps see the one node: the echoes do not move, and are synthesised once for all chirps.
   bool is_static() const { return num_nodes == 1; }
 };
 
 TimeSampling static_sampling(int num_chirps);
-// One node per chirp at `times` [T] (s, ascending, T >= 1); slopes by second-order differences (zero when T = 1).
+// One node per chirp at `times` [T] (s, ascending, T >= 1), as measured or tabulated delays come; slopes by second-order
+// differences (zero when T = 1).
 TimeSampling exact_sampling(const std::vector<double>& times);
 
 struct Echoes {

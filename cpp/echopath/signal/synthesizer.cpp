@@ -11,6 +11,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/signal/carrier.h"
 #include "echopath/signal/method.h"
+#include "echopath/signal/per_sample.h"
 #include "echopath/signal/simd.h"
 
 namespace echopath {
@@ -58,6 +59,12 @@ void validate_sampling(const TimeSampling& sampling, int num_chirps) {
   }
   require_finite(sampling.value.data(), weights, "sampling.value");
   require_finite(sampling.slope.data(), weights, "sampling.slope");
+  for (const std::vector<double>* rows : {&sampling.bend, &sampling.twist}) {
+    const char* name = rows == &sampling.bend ? "sampling.bend" : "sampling.twist";
+    require(rows->size() == sampling.bend.size(), name, "must be empty only where the other is, values", rows->size());
+    require(rows->empty() || rows->size() == weights, name, "must be empty or have shape [chirps, order]", rows->size());
+    require_finite(rows->data(), rows->size(), name);
+  }
 }
 
 int64_t num_tasks(int num_chirps) { return (num_chirps + kChirpsPerTask - 1) / kChirpsPerTask; }
@@ -75,6 +82,10 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
           options.tolerance);
   tones_ = make_tones(method_, waveform.num_samples, options.tolerance);
   model_ = std::make_unique<CarrierModel>(waveform, tones_->reference_sample());
+  if (options.per_sample) {
+    sample_rows_ = make_direct(waveform.num_samples);
+    per_sample_ = std::make_unique<PerSample>(waveform, *model_);
+  }
   channels_.resize(num_channels);
 }
 
@@ -102,37 +113,52 @@ void Synthesizer::validate(int channel, const Echoes& block) const {
   require_finite(reinterpret_cast<const double*>(block.amplitude.data()), 2 * values, "amplitude");
 }
 
+// Doubles of one row, both parts.
+int64_t Synthesizer::row_size(bool moving) const {
+  return 2 * (moving && sample_rows_ ? sample_rows_ : tones_)->row_length();
+}
+
 void Synthesizer::add(int channel, const Echoes& block, Job* job) {
   validate(channel, block);
   if (block.num_echoes == 0) return;
-  const size_t chirp_size = static_cast<size_t>(2 * tones_->row_length()) * num_groups_;
   ChannelRows& rows = channels_[channel];
   if (block.sampling.is_static()) {
-    rows.still.resize(chirp_size);
+    rows.still.resize(static_cast<size_t>(row_size(false)) * num_groups_);
     parallel_for(1, [&](int64_t) { add_rows(block, 0, 1, rows.still.data(), job); });
   } else {
-    rows.moving.resize(chirp_size * waveform_.num_chirps);
-    parallel_for(num_tasks(waveform_.num_chirps), [&](int64_t task) {
-      const int first = static_cast<int>(task) * kChirpsPerTask;
-      const int count = std::min(kChirpsPerTask, waveform_.num_chirps - first);
-      add_rows(block, first, count, rows.moving.data() + chirp_size * first, job);
-    });
+    add_moving(block, rows, job);
   }
   if (job) job->advance(block.num_echoes);
 }
 
+void Synthesizer::add_moving(const Echoes& block, ChannelRows& rows, Job* job) const {
+  const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
+  rows.moving.resize(chirp_size * waveform_.num_chirps);
+  parallel_for(num_tasks(waveform_.num_chirps), [&](int64_t task) {
+    const int first = static_cast<int>(task) * kChirpsPerTask;
+    const int count = std::min(kChirpsPerTask, waveform_.num_chirps - first);
+    add_rows(block, first, count, rows.moving.data() + chirp_size * first, job);
+  });
+}
+
 // Every chirp takes all echoes in their order, in blocks that do not depend on the tasks: hence the same bits always.
 void Synthesizer::add_rows(const Echoes& block, int first_chirp, int num_chirps, double* rows, Job* job) const {
-  const int64_t stride = 2 * tones_->row_length();
-  Carriers carriers;
+  const int64_t stride = row_size(!block.sampling.is_static());
   for (int64_t begin = 0; begin < block.num_echoes; begin += Carriers::kCapacity) {
     if (job) job->throw_if_cancelled();
     const int count = static_cast<int>(std::min<int64_t>(Carriers::kCapacity, block.num_echoes - begin));
-    for (int i = 0; i < num_chirps; ++i) {
-      evaluate_carriers(*model_, block, first_chirp + i, begin, count, carriers);
-      tones_->add(carriers, {rows + i * num_groups_ * stride, stride});
-    }
+    for (int i = 0; i < num_chirps; ++i) add_some(block, first_chirp + i, begin, count, {rows + i * num_groups_ * stride, stride});
   }
+}
+
+void Synthesizer::add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const {
+  if (per_sample_ && !block.sampling.is_static()) {
+    per_sample_->add(block, chirp, begin, count, sample_rows_->row_length(), rows);
+    return;
+  }
+  Carriers carriers;
+  evaluate_carriers(*model_, block, chirp, begin, count, carriers);
+  tones_->add(carriers, rows);
 }
 
 std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
@@ -140,24 +166,23 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
     throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
   }
   const int64_t num_samples = waveform_.num_samples, num_chirps = waveform_.num_chirps;
-  const int64_t stride = 2 * tones_->row_length();
   std::vector<std::complex<double>> out(channels_.size() * num_chirps * num_samples);
   for (size_t channel = 0; channel < channels_.size(); ++channel) {
     const ChannelRows& rows = channels_[channel];
     std::vector<std::complex<double>> still(num_samples);
-    if (!rows.still.empty()) write_row(rows.still.data() + group * stride, still.data());
+    if (!rows.still.empty()) write_row(rows.still.data() + group * row_size(false), false, still.data());
     parallel_for(num_chirps, [&](int64_t chirp) {
       if (job) job->throw_if_cancelled();
       std::complex<double>* samples = out.data() + (channel * num_chirps + chirp) * num_samples;
-      if (!rows.moving.empty()) write_row(rows.moving.data() + (chirp * num_groups_ + group) * stride, samples);
+      if (!rows.moving.empty()) write_row(rows.moving.data() + (chirp * num_groups_ + group) * row_size(true), true, samples);
       for (int64_t n = 0; n < num_samples; ++n) samples[n] += still[n];
     });
   }
   return out;
 }
 
-void Synthesizer::write_row(const double* row, std::complex<double>* out) const {
-  tones_->samples(row, out);
+void Synthesizer::write_row(const double* row, bool moving, std::complex<double>* out) const {
+  (moving && sample_rows_ ? sample_rows_ : tones_)->samples(row, out);
   if (!waveform_.real) return;
   for (int n = 0; n < waveform_.num_samples; ++n) out[n] = {std::numbers::sqrt2 * out[n].real(), 0.0};
 }

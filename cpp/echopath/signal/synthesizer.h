@@ -11,18 +11,22 @@
 
 namespace echopath {
 
+class PerSample;
 class ToneMethod;
 struct CarrierModel;
+struct Rows;
 
 enum class Method { kAuto, kDirect, kRecurrence, kNufft };
 
 struct SynthesisOptions {
   double tolerance = 1e-7;        // rms error over the samples, relative to the sum of |amplitude|; 1e-13 to 0.1
   Method method = Method::kAuto;  // kAuto: recurrence for few echoes, else NUFFT; kDirect is the reference
+  // Moving echoes with the delay of every sample (per_sample.h), whatever the method; costs a sine and cosine per sample.
+  bool per_sample = false;
 };
 
 // Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at
-// the sampling rate, or half of it for real samples).
+// the sampling rate, or half of it for real samples), or per_sample.h for what moves.
 // Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once
 // from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
 // bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
@@ -49,17 +53,22 @@ class Synthesizer {
 
  private:
   struct ChannelRows {
-    std::vector<double> moving;  // [chirp, group, re/im, row_length]; empty until a moving echo comes
-    std::vector<double> still;   // [group, re/im, row_length], added to every chirp; empty likewise
+    std::vector<double> moving;  // [chirp, group, re/im, row length]; empty until a moving echo comes
+    std::vector<double> still;   // [group, re/im, row length], added to every chirp; empty likewise
   };
   void validate(int channel, const Echoes& block) const;
   void add_rows(const Echoes& block, int first_chirp, int num_chirps, double* rows, Job* job) const;
-  void write_row(const double* row, std::complex<double>* out) const;
+  void add_moving(const Echoes& block, ChannelRows& rows, Job* job) const;
+  void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
+  int64_t row_size(bool moving) const;
+  void write_row(const double* row, bool moving, std::complex<double>* out) const;
 
   ChirpSequence waveform_;
   int num_groups_;
   Method method_;
-  std::unique_ptr<const ToneMethod> tones_;
+  std::unique_ptr<const ToneMethod> tones_;         // of all echoes, or of those at rest
+  std::unique_ptr<const ToneMethod> sample_rows_;   // the form of the rows of moving echoes, where per_sample_ is there
+  std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
   std::vector<ChannelRows> channels_;
 };

@@ -1,6 +1,8 @@
 #include "echopath/sim/synthesize.h"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "echopath/base/parallel.h"
@@ -10,12 +12,16 @@ namespace {
 
 constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
 constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
+constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
 constexpr int64_t kLargestBlock = 8192;
 constexpr int64_t kSmallestBlock = 64;
 
-int64_t block_size(int num_channels) {
-  return std::clamp(kEchoesInFlight / (kBlocksInFlight * num_channels), kSmallestBlock, kLargestBlock);
+int64_t block_size(int64_t num_channels, int64_t num_nodes) {
+  const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);
+  return std::clamp(kEchoesInFlight / (kBlocksInFlight * values), kSmallestBlock, kLargestBlock);
 }
+
+using ByChannel = std::vector<Echoes>;
 
 struct Stream {
   const Replayer& replayer;
@@ -23,35 +29,52 @@ struct Stream {
   Synthesizer& synthesizer;
   Job* job;
 
-  // Blocks are replayed in parallel, a fixed number at a time, and added in their order.
-  void run(const std::vector<int64_t>& paths, bool moving) {
-    const int64_t size = block_size(replayer.num_channels());
+  void add_still(const std::vector<int64_t>& paths) {
+    run(paths, block_size(replayer.num_channels(), 1), [&](auto part) { return std::optional(replayer.still(part)); });
+  }
+
+  void add_moving(const std::vector<int64_t>& paths) {
+    const std::vector<int64_t> rough = run(paths, block_size(replayer.num_channels(), kNodesOfAPath),
+                                           [&](auto part) { return replayer.interpolated(part); });
+    run(rough, block_size(replayer.num_channels(), replayer.num_exact_nodes()),
+        [&](auto part) { return std::optional(replayer.exact(part)); });
+  }
+
+ private:
+  // Blocks are replayed in parallel, a fixed number at a time, and added in their order. Returns the paths of blocks for which
+  // `replay` gave nothing.
+  template <typename Replay>
+  std::vector<int64_t> run(const std::vector<int64_t>& paths, int64_t size, const Replay& replay) {
+    std::vector<int64_t> left;
     const auto num_paths = static_cast<int64_t>(paths.size());
     for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
       const int64_t num_blocks = std::min(kBlocksInFlight, (num_paths - begin + size - 1) / size);
-      std::vector<std::vector<Echoes>> blocks(static_cast<size_t>(num_blocks));
+      const auto part = [&](int64_t i) {
+        const int64_t first = begin + i * size;
+        return std::span<const int64_t>(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
+      };
+      std::vector<std::optional<ByChannel>> blocks(static_cast<size_t>(num_blocks));
       parallel_for(num_blocks, [&](int64_t i) {
         if (job) job->throw_if_cancelled();
-        const int64_t first = begin + i * size;
-        const std::span<const int64_t> part(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
-        blocks[static_cast<size_t>(i)] = grouped(part, moving);
+        blocks[static_cast<size_t>(i)] = replay(part(i));
       });
-      for (const std::vector<Echoes>& channels : blocks) {
-        for (size_t channel = 0; channel < channels.size(); ++channel) {
-          if (job) job->throw_if_cancelled();
-          synthesizer.add(static_cast<int>(channel), channels[channel], job);
-        }
+      for (int64_t i = 0; i < num_blocks; ++i) {
+        std::optional<ByChannel>& block = blocks[static_cast<size_t>(i)];
+        if (block) add(*block, part(i));
+        else left.insert(left.end(), part(i).begin(), part(i).end());
       }
     }
+    return left;
   }
 
-  std::vector<Echoes> grouped(std::span<const int64_t> part, bool moving) const {
-    std::vector<Echoes> channels = replayer.echoes(part, moving);
-    if (!group) return channels;
-    for (Echoes& echoes : channels) {
-      for (const int64_t path : part) echoes.group.push_back((*group)[static_cast<size_t>(path)]);
+  void add(ByChannel& channels, std::span<const int64_t> paths) {
+    for (size_t channel = 0; channel < channels.size(); ++channel) {
+      if (job) job->throw_if_cancelled();
+      if (group) {
+        for (const int64_t path : paths) channels[channel].group.push_back((*group)[static_cast<size_t>(path)]);
+      }
+      synthesizer.add(static_cast<int>(channel), channels[channel], job);
     }
-    return channels;
   }
 };
 
@@ -73,15 +96,16 @@ std::pair<std::vector<int64_t>, std::vector<int64_t>> split_by_motion(const Repl
 
 // Cubes [group] of all groups, in one pass.
 std::vector<Cube> synthesize_groups(const Paths& paths, const Radar& radar, const std::vector<uint32_t>* group, int num_groups,
-                                    const CubeSettings& settings, Job* job) {
+                                    CubeSettings settings, Job* job) {
+  settings.replay.per_sample = settings.synthesis.per_sample;
   const Replayer replayer(paths, radar, settings.replay);
   const int64_t num_paths = paths.num_paths();
   Synthesizer synthesizer(radar.waveform, replayer.num_channels(), num_groups, num_paths, settings.synthesis);
   const auto [still, moving] = split_by_motion(replayer, num_paths, job);
   if (job) job->start(num_paths * replayer.num_channels());
   Stream stream{replayer, group, synthesizer, job};
-  stream.run(still, false);
-  stream.run(moving, true);
+  stream.add_still(still);
+  stream.add_moving(moving);
 
   std::vector<Cube> cubes;
   for (int g = 0; g < num_groups; ++g) {

@@ -85,9 +85,36 @@ TEST(ExactNodes, ValuesAreThoseOfTheChirps) {
   const Radar radar = two_transmitters(32);
   const auto f = [](double t) { return 10.0 - 30.0 * t + 40.0 * t * t; };
   const auto derivative = [](double t) { return -30.0 + 80.0 * t; };
-  const auto [value, slope] = errors(exact_nodes(radar, kStart), radar, f, derivative);
+  const auto [value, slope] = errors(exact_nodes(radar, kStart, 3), radar, f, derivative);
   EXPECT_LT(value, kPolynomialTolerance * 10);
-  EXPECT_LT(slope, 1e-8);  // second-order differences are exact for parabolas up to rounding / 60 us
+  EXPECT_LT(slope, 1e-8);  // exact for parabolas up to rounding / 25 us
+}
+
+TEST(ExactNodes, DerivativesAreThoseOfTheCubicInAChirp) {
+  const Radar radar = two_transmitters(4);
+  const double half = radar.waveform.window_centre();
+  const FrameNodes nodes = exact_nodes(radar, kStart, 5);
+  const TimeSampling& sampling = nodes.sampling[1];
+  for (int chirp = 0; chirp < 4; ++chirp) {
+    const double middle = kStart + radar.chirp_time(1, chirp);
+    double bend = 0.0, twist = 0.0;
+    for (int k = 0; k < 5; ++k) {
+      const double x = (nodes.times[static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k)] - middle) / half;
+      const double value = 1.0 + 2.0 * x - 3.0 * x * x + 4.0 * x * x * x;
+      bend += sampling.bend[static_cast<size_t>(5 * chirp + k)] * value;
+      twist += sampling.twist[static_cast<size_t>(5 * chirp + k)] * value;
+    }
+    EXPECT_NEAR(bend * half * half, -6.0, 1e-9);
+    EXPECT_NEAR(twist * half * half * half, 24.0, 1e-9);
+  }
+}
+
+TEST(ExactNodes, FramesOfOneSampleHaveNoSlope) {
+  Radar radar = two_transmitters(1);
+  radar.waveform.num_samples = 1;
+  const TimeSampling sampling = exact_nodes(radar, kStart, 3).sampling[0];
+  EXPECT_NEAR(sampling.value[0] + sampling.value[1] + sampling.value[2], 1.0, 1e-14);
+  for (const double slope : sampling.slope) EXPECT_EQ(slope, 0.0);
 }
 
 TEST(StaticNodes, OneNodeServesAllChirps) {

@@ -1,0 +1,25 @@
+#pragma once
+// Echoes at the window centre of one chirp. Internal to the module.
+#include <cstdint>
+
+#include "echopath/signal/echoes.h"
+
+namespace echopath {
+
+struct EchoStates {
+  static constexpr int kCapacity = 256;  // delays, amplitudes and carriers of a block stay in the first-level cache
+  alignas(64) double delay[kCapacity];              // s
+  alignas(64) double rate[kCapacity];               // s/s
+  alignas(64) double amplitude[2 * kCapacity];      // sqrt(W), re, im interleaved
+};
+
+// Second and third derivative of the delays, 1/s and 1/s^2.
+struct EchoBends {
+  alignas(64) double bend[EchoStates::kCapacity];
+  alignas(64) double twist[EchoStates::kCapacity];
+};
+
+// Of echoes [begin, begin + count), count <= kCapacity. `bends` may be null; zeros where the sampling has none.
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends = nullptr);
+
+}  // namespace echopath

@@ -1,0 +1,61 @@
+#include "echopath/signal/per_sample.h"
+
+#include <cmath>
+
+#include "echopath/signal/phasor.h"
+
+namespace echopath {
+namespace {
+
+// One echo over a chirp. The phase at the window centre is reduced once; what is added to it over the chirp is small.
+struct Bent {
+  double re, im;           // conj(a), sqrt(W)
+  double delay;            // s
+  double cycles;           // at the window centre, reduced
+  double rate, half_bend, sixth_twist;
+};
+
+Bent bent_echo(const CarrierModel& model, const EchoStates& states, const EchoBends& bends, int p) {
+  const double tau = states.delay[p], f0 = model.start_frequency;
+  const double cycles = std::fma(f0, tau, -std::round(f0 * tau)) + model.slope * tau * (model.window_centre - 0.5 * tau);
+  return {states.amplitude[2 * p], -states.amplitude[2 * p + 1], tau, cycles, states.rate[p], bends.bend[p] / 2.0,
+          bends.twist[p] / 6.0};
+}
+
+// Beat frequency in the middle of the chirp lies in the band of the anti-alias filter.
+bool passes_filter(const CarrierModel& model, const Bent& echo) {
+  const double swept = model.slope * echo.delay;
+  const double beat = swept + (model.start_frequency + model.slope * model.window_centre - swept) * echo.rate;
+  const double frequency = beat * model.sample_interval;
+  return frequency >= 0.0 && frequency < model.highest_frequency;
+}
+
+ECHOPATH_SIMD void add_bent(const CarrierModel& model, const Bent& echo, int num_samples, double* out_re, double* out_im) {
+  const double slope = model.slope, centre = model.window_centre, step = model.sample_interval;
+  const double carrier = model.start_frequency + slope * (centre - echo.delay);
+  for (int n = 0; n < num_samples; ++n) {
+    const double x = n * step - centre;
+    const double moved = x * (echo.rate + x * (echo.half_bend + x * echo.sixth_twist));  // s since the window centre
+    const double cycles = echo.cycles + carrier * moved + slope * (x * (echo.delay + moved) - 0.5 * moved * moved);
+    const Phasor phasor = phasor_of_cycles(cycles);
+    out_re[n] += echo.re * phasor.re - echo.im * phasor.im;
+    out_im[n] += echo.re * phasor.im + echo.im * phasor.re;
+  }
+}
+
+}  // namespace
+
+void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, int64_t row_length, Rows rows) const {
+  EchoStates states;
+  EchoBends bends;
+  evaluate_states(echoes, chirp, begin, count, states, &bends);
+  for (int p = 0; p < count; ++p) {
+    const Bent echo = bent_echo(model_, states, bends, p);
+    if (!passes_filter(model_, echo)) continue;
+    const uint32_t group = echoes.group.empty() ? 0 : echoes.group[static_cast<size_t>(begin + p)];
+    double* row = rows.first + group * rows.stride;
+    add_bent(model_, echo, num_samples_, row, row + row_length);
+  }
+}
+
+}  // namespace echopath

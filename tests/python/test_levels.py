@@ -117,6 +117,13 @@ def test_ghosts_of_a_rough_sphere_at_a_wall(gamma):
     assert rough_sphere_levels(material) == pytest.approx([one, one, pair, two_way], abs=WALL_TOLERANCE_DB)
 
 
+def test_a_limit_of_bounces_keeps_the_orders_that_fit():
+    scene = scene_of(target=(sphere((10, 0, 1), .3, 4), lambert(.5)), wall=wall(3, MIRROR))
+    paths = ep.trace(scene, make_radar((0, 0, 1)), num_rays=1 << 14, max_bounces=2)
+    there, back = (power_by_hit(paths.select(f"T {route} R"), 0) for route in ("'wall' 'target'", "'target' 'wall'"))
+    assert back / there == pytest.approx(1.0, abs=1e-4)  # one hit in 1e4 sees only one of both by rounding
+
+
 @pytest.mark.parametrize("baseline", PAIR_OVER_BASELINE)
 def test_the_pair_of_ghosts_fades_over_the_baseline(baseline):
     pair = rough_sphere_levels(MIRROR, baseline)[2]

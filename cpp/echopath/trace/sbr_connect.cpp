@@ -30,7 +30,9 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
   const bool radiates_power = surface.response.diffuse > 0;
   if (!radiates_field && !radiates_power) return;
-  legs_.find(point, surface.point.normal, settings_.receiver, ray.depth < settings_.max_bounces, kOther, scratch.receive,
+  // A pair may leave out the mirror that the ray came over.
+  const bool with_mirrors = ray.depth < settings_.max_bounces || (ray.chain >= 0 && settings_.max_bounces > 1);
+  legs_.find(point, surface.point.normal, settings_.receiver, with_mirrors, kOther, scratch.receive,
              block.statistics.num_queries);
   if (scratch.receive.empty()) return;
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
@@ -62,6 +64,7 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
   std::array<Hit, 65> hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
   int count = ray.depth;
+  if (leg.mirror >= 0 && count == settings_.max_bounces) return;
   if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
   if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
   else block.add(hits.data(), count, bits, weight, ray.stratum);

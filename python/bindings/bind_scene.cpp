@@ -38,13 +38,14 @@ std::optional<double> as_optional_number(const py::object& value, const char* ar
 
 // --- Material ---
 
-const std::vector<std::string> kMaterialFields = {"conductor",        "permittivity", "conductivity", "reflectivity",
-                                                  "roughness_height", "scattering",   "mirror"};
+const std::vector<std::string> kMaterialFields = {"conductor",  "permittivity",       "conductivity", "reflectivity", "roughness_height",
+                                                  "scattering", "cross_polarization", "mirror"};
 
 std::shared_ptr<Material> material(const py::object& conductor, const py::object& permittivity,
                                    const py::object& conductivity, const py::object& reflectivity,
                                    const py::object& roughness_height, const py::object& scattering,
-                                   const py::object& mirror, const py::kwargs& unknown) {
+                                   const py::object& cross_polarization, const py::object& mirror,
+                                   const py::kwargs& unknown) {
   refuse_unknown(unknown, "Material", kMaterialFields);
   auto made = std::make_shared<Material>();
   made->conductor = as_bool(conductor, "conductor");
@@ -55,6 +56,7 @@ std::shared_ptr<Material> material(const py::object& conductor, const py::object
   made->reflectivity = as_optional_number(reflectivity, "reflectivity");
   made->roughness_height = as_number(roughness_height, "roughness_height");
   made->scattering = as_optional_number(scattering, "scattering");
+  made->cross_polarization = as_number(cross_polarization, "cross_polarization");
   made->mirror = as_bool(mirror, "mirror");
   made->validate();
   return made;
@@ -68,6 +70,7 @@ py::dict fields_of(const Material& self) {
   fields["reflectivity"] = self.reflectivity;
   fields["roughness_height"] = self.roughness_height;
   fields["scattering"] = self.scattering;
+  fields["cross_polarization"] = self.cross_polarization;
   fields["mirror"] = self.mirror;
   return fields;
 }
@@ -98,11 +101,13 @@ reflectivity: share of power in [0, 1] that is reflected at every angle
 and further
 conductivity: S/m, adds to the permittivity
 roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
+cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cross polarisation (polarised traces); 0.5 is
+full depolarisation, the most a reciprocal surface without a preferred axis does
 mirror: True for a plane larger than its Fresnel zone, which is treated by images
 Raises ValueError naming the field, the rule and the value.)")
       .def(py::init(&material), py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
            py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
-           py::arg("scattering") = py::none(), py::arg("mirror") = false)
+           py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false)
       .def_static("metal", [](bool mirror) { return std::make_shared<Material>(Material::metal(mirror)); },
                   py::arg("mirror") = false, "A perfect conductor; mirror: a plane larger than its Fresnel zone.")
       .def("replace", &replaced, "A copy with some fields changed: material.replace(mirror=True).")
@@ -112,6 +117,7 @@ Raises ValueError naming the field, the rule and the value.)")
       .def_readonly("reflectivity", &Material::reflectivity, "share of power in [0, 1], or None")
       .def_readonly("roughness_height", &Material::roughness_height, "rms height in m")
       .def_readonly("scattering", &Material::scattering, "S in [0, 1], or None")
+      .def_readonly("cross_polarization", &Material::cross_polarization, "K in [0, 0.5]")
       .def_readonly("mirror", &Material::mirror, "bool")
       .def("__eq__", [](const Material& self, const py::object& other) {
         return py::isinstance<Material>(other) && fields_of(self).equal(fields_of(other.cast<const Material&>()));

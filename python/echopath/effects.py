@@ -3,10 +3,13 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
+
 from . import _core
 from .tessellation import COHERENT_SHARE, coherent_share
 
-MAX_NAMES = 3  # of meshes or materials in a reason
+MAX_NAMES = 3        # of meshes or materials in a reason
+CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,7 +29,7 @@ def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_orde
     for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
     found = [*_of_surfaces(scene, radar, max_bounces, footprint), *_of_motion(scene, radar), *_of_radar(radar),
-             _of_polarization(polarization)]
+             *_of_polarization(scene, radar, polarization)]
     return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
 
 
@@ -96,10 +99,31 @@ def _of_radar(radar) -> list[Effect]:
             Effect("real samples", radar.waveform.real, "real = true" if radar.waveform.real else "complex samples")]
 
 
-def _of_polarization(polarization: str) -> Effect:
+def _of_polarization(scene, radar, polarization: str) -> list[Effect]:
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    turning = [mesh for mesh in scene.meshes
+               if mesh.material.cross_polarization > 0.0 and coherent_share(mesh.material, wavelength) < 1.0]
     if polarization == "jones":
-        return Effect("polarised fields", True, 'polarization = "jones", for the coherent echoes')
-    return Effect("polarised fields", False, "each hit takes the TE or TM coefficient nearer to the polarization")
+        return [Effect("polarised fields", True, 'polarization = "jones"'),
+                Effect("depolarisation by roughness", bool(turning),
+                       _because(turning, "no rough material has a cross_polarization"))]
+    reason = "each hit takes the TE or TM coefficient nearer to the polarization"
+    if _has_crossed_antennas(radar):
+        reason += '; antennas of other polarisation count as co-polarised: polarization = "jones" tells them apart'
+    return [Effect("polarised fields", False, reason),
+            Effect("depolarisation by roughness", False, 'polarization = "scalar"')]
+
+
+def _has_crossed_antennas(radar) -> bool:
+    first, *others = [_polarization_of(antenna) for antenna in [*radar.transmitters, *radar.receivers]]
+    return any(abs(first @ other) < CO_POLARISED for other in others)
+
+
+def _polarization_of(antenna) -> np.ndarray:
+    """[3] unit vector in the radar's frame."""
+    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
+    cross = np.cross(imaginary, antenna.polarization)
+    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
 
 
 def _because(meshes, otherwise: str) -> str:

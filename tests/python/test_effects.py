@@ -70,6 +70,23 @@ def test_settings_switch_effects_off():
     assert found(max_bounces=2)["multiple bounces"].modelled
 
 
+def test_polarised_fields_are_on_where_the_settings_ask_for_them():
+    turning = make_scene(ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2))
+    assert found(turning, polarization="jones")["polarised fields"].modelled
+    assert found(turning, polarization="jones")["depolarisation by roughness"].modelled
+    assert not found(polarization="jones")["depolarisation by roughness"].modelled
+    assert not found(turning)["polarised fields"].modelled and not found(turning)["depolarisation by roughness"].modelled
+
+
+def test_a_scalar_trace_says_that_it_does_not_tell_antennas_apart():
+    half = np.sqrt(0.5)
+    crossed = ep.Antenna(polarization=(0, 1, 0))
+    turned = ep.Antenna(orientation=(half, half, 0, 0), polarization=(0, 1, 0))  # +y of the antenna is +z of the radar
+    for receiver, is_said in ((crossed, True), (turned, False), (ep.Antenna(polarization=(0, 0, -1)), False)):
+        radar = ep.Radar(ep.ChirpSequence(num_chirps=2), transmitters=[ep.Antenna()], receivers=[receiver])
+        assert ("count as co-polarised" in found(radar=radar)["polarised fields"].reason) == is_said
+
+
 def test_what_is_never_modelled_is_said():
     never = [effect for effect in found().values() if effect.reason.startswith(("not modelled", "out of scope"))]
     assert len(never) >= 4 and not any(effect.modelled for effect in never)

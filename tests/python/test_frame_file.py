@@ -32,7 +32,8 @@ def make_scene():
     """A wall that is a mirror, a deforming fan, two turning plates of one mesh, under a moving parent."""
     scene = ep.Scene()
     wall = quad((-5, 3, -5), (40, 3, -5), (40, 3, 6), (-5, 3, 6))
-    scene.add(wall, name="wall", material=ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True))
+    rough = ep.Material(permittivity=5 - 0.3j, scattering=0.3, cross_polarization=0.2, mirror=True)
+    scene.add(wall, name="wall", material=rough)
     mesh, sequence = fan()
     scene.add(mesh, name="fan", material="clothing", motion=sequence, position=(6, 0, 0))
     keys = ep.KeyframeMotion(times=[-1.0, 0.0, 1.0, 2.0],

@@ -81,7 +81,8 @@ def test_fields_are_what_was_given():
     assert material.conductivity == 0.1
     assert material.roughness_height == 1e-3
     assert material.mirror and not material.conductor
-    assert material.reflectivity is None and material.scattering is None
+    assert material.reflectivity is None and material.scattering is None and material.cross_polarization == 0.0
+    assert ep.Material(permittivity=4, scattering=1.0, cross_polarization=0.3).cross_polarization == 0.3
     with pytest.raises(AttributeError):
         material.mirror = False
 
@@ -106,6 +107,7 @@ def test_equal_materials_are_one_key():
     ({"permittivity": 4 + 1j}, "permittivity"),
     ({"reflectivity": 1.5}, "reflectivity"),
     ({"permittivity": 4, "scattering": 2.0}, "scattering"),
+    ({"permittivity": 4, "scattering": 1.0, "cross_polarization": 0.6}, "cross_polarization"),
     ({"permittivity": 4, "roughness_height": -1.0}, "roughness_height"),
     ({"permittivity": 4, "roughness_height": 1e-3, "scattering": 0.4}, "scattering"),
 ])

@@ -102,9 +102,9 @@ translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.
 
 def test_a_material_table_changes_a_named_material(write):
     material = ep.load_scene(write(mesh_object(
-        'material = {base = "concrete", scattering = 0.3, mirror = true}'))).scene.meshes[0].material
+        'material = {base = "concrete", scattering = 0.3, cross_polarization = 0.1, mirror = true}'))).scene.meshes[0].material
     assert material.permittivity == ep.materials["concrete"].permittivity
-    assert (material.scattering, material.mirror) == (0.3, True)
+    assert (material.scattering, material.cross_polarization, material.mirror) == (0.3, 0.1, True)
 
 
 def test_a_loss_is_a_negative_imaginary_part(write):
@@ -152,6 +152,8 @@ FAULTS = [
     (RADAR + mesh_object("material = {scatering = 0.3}"),
      "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
     (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),
+    (RADAR + mesh_object("material = {cross_polarization = 0.6}"),
+     "objects[0].material.cross_polarization: must be at most 0.5"),
     (RADAR + mesh_object(""), "objects[0]"),
     (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linaer'}"), "objects[0].motion: has an unknown kind"),
     (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linear', speed = 3}"),

@@ -14,6 +14,22 @@ FieldVector cross(const Vec3& a, const FieldVector& b) {
 // a.b without conjugation.
 std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// Unit normal of the plane of two directions; where they are parallel any plane through the first serves.
+Vec3 plane_normal(const Vec3& direction, const Vec3& other) {
+  const Vec3 across = direction.cross(other);
+  const double sine = across.norm();
+  return sine > 1e-9 ? Vec3(across / sine) : direction.unitOrthogonal();
+}
+
+// An unturned wave and one that is mirrored at the axis, in quadrature: a unitary, symmetric matrix.
+FieldVector depolarized(const FieldVector& field, const Vec3& direction, const Vec3& out, const Depolarization& by) {
+  const Vec3 first = plane_normal(direction, out), second = direction.cross(first);
+  const Vec3 axis = std::cos(by.axis) * first + std::sin(by.axis) * second;
+  const FieldVector mirrored = 2.0 * dot(axis, field) * axis.cast<std::complex<double>>() - field;
+  const double turned = 2.0 * by.cross_share;
+  return std::sqrt(1.0 - turned) * field + std::complex<double>(0.0, std::sqrt(turned)) * mirrored;
+}
+
 }  // namespace
 
 TransverseBasis transverse_basis(const Vec3& direction) {
@@ -54,9 +70,7 @@ ModeCoefficients mode_coefficients(const Material& material, double frequency, d
 
 FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal,
                             const ModeCoefficients& coefficients) {
-  Vec3 te = direction.cross(normal);
-  const double sine = te.norm();
-  te = sine > 1e-9 ? Vec3(te / sine) : direction.unitOrthogonal();  // normal incidence: any plane serves
+  const Vec3 te = plane_normal(direction, normal);
   const Vec3 reflected = direction - 2.0 * direction.dot(normal) * normal;
   const Vec3 tm_in = te.cross(direction), tm_out = te.cross(reflected);
   return coefficients.te * dot(te, incident) * te.cast<std::complex<double>>() +
@@ -70,6 +84,16 @@ FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, c
   const FieldVector electric = cross(normal, FieldVector(incident + reflected));
   const FieldVector magnetic = cross(normal, FieldVector(cross(direction, incident) + cross(mirrored, reflected)));
   return -0.5 * cross(out, FieldVector(electric - cross(out, magnetic)));
+}
+
+FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
+                            const ModeCoefficients& coefficients, const Depolarization& depolarization) {
+  const Vec3 te = plane_normal(direction, normal), tm = te.cross(direction);
+  FieldVector field = std::abs(coefficients.te) * dot(te, incident) * te.cast<std::complex<double>>() +
+                      std::abs(coefficients.tm) * dot(tm, incident) * tm.cast<std::complex<double>>();
+  if (depolarization.cross_share > 0) field = depolarized(field, direction, out, depolarization);
+  const Vec3 facet = (out - direction).normalized();  // finite: `out` is on the lit side, `direction` comes from there
+  return 2.0 * dot(facet, field) * facet.cast<std::complex<double>>() - field;
 }
 
 }  // namespace echopath

@@ -18,7 +18,7 @@ using JonesMatrix = std::array<std::complex<float>, 4>;
 
 enum class PolarizationModel {
   kScalar,  // one coefficient a hit, TE or TM by the transmit polarisation; costs nothing
-  kJones,   // field vectors; a matrix from transmit to receive components is kept per coherent path
+  kJones,   // field vectors; a matrix from transmit to receive components is kept per path
 };
 
 // Two unit vectors across a direction of travel: `horizontal` lies in the xy-plane, `vertical` = direction x horizontal points
@@ -51,5 +51,23 @@ FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, 
 // -[E cos_i + k_i (n.E)] across `out`. The coefficient of a conductor's TM part grows as 1/cos_i against the scalar K = cos_i.
 FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
                            const ModeCoefficients& coefficients);
+
+// How one diffuse hit turns polarisations.
+struct Depolarization {
+  double cross_share = 0.0;  // mean share of power across the polarisation that came, in [0, 0.5]
+  double axis = 0.0;         // rad in [0, pi), random per hit
+};
+
+// Diffuse scattering: what takes the place of |Gamma| E for power that leaves along the unit vector `out`.
+// The modes lose |Gamma_TE| and |Gamma_TM|; the rest keeps its power and turns as on a metal facet that mirrors `direction`
+// into `out`, so that a co-polarised radar sees all of it, in any orientation. Before, two waves in quadrature share it: one
+// with 1 - 2 K of the power as it is, one with 2 K mirrored at an axis across the direction, at the angle `axis` from the
+// normal of the scattering plane. Averaged over axes every linear polarisation has K of its power in the cross one, by no
+// hit is power gained or lost, and swapping both ends transposes the matrix. No surface that is reciprocal and has no
+// preferred axis turns more than half. With K = 1/4 it scatters like a cloud of thin needles.
+// Sources: K is K_x of Degli-Esposti et al. 2011; Nghiem et al. 1992 (reciprocal media without a preferred axis:
+// <hh vv*> = <|hh|^2> - 2 <|hv|^2>); Freeman and Durden 1998 (needles).
+FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
+                            const ModeCoefficients& coefficients, const Depolarization& depolarization);
 
 }  // namespace echopath

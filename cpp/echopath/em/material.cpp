@@ -31,6 +31,8 @@ void Material::validate() const {
     require(*scattering >= 0 && *scattering <= 1, "scattering", "must lie in [0, 1]", *scattering);
     require(roughness_height == 0, "roughness_height", "excludes scattering: give one of them", roughness_height);
   }
+  require(cross_polarization >= 0 && cross_polarization <= 0.5, "cross_polarization",
+          "must lie in [0, 0.5], where one half is full depolarisation", cross_polarization);
 }
 
 }  // namespace echopath

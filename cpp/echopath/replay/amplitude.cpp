@@ -85,12 +85,10 @@ double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPa
 }
 
 // What the polarisations of two antennas make of a path: receive components, matrix, transmit components.
-std::complex<double> polarization_factor(const JonesMatrix* jones, const PosedAntenna& start, const Vec3& departure,
+std::complex<double> polarization_factor(const JonesMatrix& j, const PosedAntenna& start, const Vec3& departure,
                                          const PosedAntenna& end, const Vec3& arrival) {
-  if (!jones) return 1.0;
   const Eigen::Vector2d from = transverse_components(start.polarization, departure);
   const Eigen::Vector2d to = transverse_components(end.polarization, arrival);
-  const JonesMatrix& j = *jones;
   return to[0] * (from[0] * std::complex<double>(j[0]) + from[1] * std::complex<double>(j[1])) +
          to[1] * (from[0] * std::complex<double>(j[2]) + from[1] * std::complex<double>(j[3]));
 }
@@ -109,9 +107,11 @@ void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const In
       const int64_t at = out.stride * channel++;
       out.length[at] = leg.length;
       out.amplitude[at] = path.weight * radio.wavelength *
-                          polarization_factor(path.jones, transmitter, leg.departure, receiver, leg.arrival) *
                           std::sqrt(radio.transmit_power * leg.transmit_gain.power * leg.receive_gain.power) /
                           (kFourPi * leg.length);
+      if (path.jones) {
+        out.amplitude[at] *= polarization_factor(*path.jones, transmitter, leg.departure, receiver, leg.arrival);
+      }
       turn(out.amplitude[at], leg.transmit_gain.phase + leg.receive_gain.phase);
     }
   }
@@ -141,11 +141,11 @@ void evaluate_path(const LocalPath& path, const Instant& instant, const RadioCon
       out.length[at] = in.length + inner.length + back.length;
       const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
       if (near) out.amplitude[at] = 0.0;
-      else if (path.diffuse == 0) {
-        out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio) *
-                            polarization_factor(path.jones, starts[start], in.at_antenna, ends[end], back.at_antenna);
-      }
+      else if (path.diffuse == 0) out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio);
       else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
+      if (path.jones) {
+        out.amplitude[at] *= polarization_factor(*path.jones, starts[start], in.at_antenna, ends[end], back.at_antenna);
+      }
       turn(out.amplitude[at], in.gain.phase + back.gain.phase);
     }
   }

@@ -9,6 +9,7 @@
 //   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in / r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
 //   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert).
 // Mirrors only: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
+// In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all coefficients.
 // Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}.
 // A path whose surface is seen from opposite sides has amplitude 0. The phase of the length is not part of the amplitude.
 #include "echopath/em/footprint.h"

@@ -44,7 +44,7 @@ struct LocalPath {
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
   std::complex<double> weight;
   LaunchCell cell;                 // coherent paths only
-  const JonesMatrix* jones = nullptr;  // coherent paths of a polarised trace, else null
+  const JonesMatrix* jones = nullptr;  // null where the trace was scalar
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

@@ -110,7 +110,7 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
     path.hits = block.hits.data() + block.hits.size();
     path.count = paths_.num_bounces[p];
     path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
-    if (!paths_.jones.empty() && paths_.diffuse[p] == 0) path.jones = &paths_.jones[p];
+    if (!paths_.jones.empty()) path.jones = &paths_.jones[p];
     path.weight = std::complex<double>(paths_.weight[p]);
     block.longest = std::max(block.longest, path.count);
     for (int k = 0; k < path.count; ++k) {

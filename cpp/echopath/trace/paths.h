@@ -88,8 +88,8 @@ struct Paths {
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
   std::vector<std::array<float, 7>> curved_cell;
 
-  // [P] or empty (scalar): of coherent paths, in the transverse bases of em/jones.h; takes the place of Gamma in the weight, over cos_i at the last surface. Zero for diffuse paths, which carry
-  // power whatever the polarisation.
+  // [P] or empty (scalar): in the transverse bases of em/jones.h, with the coefficients of all hits, which then are not in the
+  // weight. Of coherent paths over cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
   std::shared_ptr<const Scene> scene;        // snapshot

@@ -183,7 +183,9 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
   ray.last_was_mirror = false;
   const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
   const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
-  ray.direction = cosine_lobe(normal, random);
+  const Vec3 out = cosine_lobe(normal, random);
+  if (settings_.is_polarized) scatter_polarized(ray, surface, out);
+  ray.direction = out;
   ray.leg_length = 0.0;
   ray.leg_density = probability * std::max(normal.dot(ray.direction), 1e-9) / kPi;
 }

@@ -46,7 +46,7 @@ class RayShooter {
   bool opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const;
   void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
               bool with_reversal, PathBlock& block) const;
-  void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const;
+  void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
@@ -62,6 +62,11 @@ class RayShooter {
   // sbr_polarization.cpp: only where polarised.
   void reflect_polarized(Ray& ray, const Surface& surface) const;
   JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
+  JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
+  JonesMatrix pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const;
+  void scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const;
+  FieldPair scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
+  FieldPair incident_over(const Leg& leg) const;
   JonesMatrix received_over(const Leg& leg, FieldPair fields) const;
   std::complex<double> phase_factor(const Ray& ray) const;
 

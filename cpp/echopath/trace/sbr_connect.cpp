@@ -68,16 +68,18 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
   if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
   if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
   else block.add(hits.data(), count, bits, weight, ray.stratum);
-  if (bits == 0) set_columns(ray, surface, leg, block);
+  set_columns(ray, surface, leg, bits, block);
   if (!with_reversal) return;
   block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
-  if (bits == 0) set_columns(ray, surface, leg, block);
+  set_columns(ray, surface, leg, bits, block);
 }
 
 // What the last path needs beside its weight, if the scene asks for it.
-void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const {
-  if (ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
-  if (settings_.is_polarized) block.set_jones(coherent_matrix(ray, surface, leg));
+void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits,
+                             PathBlock& block) const {
+  if (bits == 0 && ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
+  if (!settings_.is_polarized) return;
+  block.set_jones(bits == 0 ? coherent_matrix(ray, surface, leg) : diffuse_matrix(ray, surface, leg));
 }
 
 // The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
@@ -102,12 +104,15 @@ std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surfac
 }
 
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
-  const double magnitude = std::sqrt(ray.area * surface.area) * std::abs(surface.response.gamma) * surface.response.diffuse;
-  const std::complex<double> weight = ray.coefficient * magnitude * phase_factor(ray);
+  const std::complex<double> scalar =
+      settings_.is_polarized ? 1.0 : ray.coefficient * std::abs(surface.response.gamma) * surface.response.diffuse;
+  const std::complex<double> weight = scalar * std::sqrt(ray.area * surface.area) * phase_factor(ray);
   const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
   // Behind a diffuse hit the opposite order is sampled by itself.
   const bool with_reversal = ray.coherent && ray.mirror.mesh >= 0;
-  for (const Leg& leg : scratch.receive) record(ray, surface, leg, bits, weight * leg.gain, with_reversal, block);
+  for (const Leg& leg : scratch.receive) {
+    record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
+  }
 }
 
 Leg RayShooter::own_leg(const Ray& ray) const {
@@ -146,7 +151,9 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
     const SurfaceResponse response =
         respond(*surface.material, settings_.frequency, surface.point.normal.dot(in.to_antenna),
                 polarization_mode(settings_.polarization, arrival, surface.point.normal));
-    const std::complex<double> weight = root_area * std::abs(response.gamma) * response.diffuse * in.gain * phase;
+    const std::complex<double> scalar =
+        settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
+    const std::complex<double> weight = root_area * scalar * phase;
     const int first = in.mirror >= 0 ? 1 : 0;
     const uint64_t bits = uint64_t{1} << first;
     for (const Leg& out : scratch.receive) {
@@ -160,8 +167,9 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
         std::array<Hit, 3> hits{in.mirror_hit};
         hits[static_cast<size_t>(first)] = surface.point.hit;
         if (out.mirror >= 0) hits[static_cast<size_t>(first + 1)] = out.mirror_hit;
-        block.add(hits.data(), count, bits, weight * out.gain, ray.stratum);
+        block.add(hits.data(), count, bits, settings_.is_polarized ? weight : weight * out.gain, ray.stratum);
       }
+      if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, in, out));
     }
   }
 }

@@ -1,7 +1,14 @@
 // Everything that makes the matrices of polarised paths (Paths::jones) along a ray.
+//
+// Coherent paths hold the true reflections and the vector form of physical optics. Diffuse paths hold the true reflections of
+// their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations
+// (em/jones.h, scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is that of every
+// split in turn, the phases between two polarisations are those of one chance.
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/constants.h"
+#include "echopath/base/random.h"
 #include "echopath/trace/sbr_state.h"
 
 namespace echopath {
@@ -9,25 +16,58 @@ namespace {
 
 constexpr double kPolarizedGrazing = 0.05;  // cosine of incidence that bounds the quotient of coherent_matrix
 
-}  // namespace
-
-// Specular bounce, before the ray's direction changes.
-void RayShooter::reflect_polarized(Ray& ray, const Surface& surface) const {
-  const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, surface.cos_incidence);
-  for (FieldVector& field : ray.polarized) {
-    field = surface.response.coherent * reflected_field(field, ray.direction, surface.point.normal, modes);
-  }
+// Fields behind a mirror or specular bounce of the given specular share of power.
+void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const Material& material, double frequency,
+                 double specular_share) {
+  const ModeCoefficients modes = mode_coefficients(material, frequency, -direction.dot(normal));
+  for (FieldVector& field : fields) field = std::sqrt(specular_share) * reflected_field(field, direction, normal, modes);
 }
 
-// Components at the receiver of fields that leave the last material point along a leg.
+}  // namespace
+
+// Before the ray's direction changes.
+void RayShooter::reflect_polarized(Ray& ray, const Surface& surface) const {
+  const double coherent = surface.response.coherent;
+  reflect_all(ray.polarized, ray.direction, surface.point.normal, *surface.material, settings_.frequency, coherent * coherent);
+}
+
+void RayShooter::scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const {
+  ray.polarized = scattered(ray, surface, ray.polarized, ray.direction, out);
+}
+
+// What a diffuse hit makes of fields that travel along `in`. Its random axis is bound to the hit, like its phase.
+FieldPair RayShooter::scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+                                const Vec3& out) const {
+  const double cos_incidence = -in.dot(surface.point.normal);
+  const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, cos_incidence);
+  const double diffuse = respond(*surface.material, settings_.frequency, cos_incidence, PolarizationMode::kTe).diffuse;
+  Depolarization turn{surface.material->cross_polarization, 0.0};
+  if (turn.cross_share > 0) {
+    const auto index = static_cast<uint64_t>(ray.index);
+    turn.axis = kPi * uniform2(settings_.seed, Stream::kPhase, index, static_cast<uint32_t>(ray.depth))[1];
+  }
+  FieldPair out_fields;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    out_fields[launch] = diffuse * scattered_field(fields[launch], in, surface.point.normal, out, modes, turn);
+  }
+  return out_fields;
+}
+
+// Fields at a surface point of launches along a leg to it.
+FieldPair RayShooter::incident_over(const Leg& leg) const {
+  FieldPair fields = launched_fields(leg.at_antenna);
+  if (leg.mirror >= 0) {
+    const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
+    reflect_all(fields, leg.at_antenna, leg.mirror_normal, material, settings_.frequency, leg.specular_share);
+  }
+  return fields;
+}
+
+// Components at the receiver of fields that leave a surface point along a leg.
 JonesMatrix RayShooter::received_over(const Leg& leg, FieldPair fields) const {
   if (leg.mirror >= 0) {
     const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
-    const double cos_mirror = -leg.to_antenna.dot(leg.mirror_normal);
-    const ModeCoefficients modes = mode_coefficients(material, settings_.frequency, cos_mirror);
-    for (FieldVector& field : fields) {
-      field = std::sqrt(leg.specular_share) * reflected_field(field, leg.to_antenna, leg.mirror_normal, modes);
-    }
+    reflect_all(fields, leg.to_antenna, leg.mirror_normal, material, settings_.frequency, leg.specular_share);
   }
   return arriving_components(fields, -leg.at_antenna);
 }
@@ -41,6 +81,16 @@ JonesMatrix RayShooter::coherent_matrix(const Ray& ray, const Surface& surface, 
     fields[launch] = scale * radiated_field(ray.polarized[launch], ray.direction, surface.point.normal, leg.to_antenna, modes);
   }
   return received_over(leg, fields);
+}
+
+JonesMatrix RayShooter::diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
+  return received_over(leg, scattered(ray, surface, ray.polarized, ray.direction, leg.to_antenna));
+}
+
+// The ray's own way to the hit is one of the legs `in`.
+JonesMatrix RayShooter::pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const {
+  const FieldPair incident = in.mirror == ray.chain ? ray.polarized : incident_over(in);
+  return received_over(out, scattered(ray, surface, incident, -in.to_antenna, out.to_antenna));
 }
 
 }  // namespace echopath

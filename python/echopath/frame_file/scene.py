@@ -100,7 +100,7 @@ def _read_mesh(group):
 
 
 _MATERIAL_KINDS = {"conductor": bool, "permittivity": complex, "conductivity": float, "reflectivity": float,
-                   "roughness_height": float, "scattering": float, "mirror": bool}
+                   "roughness_height": float, "scattering": float, "cross_polarization": float, "mirror": bool}
 
 
 def _write_material(group, material) -> None:

@@ -166,6 +166,8 @@ class MaterialTable(Table):
     roughness_height: NotNegative = Field(0.0, description="m, rms")
     scattering: Optional[Annotated[float, Field(ge=0, le=1)]] = Field(
         None, description="S; S^2 is the diffuse share of reflected power")
+    cross_polarization: Annotated[float, Field(ge=0, le=0.5)] = Field(
+        0.0, description="share of diffuse power in the cross polarisation")
     mirror: bool = Field(False, description="a plane larger than its Fresnel zone, treated by images")
     base: Optional[str] = Field(None, description="name of a known material that gives the other keys")
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "echopath/base/constants.h"
 #include "echopath/em/fresnel.h"
 #include "echopath/em/jones.h"
 
@@ -88,6 +89,70 @@ TEST(Jones, ComponentsAreThoseAcrossTheDirection) {
   EXPECT_LT((transverse_components(Vec3::UnitY(), Vec3::UnitX()) - Eigen::Vector2d(1, 0)).norm(), kRounding);
   EXPECT_LT((transverse_components(Vec3(0.3, 0, 1), Vec3::UnitX()) - Eigen::Vector2d(0, 1)).norm(), kRounding);
   EXPECT_EQ(transverse_components(Vec3::UnitX(), Vec3::UnitX()), Eigen::Vector2d::Zero());
+}
+
+// --- Diffuse hits ---
+
+TEST(Scattering, MetalWithoutDepolarisationIsAFacetThatMirrors) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 100; ++i) {
+    const Case at = random_case(random);
+    const Vec3 facet = (at.out - at.direction).normalized();
+    const FieldVector scattered = scattered_field(at.field, at.direction, at.normal, at.out, {-1.0, 1.0}, {});
+    EXPECT_LT((scattered - reflected_field(at.field, at.direction, facet, {-1.0, 1.0})).norm(), 20 * kRounding);
+  }
+}
+
+TEST(Scattering, EveryHitKeepsThePowerOfItsModes) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const ModeCoefficients modes{{-0.4, 0.3}, {0.2, -0.1}};
+  for (int i = 0; i < 200; ++i) {
+    const Case at = random_case(random);
+    const Depolarization turn{0.5 * unit(random), kPi * unit(random)};
+    const FieldVector scattered = scattered_field(at.field, at.direction, at.normal, at.out, modes, turn);
+    const double te = std::norm(dot(at.direction.cross(at.normal).normalized(), at.field));
+    const double power = std::norm(modes.te) * te + std::norm(modes.tm) * (at.field.squaredNorm() - te);
+    EXPECT_NEAR(scattered.squaredNorm(), power, 20 * kRounding * at.field.squaredNorm());
+    EXPECT_LT(std::abs(dot(at.out, scattered)), 20 * kRounding * at.field.norm());
+  }
+}
+
+TEST(Scattering, ExchangedEndsTransposeTheMatrix) {
+  std::mt19937 random(10);
+  for (int i = 0; i < 100; ++i) {
+    const Case at = random_case(random), other = random_case(random);
+    const Depolarization turn{0.3, 0.03 * i};
+    const FieldVector received = other.field - dot(at.out, other.field) * at.out.cast<std::complex<double>>();
+    const FieldVector forth = scattered_field(at.field, at.direction, at.normal, at.out, {-1.0, 1.0}, turn);
+    const FieldVector back = scattered_field(received, -at.out, at.normal, -at.direction, {-1.0, 1.0}, turn);
+    const std::complex<double> one = received.transpose() * forth, other_way = at.field.transpose() * back;
+    EXPECT_LT(std::abs(one - other_way), 100 * kRounding);
+  }
+}
+
+// Backscatter, averaged over the axes of the hits; with 1/4 hh : hv : hh vv* = 3 : 1 : 1, a cloud of needles.
+TEST(Scattering, MeanPowersAreThoseOfSurfacesWithoutAxis) {
+  constexpr int kAxes = 64;
+  for (const double share : {0.0, 0.1, 0.25, 0.5}) {
+    for (const double slant : {0.0, 0.4, kPi / 4}) {
+      const Vec3 co(0.0, std::sin(slant), std::cos(slant)), cross(0.0, std::cos(slant), -std::sin(slant));
+      double co_power = 0.0, cross_power = 0.0;
+      std::complex<double> coherence = 0.0;
+      for (int i = 0; i < kAxes; ++i) {
+        const auto echo = [&](const Vec3& sent, const Vec3& received) {
+          return dot(received, scattered_field(sent.cast<std::complex<double>>(), Vec3::UnitX(), -Vec3::UnitX(), -Vec3::UnitX(),
+                                               {-1.0, 1.0}, {share, kPi * i / kAxes}));
+        };
+        co_power += std::norm(echo(co, co)) / kAxes;
+        cross_power += std::norm(echo(co, cross)) / kAxes;
+        coherence += echo(co, co) * std::conj(echo(cross, cross)) / double{kAxes};
+      }
+      EXPECT_NEAR(co_power, 1.0 - share, 100 * kRounding);
+      EXPECT_NEAR(cross_power, share, 100 * kRounding);
+      EXPECT_LT(std::abs(coherence - (1.0 - 3.0 * share)), 100 * kRounding);
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,242 @@
+"""Polarised echoes over mirrors and off rough surfaces, against images and boundary conditions worked out here."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.shapes import METAL, WAVELENGTH, fields, make_radar, plate, rectangle, scene_of, sphere
+
+MATRIX_TOLERANCE = 2e-6          # of the field: weights and matrices are kept in single precision
+PLATE_TOLERANCE = 0.002          # of the field: directions vary by as much over a plate of five wavelengths
+PATCH_TOLERANCE = 1e-4           # of the field: likewise over a patch of 0.1 mm
+SPLIT_TOLERANCE = 0.02           # of the power: three standard errors of the mean over the axes of 2e4 hits
+V, H = np.array((0.0, 0, 1)), np.array((0.0, 1, 0))
+
+TRANSMITTER, RECEIVER = np.array((0.2, -0.4, 0.5)), np.array((-0.1, 0.6, 1.1))
+SENT, RECEIVED = np.array((0.2, 0.9, 0.4)), np.array((-0.3, 0.1, 0.95))
+LEAN = np.array((-0.25, -0.9, -0.3)) / np.linalg.norm((-0.25, -0.9, -0.3))  # normal of a wall that leans over
+WALL_POINT = np.array((3.0, 2.5, 0.0))
+TARGET = np.array((4.0, 0.3, 0.4))  # sees both antennas, directly and in the wall
+
+
+# --- Fields by hand: E at a point, times its distance from the image of the antenna ---
+
+def unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+def across(vector, direction):
+    return unit(vector - (vector @ direction) * direction)
+
+
+def mirrored(vector, normal):
+    return vector - 2 * (vector @ normal) * normal
+
+
+def image(point, wall_point, normal):
+    return point - 2 * ((point - wall_point) @ normal) * normal
+
+
+def field_off_metal(field, direction, normal):
+    """An image dipole: tangential moments turn over, those along the normal do not."""
+    return 2 * (normal @ field) * normal - field
+
+
+def field_off(permittivity):
+    """Continuity of the tangential E and H at the surface of a half space, solved for reflected and transmitted wave."""
+    def reflected(field, direction, normal):
+        normal = normal if direction @ normal < 0 else -normal
+        tangential = direction - (direction @ normal) * normal
+        depth = np.sqrt(permittivity - tangential @ tangential + 0j)
+        above, below, none = mirrored(direction, normal), tangential - depth * normal, np.zeros(3)
+        wedge = crossing(normal)
+        rows = np.vstack([np.hstack([above, none]), np.hstack([none, below]), np.hstack([wedge, -wedge]),
+                          np.hstack([wedge @ crossing(above), -wedge @ crossing(below)])])
+        known = np.concatenate([[0, 0], -wedge @ field, -wedge @ np.cross(direction, field)])
+        return np.linalg.lstsq(rows, known, rcond=None)[0][:3]
+    return reflected
+
+
+def crossing(vector):
+    """[3, 3], the matrix of vector x."""
+    return np.cross(np.eye(3), vector)
+
+
+def leaning_wall(material):
+    first = unit(np.cross(LEAN, V))
+    second = np.cross(LEAN, first)
+    return rectangle(WALL_POINT - 20 * (first + second), 40 * first, 40 * second), material
+
+
+def radar_between(transmitter, receiver, sent, received):
+    plain = make_radar(transmitter, receiver)
+    return ep.Radar(plain.waveform, transmitters=[ep.Antenna(transmitter, polarization=unit(sent))],
+                    receivers=[ep.Antenna(receiver, polarization=unit(received))], transmit_power=1.0)
+
+
+def traced(scene, radar, **settings):
+    return ep.trace(scene, radar, polarization="jones", **{"num_rays": 1 << 12, **settings})
+
+
+# --- Mirrors alone ---
+
+@pytest.mark.parametrize("permittivity", [None, 4 - .2j, 1.7, 30 - 20j])
+@pytest.mark.parametrize("sent, received", [(SENT, RECEIVED), (V, V), (V, H), (H, V)])
+def test_a_dipole_before_a_leaning_wall(permittivity, sent, received):
+    material = METAL.replace(mirror=True) if permittivity is None else ep.Material(permittivity=permittivity, mirror=True)
+    reflect = field_off_metal if permittivity is None else field_off(permittivity)
+    radar = radar_between(TRANSMITTER, RECEIVER, sent, received)
+    paths = traced(scene_of(wall=leaning_wall(material)), radar, num_rays=16)
+    assert paths.num_paths == 1
+    line = RECEIVER - image(TRANSMITTER, WALL_POINT, LEAN)
+    arrival = unit(line)
+    departure = mirrored(arrival, LEAN)
+    field = reflect(across(sent, departure), departure, LEAN)
+    expected = WAVELENGTH / (4 * np.pi * np.linalg.norm(line)) * (across(received, arrival) @ field)
+    scale = WAVELENGTH / (4 * np.pi * np.linalg.norm(line))
+    assert abs(paths.amplitude[0] - expected) < MATRIX_TOLERANCE * scale
+
+
+def test_a_dipole_before_two_walls():
+    floor = rectangle((-50, -50, -2), (100, 0, 0), (0, 100, 0))
+    earth = ep.Material(permittivity=5 - .3j, mirror=True)
+    scene = scene_of(floor=(floor, earth), wall=leaning_wall(ep.Material(permittivity=2.5 - .1j, mirror=True)))
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=16)
+    path = paths.select("T 'floor' 'wall' R")
+    assert path.num_paths == 1
+    line = RECEIVER - image(image(TRANSMITTER, np.array((0, 0, -2.0)), V), WALL_POINT, LEAN)
+    arrival = unit(line)
+    between = mirrored(arrival, LEAN)
+    departure = mirrored(between, V)
+    field = field_off(2.5 - .1j)(field_off(5 - .3j)(across(SENT, departure), departure, V), between, LEAN)
+    scale = WAVELENGTH / (4 * np.pi * np.linalg.norm(line))
+    assert abs(path.amplitude[0] - scale * (across(RECEIVED, arrival) @ field)) < MATRIX_TOLERANCE * scale
+
+
+# --- A target beside a mirror ---
+
+ROUTES = {"T 'target' R": (False, False), "T 'wall' 'target' R": (True, False), "T 'target' 'wall' R": (False, True),
+          "T 'wall' 'target' 'wall' R": (True, True)}  # over the wall on the way out, on the way back
+
+
+def legs_of(over):
+    """Directions at the target of waves from the transmitter and the receiver, and those in which they start."""
+    antennas = zip((TRANSMITTER, RECEIVER), over)
+    ends = [image(antenna, WALL_POINT, LEAN) if by_wall else antenna for antenna, by_wall in antennas]
+    arrivals = [unit(TARGET - end) for end in ends]
+    return ends, arrivals, [mirrored(k, LEAN) if by_wall else k for k, by_wall in zip(arrivals, over)]
+
+
+def plate_echo(corner, first, second, over, reflect, num=300):
+    """Physical optics, currents 2 n x H, of a metal plate: the midpoint sum over its points, sqrt(W)."""
+    grid = (np.arange(num) + 0.5) / num
+    points = (corner + grid[:, None, None] * first + grid[None, :, None] * second).reshape(-1, 3)
+    ends, arrivals, starts = legs_of(over)
+    lengths = [np.linalg.norm(points - end, axis=1) for end in ends]
+    # Both as fields of a launch: that of the receiver gives what it makes of a current.
+    lit = [reflect(across(vector, start), start, LEAN) if by_wall else across(vector, start)
+           for vector, start, by_wall in zip((SENT, RECEIVED), starts, over)]
+    normal = unit(np.cross(first, second))
+    normal = -np.sign(normal @ arrivals[0]) * normal
+    current = np.cross(normal, np.cross(arrivals[0], lit[0]))
+    wave = np.exp(-2j * np.pi / WAVELENGTH * (lengths[0] + lengths[1])) / (lengths[0] * lengths[1])
+    area = np.linalg.norm(np.cross(first, second)) / num**2
+    return -1j * area / (4 * np.pi) * wave.sum() * (current @ lit[1])
+
+
+@pytest.mark.parametrize("permittivity", [None, 5 - .3j])
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_turned_metal_plate_beside_a_leaning_wall(route, permittivity):
+    material = METAL.replace(mirror=True) if permittivity is None else ep.Material(permittivity=permittivity, mirror=True)
+    reflect = field_off_metal if permittivity is None else field_off(permittivity)
+    _, arrivals, _ = legs_of(ROUTES[route])
+    facing = unit(-arrivals[0] - arrivals[1])  # it mirrors this route to the receiver
+    first = 0.02 * unit(np.cross(facing, (0.3, 0.2, 1.0)))
+    second = 0.02 * np.cross(facing, unit(first))
+    corner = TARGET - 0.5 * (first + second)
+    scene = scene_of(target=(rectangle(corner, first, second), METAL), wall=leaning_wall(material))
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 15, max_bounces=3)
+    expected = plate_echo(corner, first, second, ROUTES[route], reflect)
+    assert abs(fields(paths.select(route)).sum() / expected - 1) < PLATE_TOLERANCE
+
+
+def test_a_rough_patch_beside_a_leaning_wall():
+    patch = plate(TARGET, (-1.0, 0.4, 0.2), 1e-4), ep.Material(reflectivity=.5, scattering=1.0)
+    scene = scene_of(target=patch, wall=leaning_wall(METAL.replace(mirror=True)))
+    radar = radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED)
+    polarised, scalar = traced(scene, radar, max_bounces=3), ep.trace(scene, radar, num_rays=1 << 12, max_bounces=3)
+    for route, over in ROUTES.items():
+        _, arrivals, starts = legs_of(over)
+        lit = [field_off_metal(across(vector, start), start, LEAN) if by_wall else across(vector, start)
+               for vector, start, by_wall in zip((SENT, RECEIVED), starts, over)]
+        facet = unit(-arrivals[0] - arrivals[1])
+        expected = lit[1] @ field_off_metal(lit[0], arrivals[0], facet) * (-1) ** sum(over)  # scalar metal reflects with -1
+        ratio = polarised.select(route).amplitude / scalar.select(route).amplitude
+        assert len(ratio) > 100 and np.all(np.abs(ratio - expected) < PATCH_TOLERANCE), route
+
+
+# --- Rough surfaces share power between the polarisations ---
+
+def rough(share, **others):
+    return ep.Material(reflectivity=.5, scattering=.8, cross_polarization=share, **others)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.25, 0.5])
+@pytest.mark.parametrize("slant_deg", [0, 30, 45])
+def test_the_cross_polarised_receiver_gets_its_share(share, slant_deg):
+    slant = np.radians(slant_deg)
+    co, cross = np.array((0, np.sin(slant), np.cos(slant))), np.array((0, np.cos(slant), -np.sin(slant)))
+    material = ep.Material(reflectivity=.5, scattering=1.0, cross_polarization=share)
+    scene = scene_of(ball=(sphere((50, 0, 0), .3, 4), material))
+    plain = make_radar((0, 0, 0))
+    radar = ep.Radar(plain.waveform, transmitters=[ep.Antenna((0, 0, 0), polarization=co)],
+                     receivers=[ep.Antenna((0, 0, 0), polarization=p) for p in (co, cross)], transmit_power=1.0)
+    paths = traced(scene, radar, num_rays=1 << 14, max_bounces=1)
+    total = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=1).power
+    time = [paths.frame.trace_time]
+    powers = [np.abs(paths.amplitudes(time, 0, receiver)[0]) ** 2 for receiver in (0, 1)]
+    assert powers[0] + powers[1] == pytest.approx(total, rel=1e-5)  # of every hit
+    assert powers[0].sum() / total.sum() == pytest.approx(1 - share, abs=SPLIT_TOLERANCE)
+    assert powers[1].sum() / total.sum() == pytest.approx(share, abs=SPLIT_TOLERANCE)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_no_chain_of_rough_and_mirroring_bounces_gains_or_loses_power(share):
+    scene = scene_of(a=(rectangle((0, .1, -.5), (0, 2, 0), (0, 0, 1)), rough(share)),
+                     b=(rectangle((.1, 0, -.5), (2, 0, 0), (0, 0, 1)), rough(share)),
+                     floor=(rectangle((-9, -9, -1), (18, 0, 0), (0, 18, 0)), rough(share, mirror=True)))
+    radar = make_radar((3, 2, .3), (2, 3, .5))
+    paths, scalar = traced(scene, radar, num_rays=20000), ep.trace(scene, radar, num_rays=20000)
+    assert np.array_equal(paths.diffuse, scalar.diffuse) and np.any(paths.diffuse & (paths.diffuse - 1) != 0)
+    launched_vertically = np.linalg.norm(paths.jones[:, :, 1], axis=1)
+    diffuse = paths.diffuse != 0
+    assert np.abs(paths.weight * launched_vertically)[diffuse] == pytest.approx(np.abs(scalar.weight)[diffuse], rel=1e-5)
+
+
+def matrices_by_hit(paths, hit):
+    """{the hit that stands at `hit` of each path: matrix of the path}."""
+    at = paths.offsets + hit
+    return dict(zip(zip(paths.triangle_id[at], paths.u[at], paths.v[at]), paths.jones))
+
+
+def test_both_orders_of_a_ghost_carry_the_same_in_exchanged_polarisations():
+    ball = ep.Material(reflectivity=.5, scattering=1.0, cross_polarization=.3)
+    earth = ep.Material(permittivity=5 - .3j, mirror=True)
+    scene = scene_of(ball=(sphere((6, 0, 0), .3, 3), ball), wall=leaning_wall(earth))
+    paths = traced(scene, make_radar(TRANSMITTER), num_rays=4000, max_bounces=2)
+    there = matrices_by_hit(paths.select("T 'wall' 'ball' R"), 1)
+    back = matrices_by_hit(paths.select("T 'ball' 'wall' R"), 0)
+    common = list(there.keys() & back.keys())
+    assert len(common) > 1000
+    opposite = np.array([[1, -1], [-1, 1]])  # the horizontal of the way back points the other way
+    found = np.array([back[hit] for hit in common])
+    assert found == pytest.approx(np.array([there[hit] for hit in common]).swapaxes(1, 2) * opposite, abs=MATRIX_TOLERANCE)
+
+
+def test_the_split_stays_with_the_hit_while_it_moves():
+    scene = ep.Scene()
+    ball = ep.Material(reflectivity=.5, scattering=1.0, cross_polarization=.3)
+    scene.add(sphere((50, 0, 0), .3, 3), name="ball", material=ball, motion=ep.LinearMotion(velocity=(30, 0, 0)))
+    radar = radar_between((0, 0, 0), (0, 0, 0), V, H)
+    first, last = traced(scene, radar, num_rays=2000, max_bounces=1).amplitudes([0.0, 1e-2])
+    ratio = (last / first)[np.abs(first) > 0]
+    assert len(ratio) > 100 and np.abs(ratio.imag).max() < 1e-4 and np.ptp(ratio.real) < 0.01  # cosines change a little

@@ -14,7 +14,7 @@ from . import _core
 from ._core import (
     Antenna, AntennaPattern, ChirpSequence, CosinePower, DeviceError, FileError, GainTable, Isotropic, KeyframeMotion,
     LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeDoppler, ReceivedPower, Selection, Stratum, TraceFrame,
-    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, decompose, hits, load_mesh, load_meshes, mie_rcs,
+    TraceStatistics, VertexSequence, __version__, add_noise, boltzmann, hits, load_mesh, load_meshes, mie_rcs,
     num_bounces, num_threads, range_doppler, rcs, received_power, set_num_threads, speed_of_light, synthesize,
 )
 from .antennas import load_antenna
@@ -24,27 +24,44 @@ from .tessellation import TessellationWarning, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part
+from .parts import Parts, decompose
+from .path_cells import PathCells, path_cells
+from .selection_text import parse_selection
 from .simulate import Frame, simulate
 from .frame_file import load_frame, save_frame
 from .scene_file import SceneFile, load_scene
 
 
 def view(*arguments, **keywords):
-    """Opens the viewer: view(scene, paths, parts). It comes with `pip install echopath[viewer]`.
+    """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5").
 
+    It comes with `pip install echopath[viewer]`.
     arguments, keywords: those of the viewer's own `view`.
     """
-    from echopath_viewer import view as open_viewer
+    return _viewer().view(*arguments, **keywords)
 
-    return open_viewer(*arguments, **keywords)
+
+def plot_rays(*arguments, **keywords):
+    """Draws a scene with its strongest rays: plot_rays(scene, paths, off_screen=True, screenshot="rays.png").
+
+    Needs no screen; comes with `pip install echopath[viewer]`.
+    arguments, keywords: those of the viewer's own `plot_rays`.
+    """
+    return _viewer().plot_rays(*arguments, **keywords)
+
+
+def _viewer():
+    import echopath_viewer
+
+    return echopath_viewer
 
 
 __all__ = [
     "Actor", "Antenna", "AntennaPattern", "ChirpSequence", "CosinePower", "DeviceError", "Effect", "FileError", "Frame",
-    "GainTable", "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Paths", "Radar",
-    "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum", "TessellationWarning", "TraceFrame",
-    "TraceStatistics", "VertexSequence", "actors", "add_noise", "boltzmann", "decompose", "effects", "hits",
-    "load_antenna", "load_frame", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces",
-    "num_threads", "range_doppler", "rcs", "received_power", "save_frame", "set_num_threads", "simulate",
-    "speed_of_light", "synthesize", "trace", "view",
+    "GainTable", "Isotropic", "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Parts",
+    "PathCells", "Paths", "Radar", "RangeDoppler", "ReceivedPower", "Scene", "SceneFile", "Selection", "Stratum",
+    "TessellationWarning", "TraceFrame", "TraceStatistics", "VertexSequence", "actors", "add_noise", "boltzmann",
+    "decompose", "effects", "hits", "load_antenna", "load_frame", "load_mesh", "load_meshes", "load_scene", "materials",
+    "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays", "range_doppler", "rcs",
+    "received_power", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "view",
 ]

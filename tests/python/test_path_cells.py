@@ -1,0 +1,97 @@
+"""Cells of paths: against the peak of the map that each path makes on its own."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+NEAR_AN_EDGE = 0.02  # cells: the peak of a finite transform is that close to its frequency (TDM slots, window sidelobes)
+CARRIER_SPAN = 4e-4   # the carrier of an echo lies up to 20 MHz (75 m) below that of the chirp's middle, 77.5 GHz
+SPEEDS = (-27.0, -11.0, -3.0, 0.0, 4.0, 9.0, 31.0)  # m/s, folded beyond +-9.7 (one transmitter) or 4.9 (two)
+RANGES = (3.0, 11.3, 24.9, 37.2, 52.0, 75.0, 90.0)  # m; the last beyond the anti-alias filter
+
+
+def radar_of(real: bool, num_transmitters: int):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=64,
+                                chirp_interval=100e-6, real=real)
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0.2 * k, 0)) for k in range(num_transmitters)],
+                    receivers=[ep.Antenna((0, 0, 0)), ep.Antenna((0, -0.3, 0.1))])
+
+
+def traced(radar):
+    """A plate at each range, beside one another, with a speed of its own."""
+    scene = ep.Scene()
+    for index, (distance, speed) in enumerate(zip(RANGES, SPEEDS)):
+        direction = np.array([1.0, 0.2 * (index - 3), 0.0])
+        scene.add(ep.actors.plate(0.5, 0.5), name=f"plate_{index}", material="clothing", position=distance * direction,
+                  motion=ep.LinearMotion(velocity=speed * direction / np.linalg.norm(direction)))
+    return ep.trace(scene, radar, num_rays=700, max_bounces=1)
+
+
+@pytest.mark.parametrize("real, num_transmitters, zero_pad", [(False, 1, 1), (True, 1, 2), (False, 2, 1)])
+def test_the_map_of_a_path_peaks_in_its_cell(real, num_transmitters, zero_pad):
+    radar = radar_of(real, num_transmitters)
+    paths = traced(radar)
+    tx, rx = num_transmitters - 1, 1
+    chosen = np.random.default_rng(1).choice(paths.num_paths, 60, replace=False)
+    empty = ep.range_doppler(np.zeros(cube_shape(radar), complex), radar, zero_pad=zero_pad)
+    cells = ep.path_cells(paths, empty, tx=tx, rx=rx)
+    num_outside = 0
+    for path in chosen:
+        power = power_of_one(paths, path, radar, zero_pad)[tx, rx]
+        if cells.range_index[path] == -1:
+            num_outside += 1
+            assert power.max() == 0.0 and cells.velocity_index[path] == -1
+            continue
+        peak = np.unravel_index(power.argmax(), power.shape)
+        assert is_nearest(cells, path, peak, empty), (cells.range[path], cells.velocity[path], peak)
+    assert 0 < num_outside < len(chosen) / 2
+
+
+def cube_shape(radar) -> tuple:
+    return len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
+
+
+def power_of_one(paths, path: int, radar, zero_pad: int):
+    mask = np.zeros(paths.num_paths, bool)
+    mask[path] = True
+    cube = ep.synthesize(paths.select(mask), radar, method="direct", replay="exact")
+    return np.abs(ep.range_doppler(cube, radar, window="hann", zero_pad=zero_pad).values) ** 2
+
+
+def is_nearest(cells, path: int, peak, spectrum) -> bool:
+    """The cell is that of the peak, or its neighbour where the path lies at the edge between them."""
+    at = (cells.velocity_index[path], cells.range_index[path])
+    if at == peak:
+        return True
+    step = spectrum.range[1] - spectrum.range[0], spectrum.velocity[1] - spectrum.velocity[0]
+    edge = [abs(abs((value / width) % 1.0) - 0.5) < NEAR_AN_EDGE
+            for value, width in zip((cells.velocity[path], cells.range[path]), step[::-1])]
+    return all(abs(a - b) <= near for a, b, near in zip(at, peak, edge))
+
+
+def test_ranges_and_velocities_are_those_of_the_plates():
+    paths = traced(radar_of(False, 1))
+    cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))
+    plate = paths.mesh_id[paths.offsets]
+    tolerance = 0.05  # m/s: sight lines to the edges of a plate of 0.5 m at 3 m and more against that to its middle
+    assert np.abs(cells.velocity - np.array(SPEEDS)[plate]).max() < tolerance * np.abs(SPEEDS).max()
+    coupling = paths.radar.waveform.centre_frequency * cells.velocity / paths.radar.waveform.slope
+    assert cells.range - 0.5 * cells.length == pytest.approx(coupling, rel=CARRIER_SPAN)
+
+
+def test_a_rectangle_holds_what_a_loop_finds():
+    paths = traced(radar_of(False, 1))
+    cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))
+    mask = cells.within((10, 300), (3, 40))
+    for path in range(paths.num_paths):
+        inside = 10 <= cells.range_index[path] <= 300 and 3 <= cells.velocity_index[path] <= 40
+        assert mask[path] == inside
+    assert mask.any() and not mask.all()
+
+
+def test_no_paths_give_no_cells():
+    paths = traced(radar_of(False, 1)).select("T .{3} R")
+    cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))
+    assert cells.range.shape == cells.range_index.shape == cells.within((0, 9), (0, 9)).shape == (0,)

@@ -6,8 +6,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libembree-dev libopenmesh-dev libtinyobjloader-dev
   libeigen3-dev libfftw3-dev libtbb-dev libgtest-dev)
-# A Qt window with OpenGL on a virtual screen, for the tests of the viewer.
-viewer_packages=(xvfb xauth libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
+# A Qt window with OpenGL, and a virtual screen for its tests.
+screen_packages=(xvfb xauth)
+viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
 python=.venv/bin/python
@@ -15,6 +16,7 @@ python=.venv/bin/python
 usage() {
   cat <<'TEXT'
 usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> out/demo/ (OPTIONS go to `echopath demo`)
+       ./bootstrap.sh demo --view      likewise, then the viewer, which shows which rays made which cell
        ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest)
 TEXT
 }
@@ -85,6 +87,12 @@ prepare() {
   install_project "$extras"
 }
 
+wants_viewer() {
+  local option
+  for option in "$@"; do [ "$option" != --view ] || return 0; done
+  return 1
+}
+
 has_viewer_tests() { compgen -G 'tests/viewer/test_*.py' >/dev/null; }
 
 run_pytest() {
@@ -113,12 +121,14 @@ verb=${1:-}
 [ $# -eq 0 ] || shift
 case $verb in
   demo)
-    prepare "" "${packages[@]}"
+    if wants_viewer "$@"; then prepare viewer "${packages[@]}" "${viewer_packages[@]}"
+    else prepare "" "${packages[@]}"
+    fi
     say "the demo"
     exec .venv/bin/echopath demo "$@"
     ;;
   test)
-    if has_viewer_tests; then prepare test,viewer "${packages[@]}" "${viewer_packages[@]}"
+    if has_viewer_tests; then prepare test,viewer,test-viewer "${packages[@]}" "${viewer_packages[@]}" "${screen_packages[@]}"
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"

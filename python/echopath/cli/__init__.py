@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | info | bench."""
+"""The command line: echopath demo | run | view | info | bench."""
 from __future__ import annotations
 
 import argparse
@@ -22,7 +22,7 @@ def main(arguments=None) -> int:
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, ModuleNotFoundError) as error:
         print(f"echopath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     return 0
@@ -38,6 +38,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
     demo.add_argument("--out", default="out/demo", metavar="DIR", help="folder of the results (default: %(default)s)")
     _add_trace_options(demo, default_rays=200_000)
+    demo.add_argument("--view", action="store_true", help="then open it in the viewer")
     demo.set_defaults(command=_demo)
 
     run = commands.add_parser("run", help="simulate a scene file")
@@ -45,6 +46,10 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     _add_trace_options(run, default_rays=None)
     run.set_defaults(command=_run)
+
+    view = commands.add_parser("view", help="see which rays made which cell of a frame")
+    view.add_argument("frame", metavar="FRAME.h5", nargs="?", help="frame file (default: an empty window)")
+    view.set_defaults(command=_view)
 
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
@@ -94,7 +99,17 @@ def _demo(options) -> None:
     from .progress import progress_bars
 
     with progress_bars() as progress:
-        run_demo(options.out, num_rays=options.rays, seed=options.seed, batches=options.batches, progress=progress)
+        frame = run_demo(options.out, num_rays=options.rays, seed=options.seed, batches=options.batches, progress=progress)
+    if options.view:
+        import echopath as ep
+
+        ep.view(frame)
+
+
+def _view(options) -> None:
+    import echopath as ep
+
+    ep.view(*([options.frame] if options.frame else []))
 
 
 def _run(options) -> None:

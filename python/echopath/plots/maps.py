@@ -86,7 +86,7 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
 
 def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):
     image = _draw(axes, spectrum, vmin, vmax)
-    _crop([axes], _extent([spectrum], vmin))
+    _crop([axes], signal_extent([spectrum], vmin))
     axes.set_title(title)
     axes.set_xlabel(RANGE_LABEL)
     return image
@@ -99,7 +99,7 @@ def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float):
         axes.set_title(name if name != "other" else "other: all the rest")
     for axes in panels[len(spectra):]:
         axes.remove()
-    _crop(panels[:len(spectra)], _extent(list(spectra.values()), vmin, is_moving_meant=True))
+    _crop(panels[:len(spectra)], signal_extent(list(spectra.values()), vmin, is_moving_meant=True))
     return image
 
 
@@ -121,7 +121,7 @@ def _half_step(axis) -> float:
     return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
 
 
-def _extent(spectra, floor: float, is_moving_meant: bool = False):
+def signal_extent(spectra, floor: float, is_moving_meant: bool = False):
     """Box (range, velocity) around the cells above `floor` in dBm, or None when there are none.
 
     is_moving_meant: by range only around the cells that move, where some do.

@@ -1,0 +1,53 @@
+"""A small frame that all tests of the viewer look at."""
+from __future__ import annotations
+
+import gc
+import os
+import sys
+
+import pytest
+
+import echopath as ep
+from support import shapes
+
+NEEDS_SCREEN = ("test_window.py",)
+
+
+def pytest_collection_modifyitems(items):
+    """Without a screen Qt would end the program: bootstrap.sh runs these tests under a virtual one."""
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return
+    skip = pytest.mark.skip(reason="needs a screen: xvfb-run -a -s '-screen 0 1600x1000x24' python -m pytest tests/viewer")
+    for item in items:
+        if item.path.name in NEEDS_SCREEN:
+            item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def frame():
+    """A walker of two parts between two rough walls, seen by two transmitters and two receivers; some thousand paths."""
+    rough = shapes.lambert(0.8)
+    scene = ep.Scene()
+    scene.add(None, name="walker", motion=ep.LinearMotion(velocity=(-3.0, 0.5, 0.0)))
+    for name, height in (("head", 0.5), ("legs", -0.5)):
+        scene.add(shapes.plate((6.0, 0.0, height), (-1.0, 0.0, 0.0), 0.9), name=name, parent="walker", material=rough)
+    for name, side in (("left", 1.0), ("right", -1.0)):
+        scene.add(shapes.plate((5.0, 3.0 * side, 0.0), (0.0, -side, 0.0), 8.0), name=f"wall_{name}", material=rough)
+    radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, sampling_rate=10e6,
+                                      num_chirps=32, chirp_interval=2e-4),
+                     transmitters=[ep.Antenna((0, 0, 0)), ep.Antenna((0, 0.4, 0))],
+                     receivers=[ep.Antenna((0, 0.01, 0)), ep.Antenna((0, -0.4, 0.2))])
+    parts = {"route": {"direct": "T 'walker' R", "ghost": "T .* 'walker' .* R"}, "count": {"one": "T . R"}}
+    return ep.simulate(scene, radar, num_rays=4000, max_bounces=3, seed=3, parts=parts)
+
+
+@pytest.fixture(autouse=True)
+def close_plotters(request):
+    """VTK keeps plotters that were not closed; windows close their own."""
+    yield
+    if request.path.name in NEEDS_SCREEN:
+        return
+    pyvista = sys.modules.get("pyvista")
+    if pyvista is not None:
+        pyvista.close_all()
+        gc.collect()

@@ -1,0 +1,157 @@
+"""Pictures of scenes without a window, and without a screen."""
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import echopath as ep
+from echopath_viewer.model import CellBox, Session, from_frame
+from echopath_viewer.scene_builder import VIEWS, SceneBuilder
+from echopath_viewer.scene_builder.antenna_layer import rotation_of
+from echopath_viewer.scene_builder.mesh_layer import boundary_edges
+
+BASELINES = Path(__file__).parent / "baselines"
+SIZE = (240, 180)
+BASELINE_DIFFERENCE = 0.25  # mean over all pixels, of 255; without the hit points it is 0.3, with half of the rays 1.3
+INSIDE = 1.0 + 1e-6
+
+
+@pytest.fixture
+def session(frame):
+    return Session(from_frame(frame))
+
+
+@pytest.fixture
+def plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    yield plotter
+    plotter.close()
+
+
+def colours_of(layer):
+    mapper = layer._rays.GetMapper()
+    return pv.wrap(mapper.GetInput()).cell_data["rgb"]
+
+
+def project(plotter, points):
+    """Clip coordinates [N, 2]: inside the picture they lie in -1 to 1."""
+    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
+    clip_from_world = np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+    clip = np.column_stack([points, np.ones(len(points))]) @ clip_from_world.T
+    assert np.all(clip[:, 3] > 0.0)
+    return clip[:, :2] / clip[:, 3:]
+
+
+def test_rays_are_drawn_in_the_colours_of_the_model(session, plotter):
+    builder = SceneBuilder(plotter, session)
+    for mode in ("mesh", "power", "bounces"):
+        session.set_color_by(mode)
+        builder.update({"colours"})
+        segments = session.segments(session.shown_rays())
+        assert np.array_equal(colours_of(builder.rays), session.colouring(segments).rgb)
+
+
+def test_lit_rays_are_drawn_over_grey_ones(session, plotter):
+    builder = SceneBuilder(plotter, session)
+    strongest = int(session.shown_rays(1)[0])
+    session.select_cells(CellBox.around(*session.cell_of(strongest), 1))
+    builder.update({"selection"})
+    assert set(builder.lit.segments.rays) == set(np.flatnonzero(session.lit))
+    assert len(np.unique(colours_of(builder.rays), axis=0)) == 1
+    assert builder.drawn_layers() == [builder.lit]
+    session.select_cells(None)
+    builder.update({"selection"})
+    assert builder.lit.segments.num_segments == 0 and builder.drawn_layers() == [builder.rays]
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_every_view_shows_what_matters(session, plotter, view):
+    builder = SceneBuilder(plotter, session)
+    builder.look(view)
+    if view == "radar":
+        corners = np.stack([session.scene.world_vertices(mesh, session.time).mean(axis=0) for mesh in (0, 1)])
+    else:
+        low, high = builder.corners()
+        corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(-1, 3)
+    seen = project(plotter, corners)
+    assert np.abs(seen).max() <= INSIDE
+    assert view == "radar" or np.abs(seen).max() > 0.85  # as near as it fits
+
+
+def test_moving_scenes_keep_their_triangles(session, plotter):
+    builder = SceneBuilder(plotter, session)
+    session.set_chirp(0)
+    builder.update({"time"})
+    for mesh in session.scene.meshes:
+        poly = builder.meshes.actors[mesh.id].mapper.dataset
+        assert poly.points == pytest.approx(session.scene.world_vertices(mesh.id, session.time), abs=1e-5)
+        assert np.array_equal(poly.regular_faces, mesh.triangles)
+
+
+def test_axes_of_an_antenna_turn_with_it():
+    half = np.sqrt(0.5)
+    assert rotation_of((half, 0, 0, half)) @ [1, 0, 0] == pytest.approx([0, 1, 0])  # a quarter turn about z
+    assert rotation_of((half, 0, -half, 0)) @ [1, 0, 0] == pytest.approx([0, 0, 1])
+    quaternion = np.array([0.5, -0.1, 0.7, 0.3]) / np.linalg.norm([0.5, -0.1, 0.7, 0.3])
+    turn = rotation_of(quaternion)
+    assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1.0)
+
+
+def test_the_outline_of_a_rectangle_is_its_four_edges():
+    assert sorted(map(tuple, boundary_edges(np.array([[0, 1, 2], [0, 2, 3]])))) == [(0, 1), (0, 3), (1, 2), (2, 3)]
+
+
+def test_plot_rays_writes_a_picture_without_a_screen(frame, tmp_path):
+    frame.paths.save(tmp_path / "paths.h5")
+    script = ("import sys, echopath as ep; paths = ep.Paths.load(sys.argv[1]);"
+              "ep.plot_rays(paths.scene, paths, off_screen=True, screenshot=sys.argv[2], window_size=(240, 180),"
+              "num_rays=20)")
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run([sys.executable, "-c", script, str(tmp_path / "paths.h5"), str(tmp_path / "rays.png")],
+                          env=environment, capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    assert len(np.unique(pv.read(tmp_path / "rays.png").point_data.active_scalars, axis=0)) > 10
+
+
+def test_plot_rays_draws_what_is_asked_for(frame):
+    plotter = ep.plot_rays(frame.scene, frame.paths, selection=ep.hits("wall_left") & (ep.num_bounces == 2), num_rays=7,
+                           color_by="range", clim=(0.0, 10.0), chirp=0, tx=1, hidden=["walker/*"], off_screen=True,
+                           window_size=SIZE, return_plotter=True)
+    lines = plotter.actors["all rays"].GetMapper().GetInput()
+    assert lines.GetNumberOfLines() == 7 * 3
+    assert not plotter.actors["mesh 0"].GetVisibility() and plotter.actors["mesh 2"].GetVisibility()
+    plotter.close()
+
+
+@pytest.mark.parametrize("keywords, error, word", [
+    ({"colour_by": "mesh"}, TypeError, "color_by"), ({"color_by": "mood"}, ValueError, "color_by"),
+    ({"cmap": "rainbows", "color_by": "power"}, ValueError, "cmap"), ({"view": "back"}, ValueError, "view"),
+    ({"selection": "T nonsense"}, ValueError, "^"),
+])
+def test_bad_keywords_are_named(frame, keywords, error, word):
+    with pytest.raises(error) as caught:
+        ep.plot_rays(frame.scene, frame.paths, off_screen=True, window_size=SIZE, **keywords)
+    assert word in str(caught.value)
+
+
+@pytest.mark.parametrize("name, keywords", [
+    ("fit", {}), ("radar", {"view": "radar", "color_by": "mesh", "show_hits": True}),
+    ("top", {"view": "top", "color_by": "power"}),
+])
+def test_pictures_are_as_they_were(frame, tmp_path, name, keywords):
+    """ECHOPATH_UPDATE_BASELINES=1 writes new ones: look at them."""
+    picture = tmp_path / f"{name}.png"
+    ep.plot_rays(frame.scene, frame.paths, off_screen=True, screenshot=picture, window_size=SIZE, num_rays=60,
+                 selection=ep.hits("walker"), show_legend=False, **keywords)
+    if os.environ.get("ECHOPATH_UPDATE_BASELINES"):
+        BASELINES.mkdir(exist_ok=True)
+        (BASELINES / picture.name).write_bytes(picture.read_bytes())
+    got, wanted = (pv.read(path).point_data.active_scalars.astype(float)[:, :3]
+                   for path in (picture, BASELINES / picture.name))
+    assert np.abs(got - wanted).mean() < BASELINE_DIFFERENCE

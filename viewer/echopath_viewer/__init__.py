@@ -1,0 +1,39 @@
+"""Desktop viewer of Echopath: which rays made which cell. `pip install echopath[viewer]`.
+
+model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window: Qt. Each works without the next.
+"""
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+_EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
+
+
+def view(*what, **keywords):
+    """Opens the viewer and returns when its window is closed.
+
+    what: a frame file, a Frame, `scene, paths` or `scene, paths, parts`; nothing: an empty window
+    keywords: parts, window and zero_pad of the maps of paths; parts are those of `decompose` (with their cubes), or
+    selections {name: selection}, one partition or {partition: {name: selection}}
+    """
+    with _told_what_to_install():
+        from .window import view as open_window
+    return open_window(*what, **keywords)
+
+
+def plot_rays(scene, paths, **keywords):
+    """Draws a scene with its strongest rays, on a screen or without one; see `echopath_viewer.plot.plot_rays`."""
+    with _told_what_to_install():
+        from .plot import plot_rays as draw
+    return draw(scene, paths, **keywords)
+
+
+@contextmanager
+def _told_what_to_install():
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in _EXTRA:
+            raise
+        text = f"the viewer needs {error.name}, which is not installed: pip install 'echopath[viewer]'"
+        raise ModuleNotFoundError(text, name=error.name) from None

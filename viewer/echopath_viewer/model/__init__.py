@@ -1,0 +1,15 @@
+"""What the viewer knows and shows, in NumPy: no VTK, no Qt."""
+from .cell_index import CellBox, CellIndex
+from .colours import COLOUR_MODES, Colouring, Legend, colour_rays, mesh_palette
+from .columns import Columns, read_columns
+from .filters import FilterError, Filters
+from .inputs import ViewInput, from_file, from_frame, from_paths
+from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, PartSet
+from .segments import Segments, ray_segments
+from .session import Session
+
+__all__ = [
+    "COLOUR_MODES", "CellBox", "CellIndex", "Colouring", "Columns", "FilterError", "Filters", "Legend", "MESH_GROUP",
+    "OWN_GROUP", "Part", "PartSet", "Segments", "Session", "ViewInput", "WHOLE", "colour_rays", "from_file", "from_frame",
+    "from_paths", "mesh_palette", "ray_segments", "read_columns",
+]

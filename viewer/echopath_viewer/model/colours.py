@@ -1,0 +1,126 @@
+"""Colours of rays and meshes, and what they mean."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from echopath.plots.style import BOUNCE_COLOURS
+
+COLOUR_MODES = ("bounces", "mesh", "power", "range", "speed")
+POWER_SPAN_DB = 40.0  # below the strongest ray, where no limits are given
+MAX_LEGEND_ROWS = 12
+_SCALES = {"power": ("Power in dBm", "viridis"), "range": ("Range in m", "viridis"),
+           "speed": ("Radial speed in m/s (away: +)", "coolwarm")}
+# Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
+_PALETTE = ("#332288", "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
+            "#77aadd", "#ee8866", "#eedd88", "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00")
+_MIRROR_PALETTE = ("#8ca6cc", "#9cb8a5", "#c4b08c", "#b3a0c4")  # pale: large planes lie behind everything
+
+
+@dataclasses.dataclass(frozen=True)
+class Legend:
+    """What colours mean: either `rows` [(label, (r, g, b))] or a scale `clim` (low, high) in the unit of `title`."""
+
+    title: str
+    rows: tuple = ()
+    clim: tuple | None = None
+    cmap: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Colouring:
+    """rgb: u8 [S, 3] of segments; legend: what they mean."""
+
+    rgb: np.ndarray
+    legend: Legend
+
+
+def mesh_palette(scene):
+    """A colour for each mesh, u8 [M, 3]: pale ones for mirrors, the large planes."""
+    counters = {True: 0, False: 0}
+    colours = []
+    for mesh in scene.meshes:
+        is_mirror = mesh.material.mirror
+        palette = _MIRROR_PALETTE if is_mirror else _PALETTE
+        colours.append(rgb_of(palette[counters[is_mirror] % len(palette)]))
+        counters[is_mirror] += 1
+    return np.array(colours, np.uint8).reshape(-1, 3)
+
+
+def rgb_of(text: str) -> tuple:
+    """(r, g, b) of "#rrggbb"."""
+    return tuple(int(text[at:at + 2], 16) for at in (1, 3, 5))
+
+
+def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None, clim=None) -> Colouring:
+    """The colours of segments.
+
+    mode: one of COLOUR_MODES; palette: u8 [M, 3] of meshes and mesh_names [M], for "mesh"
+    cmap, clim: of the scales, name of a matplotlib colour map and (low, high) in dBm, m or m/s; None: by mode and data.
+    """
+    if mode == "bounces":
+        return _by_bounces(columns, segments)
+    if mode == "mesh":
+        return _by_mesh(segments, palette, mesh_names)
+    if mode not in _SCALES:
+        raise ValueError(f"color_by: must be one of {', '.join(COLOUR_MODES)}, got {mode!r}")
+    title, usual_cmap = _SCALES[mode]
+    values = _values(mode, columns)[segments.rays]
+    clim = _limits(mode, values) if clim is None else clim
+    legend = Legend(title=title, clim=clim, cmap=cmap or usual_cmap)
+    return Colouring(scale_colours(values, clim, legend.cmap)[segments.ray], legend)
+
+
+def scale_colours(values, clim, cmap: str):
+    """Colours u8 [N, 3] of values on a scale; what lies beyond its ends takes theirs."""
+    return colour_table(cmap)[levels_of(values, clim)]
+
+
+def levels_of(values, clim):
+    """Rows 0 to 255 of a colour table for values on a scale: u8, same shape."""
+    low, high = clim
+    share = (np.asarray(values, np.float32) - np.float32(low)) * np.float32(255.0 / max(high - low, 1e-12))
+    return np.clip(share, 0.0, 255.0).astype(np.uint8)
+
+
+def colour_table(cmap: str):
+    """u8 [256, 3] of a matplotlib colour map. Raises ValueError for an unknown name."""
+    import matplotlib
+
+    if cmap not in matplotlib.colormaps:
+        raise ValueError(f"cmap: must be the name of a matplotlib colour map, got {cmap!r}")
+    return (matplotlib.colormaps[cmap](np.arange(256), bytes=True)[:, :3]).astype(np.uint8)
+
+
+def _values(mode: str, columns):
+    return {"power": columns.power_dbm, "range": columns.cells.range, "speed": columns.cells.velocity}[mode]
+
+
+def _limits(mode: str, values) -> tuple:
+    if not len(values):
+        return (0.0, 1.0)
+    if mode == "power":
+        return float(values.max()) - POWER_SPAN_DB, float(values.max())
+    if mode == "speed":
+        fastest = max(float(np.abs(values).max()), 0.1)
+        return -fastest, fastest
+    return float(values.min()), max(float(values.max()), float(values.min()) + 0.1)
+
+
+def _by_bounces(columns, segments) -> Colouring:
+    table = np.array([rgb_of(text) for text in BOUNCE_COLOURS], np.uint8)
+    counts = columns.num_bounces[segments.rays].astype(np.int64)
+    row = np.clip(counts, 1, len(table)) - 1
+    present = np.unique(row)
+    labels = [f"{row + 1}{' or more' if row == len(table) - 1 else ''}" for row in present]
+    rows = tuple((label, tuple(map(int, table[row]))) for label, row in zip(labels, present))
+    return Colouring(table[row][segments.ray], Legend("Bounces", rows=rows))
+
+
+def _by_mesh(segments, palette, mesh_names) -> Colouring:
+    table = np.vstack([palette, np.full((1, 3), 128, np.uint8)])  # the last, -1, for rays without a hit
+    present, counts = np.unique(segments.mesh_id, return_counts=True)
+    commonest = present[np.argsort(-counts, kind="stable")][:MAX_LEGEND_ROWS]
+    rows = tuple((mesh_names[mesh] if mesh >= 0 else "none", tuple(map(int, table[mesh]))) for mesh in sorted(commonest))
+    return Colouring(table[segments.mesh_id], Legend("Mesh that the ray goes to", rows=rows))

@@ -1,0 +1,96 @@
+"""The whole signal and its parts: their maps, and which paths belong to each."""
+from __future__ import annotations
+
+import dataclasses
+import math
+from types import SimpleNamespace
+
+import numpy as np
+
+import echopath as ep
+from echopath.plots import power_dbm
+
+WHOLE = "whole"
+OWN_GROUP = "own"    # parts that were named in the viewer
+MESH_GROUP = "mesh"  # the spectrum of the mesh that is selected
+
+
+@dataclasses.dataclass
+class Part:
+    """One map and the paths behind it.
+
+    group, name: its partition and its name there; the whole has both "whole"
+    spectrum: RangeDoppler; mask: bool [P], None: all paths
+    is_known: False for signals that were given without a word on their paths; recipe: how to make it again, for saving.
+    """
+
+    group: str
+    name: str
+    spectrum: object
+    mask: np.ndarray | None = None
+    is_known: bool = True
+    recipe: dict | None = None
+    _levels: dict = dataclasses.field(default_factory=dict)
+
+    @property
+    def key(self) -> tuple:
+        return self.group, self.name
+
+    def level(self, tx: int, rx: int):
+        """Power of a channel in dBm, f32 [velocity, range]."""
+        if (tx, rx) not in self._levels:
+            channel = SimpleNamespace(values=self.spectrum.values[tx:tx + 1, rx:rx + 1])
+            self._levels[tx, rx] = power_dbm(channel).astype(np.float32)
+        return self._levels[tx, rx]
+
+
+class PartSet:
+    """The parts by key, in the order in which they are shown."""
+
+    def __init__(self, whole: Part, parts=()):
+        self._parts = {whole.key: whole}
+        for part in parts:
+            self.add(part)
+
+    def add(self, part: Part) -> None:
+        self._parts[part.key] = part
+
+    def remove(self, key: tuple) -> None:
+        self._parts.pop(key, None)
+
+    def __getitem__(self, key: tuple) -> Part:
+        return self._parts[key]
+
+    def __contains__(self, key: tuple) -> bool:
+        return key in self._parts
+
+    def __iter__(self):
+        return iter(self._parts.values())
+
+    @property
+    def whole(self) -> Part:
+        return self._parts[WHOLE, WHOLE]
+
+    @property
+    def partitions(self) -> list[str]:
+        """Names of the partitions that came with the signal."""
+        names = dict.fromkeys(part.group for part in self)
+        return [name for name in names if name not in (WHOLE, OWN_GROUP, MESH_GROUP)]
+
+    def of_group(self, group: str) -> list[Part]:
+        return [part for part in self if part.group == group]
+
+    def shown_beside(self, partition: str | None) -> list[Part]:
+        """The whole, the parts of a partition, those named in the viewer, and the mesh that is selected."""
+        groups = (WHOLE, partition, OWN_GROUP, MESH_GROUP)
+        return [part for group in groups if group is not None for part in self.of_group(group)]
+
+    def highest_level(self, tx: int, rx: int) -> float:
+        """The upper end of the colour scale in dBm: the peak of the whole, up to the next multiple of 5."""
+        return 5.0 * math.ceil(float(self.whole.level(tx, rx).max()) / 5.0)
+
+
+def spectrum_of(paths, mask, settings: dict, progress=None):
+    """The map of some paths without noise; mask: bool [P], settings: of `range_doppler`."""
+    cube = ep.synthesize(paths.select(mask), paths.radar, progress=progress)
+    return ep.range_doppler(cube, paths.radar, **settings)

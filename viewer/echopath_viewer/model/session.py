@@ -1,0 +1,282 @@
+"""The state of a view: what is shown, chosen and selected, and what follows from it."""
+from __future__ import annotations
+
+import dataclasses
+from collections import OrderedDict
+
+import numpy as np
+
+import echopath as ep
+from echopath.path_subset import strongest
+
+from .cell_index import CellBox, CellIndex
+from .colours import COLOUR_MODES, colour_rays, mesh_palette
+from .columns import read_columns
+from .filters import Filters
+from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, spectrum_of
+from .segments import ray_segments
+from .slow_time import power_by_chirp
+
+MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
+MAX_LISTED = 100_000     # rows of the table
+DYNAMIC_RANGE_DB = 60.0
+MAX_KEPT_MATCHES = 16    # masks of expressions kept for the next time
+
+
+class Session:
+    """One view of one frame. Setters return nothing and tell the listeners what has changed.
+
+    Topics: "rays" (which are shown), "colours", "selection" (cell or ray), "maps", "time", "meshes" (looks, choice).
+    """
+
+    def __init__(self, view_input):
+        self.paths, self.parts = view_input.paths, view_input.parts
+        self.scene, self.radar = self.paths.scene, self.paths.radar
+        self.title, self.cube = view_input.title, view_input.cube
+        self.spectrum_settings = view_input.spectrum_settings
+        self.mesh_names = [mesh.name for mesh in self.scene.meshes]
+        self.palette = mesh_palette(self.scene)
+        self.hidden_meshes: set[int] = set()
+        self.filters = Filters()
+        self.part_key = (WHOLE, WHOLE)
+        self.partition = next(iter(self.parts.partitions), None)
+        self.color_by, self.max_rays = "bounces", MAX_RAYS
+        self.dynamic_range_db = DYNAMIC_RANGE_DB
+        self.box: CellBox | None = None
+        self.ray: int | None = None
+        self.node: str | None = None
+        self.chirp = self.radar.waveform.num_chirps // 2
+        self._listeners, self._matches = [], OrderedDict()
+        self._read_channel(0, 0)
+        self._refresh_visible()
+
+    # --- telling ---
+
+    def listen(self, listener) -> None:
+        """listener: callable (set of topics)."""
+        self._listeners.append(listener)
+
+    def _tell(self, *topics: str) -> None:
+        for listener in self._listeners:
+            listener(set(topics))
+
+    # --- channel and time ---
+
+    @property
+    def channel(self) -> tuple:
+        return self.columns.tx, self.columns.rx
+
+    def set_channel(self, tx: int, rx: int) -> None:
+        """Another pair of antennas: powers, ranges, cells and maps are its own."""
+        self._read_channel(tx, rx)
+        self._refresh_visible()
+        self._tell("rays", "maps", "selection")
+
+    def _read_channel(self, tx: int, rx: int) -> None:
+        self.columns = read_columns(self.paths, self.parts.whole.spectrum, tx, rx)
+        spectrum, cells = self.parts.whole.spectrum, self.columns.cells
+        self.index = CellIndex(cells.range_index, cells.velocity_index, len(spectrum.range), len(spectrum.velocity))
+
+    def set_chirp(self, chirp: int) -> None:
+        """Moves scene and rays to the middle of a chirp; kept within the frame."""
+        self.chirp = int(np.clip(chirp, 0, self.radar.waveform.num_chirps - 1))
+        self._tell("time")
+
+    @property
+    def time(self) -> float:
+        """s, the middle of the chirp shown."""
+        return self.paths.frame.start_time + self.radar.chirp_time(self.columns.tx, self.chirp)
+
+    def antennas_at(self, time: float) -> tuple:
+        """World positions [3] of transmitter and receiver of the channel at a time in s."""
+        world_from_radar = np.asarray(self.radar.world_from_radar(time))
+        antennas = self.radar.transmitters[self.columns.tx], self.radar.receivers[self.columns.rx]
+        return tuple(world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3] for antenna in antennas)
+
+    # --- which paths are shown ---
+
+    def matches(self, selection):
+        """Which paths a selection takes, bool [P]; kept for the next time."""
+        key = str(selection)
+        if key not in self._matches:
+            self._matches[key] = np.asarray(selection.matches(self.paths))
+            while len(self._matches) > MAX_KEPT_MATCHES:
+                self._matches.popitem(last=False)
+        self._matches.move_to_end(key)
+        return self._matches[key]
+
+    def set_filters(self, filters: Filters) -> None:
+        """Raises FilterError, and keeps the filters as they were, for a text that is not understood."""
+        mask = filters.mask(self.columns, self.matches)
+        self.filters = filters
+        self._set_visible(mask)
+        self._tell("rays", "selection")
+
+    def set_part(self, key: tuple) -> None:
+        """Shows one part: its map and its rays."""
+        self.part_key = key
+        self._refresh_visible()
+        self._tell("rays", "maps", "selection")
+
+    def set_partition(self, partition: str | None) -> None:
+        """Which partition the small maps show."""
+        self.partition = partition
+        if self.part not in self.parts.shown_beside(partition):
+            self.set_part((WHOLE, WHOLE))
+        self._tell("maps")
+
+    @property
+    def part(self) -> Part:
+        return self.parts[self.part_key]
+
+    def _refresh_visible(self) -> None:
+        self._set_visible(self.filters.mask(self.columns, self.matches))
+
+    def _set_visible(self, mask) -> None:
+        self.visible = mask if self.part.mask is None else mask & self.part.mask
+        self._lit = None
+
+    @property
+    def lit(self):
+        """The visible paths in the selected cells, bool [P]; None where no cell is selected."""
+        if self.box is None:
+            return None
+        if self._lit is None:
+            self._lit = self.visible & self.index.mask_of(self.box)
+        return self._lit
+
+    def shown_rays(self, limit: int | None = None):
+        """The strongest visible paths, strongest first: indices [N]."""
+        return strongest(self.columns.power, self.max_rays if limit is None else limit, among=self.visible)
+
+    def lit_rays(self, limit: int | None = None):
+        """The strongest paths in the selected cells, strongest first: indices [N]."""
+        lit = self.lit
+        return strongest(self.columns.power, self.max_rays if limit is None else limit,
+                         among=np.zeros_like(self.visible) if lit is None else lit)
+
+    def listed_rays(self):
+        """The rows of the table: the rays of the selected cells, or where none are selected those that are drawn."""
+        return self.shown_rays() if self.box is None else self.lit_rays(MAX_LISTED)
+
+    def mesh_counts(self):
+        """How many visible paths hit each mesh: [M]."""
+        return self.columns.count_by_mesh(self.visible, len(self.mesh_names))
+
+    def set_max_rays(self, count: int) -> None:
+        self.max_rays = int(count)
+        self._tell("rays")
+
+    # --- colours ---
+
+    def set_color_by(self, mode: str) -> None:
+        if mode not in COLOUR_MODES:
+            raise ValueError(f"color_by: must be one of {', '.join(COLOUR_MODES)}, got {mode!r}")
+        self.color_by = mode
+        self._tell("colours")
+
+    def set_mesh_colour(self, mesh: int, rgb) -> None:
+        self.palette[mesh] = rgb
+        self._tell("meshes", "colours")
+
+    def set_mesh_visible(self, meshes, is_visible: bool) -> None:
+        """meshes: IDs."""
+        self.hidden_meshes = self.hidden_meshes - set(meshes) if is_visible else self.hidden_meshes | set(meshes)
+        self._tell("meshes")
+
+    def segments(self, rays):
+        """The segments of paths at the time shown."""
+        return ray_segments(self.paths, rays, self.time, *self.antennas_at(self.time))
+
+    def colouring(self, segments, **scale):
+        """The colours of segments; scale: cmap, clim."""
+        return colour_rays(self.color_by, self.columns, segments, self.palette, self.mesh_names, **scale)
+
+    # --- selection ---
+
+    def select_cells(self, box: CellBox | None) -> None:
+        """Selects the rays in a rectangle of cells; None selects none."""
+        spectrum = self.parts.whole.spectrum
+        self.box = None if box is None else box.within(len(spectrum.range), len(spectrum.velocity))
+        self._lit, self.ray = None, None
+        self._tell("selection")
+
+    def select_ray(self, path: int | None) -> None:
+        """Selects one path: its hits and its cell."""
+        self.ray = None if path is None else int(path)
+        self._tell("selection")
+
+    def select_node(self, name: str | None, progress=None) -> None:
+        """Selects a mesh or a group of meshes by its full name and makes the map of the visible paths that hit it; None
+        takes that map away."""
+        part = None if name is None else self._part_of_node(name, progress)
+        self.node = name
+        was_shown = self.part_key[0] == MESH_GROUP
+        for old in self.parts.of_group(MESH_GROUP):
+            self.parts.remove(old.key)
+        if part is not None:
+            self.parts.add(part)
+        if was_shown:
+            self.part_key = (WHOLE, WHOLE)
+            self._refresh_visible()
+            self._tell("rays")
+        self._tell("maps", "meshes")
+
+    def _part_of_node(self, name: str, progress) -> Part:
+        mask = self.visible & self.matches(ep.hits(name))
+        return Part(MESH_GROUP, name, spectrum_of(self.paths, mask, self.spectrum_settings, progress), mask)
+
+    def meshes_of_node(self) -> set:
+        """IDs of the meshes that are selected."""
+        if self.node is None:
+            return set()
+        return {mesh for mesh, name in enumerate(self.mesh_names) if f"{name}/".startswith(f"{self.node}/")}
+
+    def add_part(self, name: str, progress=None) -> Part:
+        """Names the visible paths, filters and part together, and adds their map.
+
+        Raises ValueError for a name that is empty or taken.
+        """
+        name = name.strip()
+        if not name:
+            raise ValueError("name: must not be empty")
+        if any(part.name == name for part in self.parts.shown_beside(self.partition)):
+            raise ValueError(f"name: '{name}' is taken")
+        mask = self.visible.copy()
+        spectrum = spectrum_of(self.paths, mask, self.spectrum_settings, progress)
+        recipe = {"part": list(self.part_key), "filters": dataclasses.asdict(self.filters)}
+        part = Part(OWN_GROUP, name, spectrum, mask, recipe=recipe)
+        self.parts.add(part)
+        self._tell("maps")
+        return part
+
+    def set_dynamic_range(self, decibels: float) -> None:
+        self.dynamic_range_db = float(decibels)
+        self._tell("maps")
+
+    def map_limits(self) -> tuple:
+        """(lowest, highest) level in dBm of the colour scale of all maps."""
+        highest = self.parts.highest_level(*self.channel)
+        return highest - self.dynamic_range_db, highest
+
+    def cell_of(self, path: int) -> tuple | None:
+        """(range index, velocity index) of a path; None for one outside the map."""
+        cells = self.columns.cells
+        if cells.range_index[path] < 0:
+            return None
+        return int(cells.range_index[path]), int(cells.velocity_index[path])
+
+    def slow_time_power(self, progress=None):
+        """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole."""
+        cube = self.cube if self.box is None else ep.synthesize(self.paths.select(self.lit), progress=progress)
+        return power_by_chirp(cube, *self.channel)
+
+    def explain(self, path: int) -> list[tuple]:
+        """What a path is, in (label, text) lines."""
+        cells, columns = self.columns.cells, self.columns
+        events = ["diffuse" if (int(self.paths.diffuse[path]) >> hit) & 1 else "specular"
+                  for hit in range(int(columns.num_bounces[path]))]
+        hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({event})")
+                for number, (mesh, event) in enumerate(zip(columns.meshes_of(path), events))]
+        return [("path", f"{path:,}"), *hits, ("range", f"{cells.range[path]:.3f} m"),
+                ("speed", f"{cells.velocity[path]:+.3f} m/s"), ("power", f"{columns.power_dbm[path]:.1f} dBm")]

@@ -1,0 +1,131 @@
+"""Saving and loading what a view shows, as JSON."""
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import echopath as ep
+
+from .cell_index import CellBox
+from .colours import COLOUR_MODES
+from .filters import Filters
+from .part_set import OWN_GROUP, WHOLE
+
+FORMAT = "echopath view"
+VERSION = 1
+
+
+def state_of(session) -> dict:
+    """What the session shows, in plain JSON values."""
+    return {
+        "format": FORMAT, "version": VERSION, "frame": session.title, "filters": dataclasses.asdict(session.filters),
+        "own_parts": {part.name: part.recipe for part in session.parts.of_group(OWN_GROUP)},
+        "part": list(session.part_key), "partition": session.partition, "channel": list(session.channel),
+        "color_by": session.color_by, "max_rays": session.max_rays, "dynamic_range_db": session.dynamic_range_db,
+        "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None, "ray": session.ray,
+        "hidden_meshes": sorted(session.mesh_names[mesh] for mesh in session.hidden_meshes),
+        "mesh_colours": {name: [int(value) for value in rgb] for name, rgb in zip(session.mesh_names, session.palette)},
+    }
+
+
+def apply_state(session, state: dict) -> list[str]:
+    """Takes over a state as far as it fits the frame; returns what did not. Raises ValueError for what is no state."""
+    _check(state)
+    misfits = []
+    session.set_channel(*_channel(session, state, misfits))
+    for name, recipe in state.get("own_parts", {}).items():
+        _attempt(misfits, f"part '{name}'", lambda: _add_part(session, name, recipe))
+    _attempt(misfits, "partition", lambda: _set_partition(session, state.get("partition")))
+    _attempt(misfits, "part", lambda: _set_part(session, tuple(state.get("part", (WHOLE, WHOLE)))))
+    _attempt(misfits, "filters", lambda: session.set_filters(Filters(**state.get("filters", {}))))
+    _apply_looks(session, state, misfits)
+    session.set_chirp(int(state.get("chirp", session.chirp)))
+    box = state.get("box")
+    _attempt(misfits, "cells", lambda: session.select_cells(CellBox(*map(int, box)) if box else None))
+    ray = state.get("ray")
+    if ray is not None and 0 <= int(ray) < session.paths.num_paths:
+        session.select_ray(int(ray))
+    return misfits
+
+
+def save_state(state: dict, path) -> None:
+    """Writes a state to a file, whole or not at all."""
+    from echopath.files import written_whole
+
+    with written_whole(path) as temporary:
+        temporary.write_text(json.dumps(state, indent=1), encoding="utf-8")
+
+
+def load_state(path) -> dict:
+    """Reads a state. Raises ep.FileError."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            state = json.load(file)
+        _check(state)
+    except OSError as error:
+        raise ep.FileError(f"{path}: cannot be read ({error.strerror})") from None
+    except ValueError as error:
+        raise ep.FileError(f"{path}: no view of echopath ({error})") from None
+    return state
+
+
+def _check(state) -> None:
+    if not isinstance(state, dict) or state.get("format") != FORMAT:
+        raise ValueError(f"its format is not '{FORMAT}'")
+    if state.get("version") != VERSION:
+        raise ValueError(f"it has version {state.get('version')}, this program reads {VERSION}")
+
+
+def _attempt(misfits: list, what: str, work) -> None:
+    try:
+        work()
+    except (ValueError, TypeError, KeyError) as error:
+        misfits.append(f"{what}: {error}")
+
+
+def _channel(session, state: dict, misfits: list) -> tuple:
+    tx, rx = state.get("channel", (0, 0))
+    if 0 <= tx < len(session.radar.transmitters) and 0 <= rx < len(session.radar.receivers):
+        return tx, rx
+    misfits.append(f"channel: there is no transmitter {tx} with receiver {rx}")
+    return 0, 0
+
+
+def _add_part(session, name: str, recipe: dict) -> None:
+    if (OWN_GROUP, name) in session.parts:
+        return
+    before = session.part_key, session.filters
+    try:
+        _set_part(session, tuple(recipe["part"]))
+        session.set_filters(Filters(**recipe["filters"]))
+        session.add_part(name)
+    finally:
+        session.set_part(before[0])
+        session.set_filters(before[1])
+
+
+def _set_part(session, key: tuple) -> None:
+    if key not in session.parts:
+        raise ValueError(f"there is no part '{key[-1]}'")
+    session.set_part(key)
+
+
+def _set_partition(session, partition) -> None:
+    if partition is not None and partition not in session.parts.partitions:
+        raise ValueError(f"there is no partition '{partition}'")
+    session.set_partition(partition)
+
+
+def _apply_looks(session, state: dict, misfits: list) -> None:
+    if state.get("color_by") in COLOUR_MODES:
+        session.set_color_by(state["color_by"])
+    session.set_max_rays(int(state.get("max_rays", session.max_rays)))
+    session.set_dynamic_range(float(state.get("dynamic_range_db", session.dynamic_range_db)))
+    number_of = {name: number for number, name in enumerate(session.mesh_names)}
+    unknown = [name for name in state.get("hidden_meshes", []) if name not in number_of]
+    misfits += [f"hidden mesh: there is no '{name}'" for name in unknown]
+    session.set_mesh_visible(list(number_of.values()), True)
+    session.set_mesh_visible([number_of[name] for name in state.get("hidden_meshes", []) if name in number_of], False)
+    for name, rgb in state.get("mesh_colours", {}).items():
+        if name in number_of:
+            session.set_mesh_colour(number_of[name], rgb)

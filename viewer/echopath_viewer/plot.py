@@ -1,0 +1,79 @@
+"""Pictures of rays without a window of our own: on the screen, in a notebook or in a file."""
+from __future__ import annotations
+
+import os
+import sys
+
+import numpy as np
+import pyvista as pv
+
+import echopath as ep
+
+from .model import WHOLE, Filters, Part, PartSet, Session, ViewInput
+from .scene_builder import SceneBuilder
+
+NUM_RAYS = 300
+_KEYWORDS = ("selection", "num_rays", "color_by", "cmap", "clim", "chirp", "tx", "rx", "view", "show_hits", "show_legend",
+             "hidden", "plotter", "off_screen", "screenshot", "window_size", "return_plotter")
+
+
+def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
+              tx=0, rx=0, view="fit", show_hits=False, show_legend=True, hidden=(), plotter=None, off_screen=None,
+              screenshot=None, window_size=(1200, 800), return_plotter=False, **unknown):
+    """Draws a scene with its strongest rays.
+
+    scene: that of the paths, or None; paths: of `trace`
+    selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, the strongest
+    color_by: "bounces", "mesh", "power", "range" or "speed"; cmap, clim: colour map and (low, high) of the last three, in
+        dBm, m or m/s
+    chirp: index of the one at whose middle scene and rays are shown, None: that of the middle of the frame
+    tx, rx: indices of the channel's antennas; hidden: globs of meshes that are not drawn
+    view: "fit", "radar", "top" or "side"; show_hits: with a dot at each hit
+    plotter: a pyvista.Plotter to draw into, which is then not shown; window_size: (width, height) in pixels
+    off_screen: True: without a screen; screenshot: PNG file to be written; return_plotter: instead of None
+    Raises ValueError naming the argument.
+    """
+    _refuse_unknown(unknown)
+    session = _session_of(scene, paths)
+    session.set_max_rays(num_rays)
+    session.set_color_by(color_by)
+    if (tx, rx) != session.channel:
+        session.set_channel(tx, rx)
+    session.set_filters(Filters(expression=str(selection)))
+    session.set_chirp(session.chirp if chirp is None else chirp)
+    session.set_mesh_visible([mesh for mesh, name in enumerate(session.mesh_names)
+                              if any(ep._core.glob_takes(glob, name) for glob in hidden)], False)
+    target = plotter if plotter is not None else _new_plotter(off_screen, window_size)
+    builder = SceneBuilder(target, session, show_hits=show_hits, show_legend=show_legend, cmap=cmap, clim=clim)
+    builder.look(view)
+    if plotter is None and return_plotter is False:
+        target.show(screenshot=False if screenshot is None else str(screenshot), auto_close=True)
+        return None
+    if screenshot is not None:
+        target.screenshot(str(screenshot))
+    return target
+
+
+def _new_plotter(off_screen, window_size):
+    """Without a screen VTK would look for one first, and say aloud that it found none."""
+    if off_screen and sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    return pv.Plotter(off_screen=off_screen, window_size=list(window_size))
+
+
+def _session_of(scene, paths) -> Session:
+    """A session without signals: of the maps only the axes."""
+    if scene is not None and len(scene.meshes) != len(paths.scene.meshes):
+        raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
+                         f"got one with {len(scene.meshes)}")
+    radar = paths.radar
+    shape = len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
+    cube = np.zeros(shape, complex)
+    whole = Part(WHOLE, WHOLE, ep.range_doppler(cube, radar))
+    return Session(ViewInput(paths, PartSet(whole), {}, cube))
+
+
+def _refuse_unknown(unknown: dict) -> None:
+    for word in unknown:
+        nearest = ep._core.nearest_names(word, list(_KEYWORDS), 1)
+        raise TypeError(f"plot_rays: unknown keyword '{word}', the nearest right one is '{nearest[0] if nearest else ''}'")

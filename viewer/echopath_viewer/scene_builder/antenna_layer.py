@@ -1,0 +1,59 @@
+"""The antennas of a radar with their axes."""
+from __future__ import annotations
+
+import numpy as np
+
+from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
+
+AXIS_COLOURS = np.array([[204, 51, 17], [0, 136, 85], [0, 102, 204]], np.uint8)  # x (boresight), y, z
+TRANSMITTER_COLOUR, RECEIVER_COLOUR, IDLE_COLOUR = (204, 51, 17), (0, 102, 204), (120, 120, 120)
+DOT_SIZE, AXIS_WIDTH = 10.0, 2.5  # pixels
+
+
+class AntennaLayer:
+    """A dot and three axes for each antenna: x, the boresight, red; y green; z blue. Those of the channel are coloured."""
+
+    def __init__(self, plotter, radar, size: float):
+        """size: length of the axes in m."""
+        self._radar, self._size = radar, size
+        self._axes, self._dots = (actor_in_cell_colours(in_front=True) for _ in range(2))
+        self._axes.GetProperty().SetLineWidth(AXIS_WIDTH)
+        self._dots.GetProperty().SetPointSize(DOT_SIZE)
+        self._dots.GetProperty().RenderPointsAsSpheresOn()
+        for actor, kind in ((self._axes, "axes"), (self._dots, "dots")):
+            plotter.add_actor(actor, name=f"antenna {kind}", reset_camera=False, pickable=False, render=False)
+
+    def show(self, time: float, tx: int, rx: int) -> None:
+        """Puts the antennas where they are at a time in s."""
+        frames = [world_from_antenna(self._radar, antenna, time) for antenna in self._antennas()]
+        corners = [frame[:3, 3] + self._size * direction for frame in frames for direction in frame[:3, :3].T]
+        origins = np.repeat([frame[:3, 3] for frame in frames], 3, axis=0)
+        lines = lines_of(np.stack([origins, corners], axis=1), np.arange(6 * len(frames)).reshape(-1, 2))
+        set_cell_colours(lines, np.tile(AXIS_COLOURS, (len(frames), 1)))
+        dots = vertices_of(origins[::3])
+        set_cell_colours(dots, self._dot_colours(tx, rx))
+        self._axes.GetMapper().SetInputDataObject(lines)
+        self._dots.GetMapper().SetInputDataObject(dots)
+
+    def _antennas(self) -> list:
+        return [*self._radar.transmitters, *self._radar.receivers]
+
+    def _dot_colours(self, tx: int, rx: int):
+        transmitters = [TRANSMITTER_COLOUR if index == tx else IDLE_COLOUR for index in range(len(self._radar.transmitters))]
+        receivers = [RECEIVER_COLOUR if index == rx else IDLE_COLOUR for index in range(len(self._radar.receivers))]
+        return np.array(transmitters + receivers, np.uint8)
+
+
+def world_from_antenna(radar, antenna, time: float):
+    """[4, 4], translation in m."""
+    local = np.eye(4)
+    local[:3, :3], local[:3, 3] = rotation_of(antenna.orientation), antenna.position
+    return np.asarray(radar.world_from_radar(time)) @ local
+
+
+def rotation_of(quaternion):
+    """[3, 3] of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

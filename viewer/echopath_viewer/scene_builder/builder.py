@@ -1,0 +1,127 @@
+"""One picture of a session in a plotter."""
+from __future__ import annotations
+
+import numpy as np
+
+from .antenna_layer import AntennaLayer, world_from_antenna
+from .camera import look
+from .legend import show_legend
+from .mesh_layer import MeshLayer
+from .ray_layer import RayLayer
+
+BACKGROUND = "white"
+RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
+RAY_OPACITY = 0.5
+UNLIT_COLOUR, CHOSEN_COLOUR, CHOSEN_HIT_COLOUR = (208, 208, 208), (20, 20, 20), (230, 159, 0)
+MAX_RAYS_MOVING = 300
+ANTENNA_SIZE = 0.025  # length of the axes, of the size of the picture
+
+
+class SceneBuilder:
+    """Draws meshes, antennas, rays, lit rays and the chosen ray of a session, and follows its changes."""
+
+    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, cmap=None, clim=None):
+        """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown."""
+        self.plotter, self.session = plotter, session
+        self.show_hits, self._shows_legend = show_hits, show_legend
+        self._legend = None
+        self._scale = {"cmap": cmap, "clim": clim}
+        plotter.set_background(BACKGROUND)
+        self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
+        self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
+        self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
+        self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
+        self.update({"meshes"})
+        self._draw_rays()
+        corners = self.corners()
+        size = float(np.linalg.norm(corners.max(axis=0) - corners.min(axis=0)))
+        self.antennas = AntennaLayer(plotter, session.radar, max(ANTENNA_SIZE * size, 1e-3))
+        self._draw_antennas()
+
+    def update(self, topics: set) -> None:
+        """Follows a change of the session; topics as it tells them."""
+        if topics & {"time"}:
+            self.meshes.move(self.session.time)
+            self._draw_antennas()
+        if topics & {"rays", "time", "selection"}:
+            self._draw_rays()
+        elif "colours" in topics:
+            self._colour_rays()
+        if "meshes" in topics:
+            self.meshes.colour(self.session.palette)
+            self.meshes.show(self.session.hidden_meshes, self.session.meshes_of_node())
+
+    def set_show_hits(self, is_shown: bool) -> None:
+        self.show_hits = is_shown
+        self._draw_rays()
+
+    def set_moving(self, is_moving: bool) -> None:
+        """Fewer rays as long as the camera moves."""
+        self.rays.show_first(MAX_RAYS_MOVING if is_moving else None)
+
+    def look(self, view: str) -> None:
+        """Turns the camera: a name of VIEWS."""
+        radar, time = self.session.radar, self.session.time
+        antenna = radar.transmitters[self.session.columns.tx]
+        look(self.plotter, view, self.corners(), world_from_antenna(radar, antenna, time))
+
+    def corners(self):
+        """[N, 3] m: what the picture must hold: rays, antennas and the objects that are no mirrors."""
+        session = self.session
+        objects = [mesh.id for mesh in session.scene.meshes if not mesh.material.mirror] or range(len(session.mesh_names))
+        rays = self.rays.segments.points
+        around_rays = [rays.min(axis=0), rays.max(axis=0)] if len(rays) else []
+        boxes = [*self.meshes.bounds_of(objects), around_rays, session.antennas_at(session.time)]
+        corners = np.concatenate([np.reshape(box, (-1, 3)) for box in boxes])
+        return np.stack([corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1])
+
+    def drawn_layers(self) -> list:
+        """The layers that a click may pick a ray of, foremost first."""
+        return [self.lit] if self.session.box is not None else [self.rays]
+
+    # --- drawing ---
+
+    def _draw_antennas(self) -> None:
+        if hasattr(self, "antennas"):
+            self.antennas.show(self.session.time, *self.session.channel)
+
+    def _draw_rays(self) -> None:
+        session = self.session
+        is_selected = session.box is not None
+        shown, lit = session.segments(session.shown_rays()), session.segments(session.lit_rays())
+        main = session.colouring(lit if is_selected else shown, **self._scale)
+        unlit = np.broadcast_to(np.uint8(UNLIT_COLOUR), (shown.num_segments, 3))
+        hit_rgb = session.palette[shown.hit_mesh] if self.show_hits and not is_selected else None
+        self.rays.show(shown, unlit if is_selected else main.rgb, hit_rgb=hit_rgb)
+        lit_hits = session.palette[lit.hit_mesh] if self.show_hits else None
+        self.lit.show(lit, main.rgb if is_selected else np.zeros((0, 3)), hit_rgb=lit_hits)
+        self._draw_chosen()
+        self._draw_legend(main.legend)
+
+    def _colour_rays(self) -> None:
+        layer = self.lit if self.session.box is not None else self.rays
+        colouring = self.session.colouring(layer.segments, **self._scale)
+        layer.recolour(colouring.rgb)
+        self._draw_legend(colouring.legend)
+
+    def _draw_chosen(self) -> None:
+        session = self.session
+        segments = session.segments([] if session.ray is None else [session.ray])
+        rgb = np.broadcast_to(np.uint8(CHOSEN_COLOUR), (segments.num_segments, 3))
+        self.chosen.show(segments, rgb, hit_rgb=np.uint8(CHOSEN_HIT_COLOUR))
+        self.plotter.remove_actor("chosen names", render=False)
+        if len(segments.hits):
+            names = [f"{number + 1} {session.mesh_names[mesh]}" for number, mesh in enumerate(segments.hit_mesh)]
+            self.plotter.add_point_labels(segments.points[segments.hits], names, name="chosen names", font_size=12,
+                                          text_color="black", shape_color="white", shape_opacity=0.8, show_points=False,
+                                          always_visible=True, reset_camera=False, render=False)
+
+    def redraw_legend(self) -> None:
+        """In its usual size, after the picture has got another one."""
+        if self._shows_legend and self._legend is not None:
+            show_legend(self.plotter, self._legend)
+
+    def _draw_legend(self, legend) -> None:
+        if legend != self._legend:
+            self._legend = legend
+            self.redraw_legend()

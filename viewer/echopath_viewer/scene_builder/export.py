@@ -1,0 +1,60 @@
+"""Rays and meshes as VTK files, for ParaView and its like."""
+from __future__ import annotations
+
+import numpy as np
+import pyvista as pv
+
+from echopath.files import written_whole
+
+from .polydata import lines_of, triangles_of
+
+
+def export_rays(session, path, rays=None) -> int:
+    """Writes rays as VTK polydata (.vtp): one line cell for each leg, with what is known of it.
+
+    rays: indices of paths, None: those that are drawn; path: of the file, written whole or not at all
+    Cell data: path, bounce, num_bounces, mesh_id, power_dbm (dB re 1 mW), range (m), velocity (m/s). Field data:
+    mesh_names, time (s), transmitter, receiver. Returns the number of rays.
+    """
+    segments = session.segments(session.listed_rays() if rays is None else rays)
+    poly = lines_of(segments.points, segments.ends)
+    row, columns = segments.rays[segments.ray], session.columns
+    values = {"path": row, "bounce": segments.bounce, "num_bounces": columns.num_bounces[row],
+              "mesh_id": segments.mesh_id, "power_dbm": columns.power_dbm[row], "range": columns.cells.range[row],
+              "velocity": columns.cells.velocity[row]}
+    for name, column in values.items():
+        poly.cell_data[name] = column
+    poly.field_data["mesh_names"] = list(session.mesh_names)
+    poly.field_data["time"] = [session.time]
+    for name, number in zip(("transmitter", "receiver"), session.channel):
+        poly.field_data[name] = [number]
+    _write(poly, path)
+    return len(segments.rays)
+
+
+def export_meshes(session, path) -> int:
+    """Writes all visible meshes at the time shown as one VTK polydata file (.vtp) with mesh_id by triangle.
+
+    Returns the number of meshes.
+    """
+    shown = [mesh for mesh in session.scene.meshes if mesh.id not in session.hidden_meshes]
+    points, faces, mesh_id, first = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)], 0
+    for mesh in shown:
+        vertices = session.scene.world_vertices(mesh.id, session.time)
+        points.append(vertices)
+        faces.append(np.asarray(mesh.triangles, np.int64) + first)
+        mesh_id.append(np.full(len(mesh.triangles), mesh.id))
+        first += len(vertices)
+    poly = triangles_of(np.concatenate(points), np.concatenate(faces))
+    poly.cell_data["mesh_id"] = np.concatenate(mesh_id)
+    poly.field_data["mesh_names"] = list(session.mesh_names)
+    _write(poly, path)
+    return len(shown)
+
+
+def _write(poly: pv.PolyData, path) -> None:
+    path = str(path)
+    if not path.endswith(".vtp"):
+        raise ValueError(f"path: must end in .vtp, got {path}")
+    with written_whole(path) as temporary:
+        poly.save(temporary)

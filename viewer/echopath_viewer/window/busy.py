@@ -1,0 +1,35 @@
+"""Long work with a progress bar that can be cancelled."""
+from __future__ import annotations
+
+from .qt import Qt, QtWidgets
+
+PATIENCE_MS = 400  # before a bar appears
+
+
+class Cancelled(Exception):
+    """The user has had enough."""
+
+
+def run_with_progress(parent, title: str, work):
+    """Calls work(progress) and returns its result; None where it was cancelled.
+
+    progress: callable (stage, fraction), which keeps the window alive meanwhile.
+    """
+    dialog = QtWidgets.QProgressDialog(title, "Cancel", 0, 100, parent)
+    dialog.setWindowModality(Qt.WindowModality.WindowModal)
+    dialog.setMinimumDuration(PATIENCE_MS)
+    dialog.setAutoReset(False)
+
+    def progress(stage: str, fraction: float) -> None:
+        dialog.setLabelText(f"{title}: {stage}")
+        dialog.setValue(int(99.0 * min(max(fraction, 0.0), 1.0)))  # pumps events while the dialog is shown
+        if dialog.wasCanceled():
+            raise Cancelled
+
+    try:
+        return work(progress)
+    except Cancelled:
+        return None
+    finally:
+        dialog.close()
+        dialog.deleteLater()

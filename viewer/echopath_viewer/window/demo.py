@@ -1,0 +1,18 @@
+"""The street demo, simulated on the spot."""
+from __future__ import annotations
+
+from importlib.resources import as_file
+
+from echopath.cli.demo import limb_partitions
+from echopath.cli.run import simulate_file
+from echopath.materials import data_folder
+from echopath.scene_file import load_scene
+
+NUM_RAYS = 20_000
+
+
+def simulate_demo(progress):
+    """The frame of data/scenes/street.toml with few rays; progress: callable (stage, fraction)."""
+    with as_file(data_folder("scenes") / "street.toml") as path:
+        street = load_scene(path)
+    return simulate_file(street, num_rays=NUM_RAYS, extra_parts=limb_partitions(street.parts["route"]), progress=progress)

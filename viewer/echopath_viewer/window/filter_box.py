@@ -1,0 +1,174 @@
+"""Which rays are shown and how."""
+from __future__ import annotations
+
+from ..model import COLOUR_MODES, FilterError, Filters
+from ..model.filters import MAX_BOUNCES
+from .qt import QtCore, QtGui, QtWidgets, Signal
+
+TYPING_PAUSE_MS = 350
+COUNT_LINES = 3
+EXAMPLE = "T .* 'wall*' .* R"
+EXPRESSION_HELP = """Path expression: T and R are the radar, between them each hit is . (any), a quoted mesh 'pedestrian/*',
+S or D (specular, diffuse); operators * + ? | ( ) {m,n}; expressions are joined by & | ~.
+T . R: direct echoes.   T .{2,} R: multipath.   T .* 'wall*' .* R: by way of a wall."""
+
+
+class FilterBox(QtWidgets.QWidget):
+    """Filters, the name of a new part, colours and number of rays; what is wrong with a text is shown below it."""
+
+    part_named = Signal(str)
+    hits_toggled = Signal(bool)
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.session = None
+        self.from_box = QtWidgets.QSpinBox(minimum=0, maximum=MAX_BOUNCES)
+        self.to_box = QtWidgets.QSpinBox(minimum=0, maximum=MAX_BOUNCES)
+        self.power_check = QtWidgets.QCheckBox("at least")
+        self.power_box = QtWidgets.QDoubleSpinBox(minimum=-400.0, maximum=100.0, decimals=0, singleStep=5.0, suffix=" dBm")
+        self.mesh_box = QtWidgets.QComboBox(editable=True)
+        self.expression_edit = QtWidgets.QLineEdit(placeholderText=EXAMPLE, clearButtonEnabled=True)
+        self.expression_edit.setToolTip(EXPRESSION_HELP)
+        self.mesh_error, self.expression_error, self.name_error = _error_label(), _error_label(), _error_label()
+        self.name_edit = QtWidgets.QLineEdit(placeholderText="name what is shown", clearButtonEnabled=True)
+        self.name_edit.setToolTip("The rays that are shown now become a part with a map of its own.")
+        self.add_button, self.reset_button = QtWidgets.QPushButton("Add"), QtWidgets.QPushButton("Show all")
+        self.count_label = QtWidgets.QLabel(wordWrap=True)
+        self.count_label.setMinimumHeight(COUNT_LINES * self.fontMetrics().lineSpacing())
+        self.colour_box = QtWidgets.QComboBox()
+        self.colour_box.addItems(COLOUR_MODES)
+        self.limit_box = QtWidgets.QSpinBox(minimum=1, maximum=5_000_000, singleStep=500, groupSeparatorShown=True)
+        self.limit_box.setStepType(QtWidgets.QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
+        self.hits_check = QtWidgets.QCheckBox("with hit points")
+        self._pause = QtCore.QTimer(self, singleShot=True, interval=TYPING_PAUSE_MS)
+        self._arrange()
+        self._connect()
+
+    def _arrange(self) -> None:
+        form = QtWidgets.QFormLayout(self)
+        form.setContentsMargins(4, 4, 4, 4)
+        form.setFieldGrowthPolicy(QtWidgets.QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        form.addRow("Colour by", self.colour_box)
+        form.addRow("Draw strongest", _row(self.limit_box, self.hits_check))
+        form.addRow("Bounces", _row(self.from_box, QtWidgets.QLabel("to"), self.to_box, self.reset_button))
+        form.addRow("Power", _row(self.power_check, self.power_box))
+        form.addRow("Over mesh", self.mesh_box)
+        form.addRow(self.mesh_error)
+        form.addRow("Path", self.expression_edit)
+        form.addRow(self.expression_error)
+        form.addRow("New part", _row(self.name_edit, self.add_button))
+        form.addRow(self.name_error)
+        form.addRow(self.count_label)
+
+    def _connect(self) -> None:
+        self._pause.timeout.connect(self.apply)
+        for box in (self.from_box, self.to_box, self.power_box):
+            box.valueChanged.connect(lambda _: self.apply())
+        self.power_check.toggled.connect(lambda _: self.apply())
+        self.mesh_box.editTextChanged.connect(lambda _: self._pause.start())
+        self.mesh_box.activated.connect(lambda _: self.apply())
+        self.expression_edit.textChanged.connect(lambda _: self._pause.start())
+        self.expression_edit.returnPressed.connect(self.apply)
+        self.add_button.clicked.connect(lambda: self.part_named.emit(self.name_edit.text()))
+        self.name_edit.returnPressed.connect(lambda: self.part_named.emit(self.name_edit.text()))
+        self.reset_button.clicked.connect(self._show_all)
+        self.colour_box.currentTextChanged.connect(lambda mode: self.session and self.session.set_color_by(mode))
+        self.limit_box.valueChanged.connect(lambda count: self.session and self.session.set_max_rays(count))
+        self.hits_check.toggled.connect(self.hits_toggled)
+
+    # --- session ---
+
+    def show_session(self, session) -> None:
+        self.session = None
+        self.mesh_box.clear()
+        self.mesh_box.addItems(["", *(node.name for node in session.scene.nodes)])
+        power = session.columns.power_dbm
+        self.power_box.setValue(round(float(power.max()) - 40.0) if len(power) else -100.0)
+        self.read(session)
+
+    def read(self, session) -> None:
+        """Takes over what the session shows, telling nobody."""
+        self.session = None
+        filters = session.filters
+        self.from_box.setValue(filters.min_bounces)
+        longest = int(session.columns.num_bounces.max(initial=1))
+        self.to_box.setValue(min(filters.max_bounces, longest))
+        self.power_check.setChecked(filters.min_power_dbm is not None)
+        if filters.min_power_dbm is not None:
+            self.power_box.setValue(filters.min_power_dbm)
+        self.mesh_box.setCurrentText(filters.mesh)
+        self.expression_edit.setText(filters.expression)
+        self.colour_box.setCurrentText(session.color_by)
+        self.limit_box.setValue(session.max_rays)
+        self._pause.stop()
+        self.session = session
+        self._longest = longest
+        self._show_errors({})
+        self.show_counts()
+
+    def filters(self) -> Filters:
+        """As they are set in the box."""
+        highest = self.to_box.value()
+        return Filters(min_bounces=self.from_box.value(), max_bounces=MAX_BOUNCES if highest >= self._longest else highest,
+                       min_power_dbm=self.power_box.value() if self.power_check.isChecked() else None,
+                       mesh=self.mesh_box.currentText(), expression=self.expression_edit.text())
+
+    def apply(self) -> None:
+        """Filters the rays, or shows below the text what is wrong with it and leaves the rays as they are."""
+        self._pause.stop()
+        if self.session is None:
+            return
+        try:
+            if self.filters() != self.session.filters:
+                self.session.set_filters(self.filters())
+            self._show_errors({})
+        except FilterError as error:
+            self._show_errors({error.field: str(error)})
+
+    def show_name_error(self, text: str) -> None:
+        self.name_error.setText(text)
+        self.name_error.setVisible(bool(text))
+
+    def show_counts(self) -> None:
+        """How many rays pass, and how many are drawn."""
+        session = self.session
+        visible = int(session.visible.sum())
+        with QtCore.QSignalBlocker(self.colour_box), QtCore.QSignalBlocker(self.limit_box):
+            self.colour_box.setCurrentText(session.color_by)
+            self.limit_box.setValue(session.max_rays)
+        text = f"{visible:,} of {session.paths.num_paths:,} paths"
+        if session.box is not None:
+            text += f", {int(session.lit.sum()):,} of them in the selected cells"
+        drawn = min(session.max_rays, visible if session.box is None else int(session.lit.sum()))
+        self.count_label.setText(f"{text}; the strongest {drawn:,} are drawn")
+
+    def _show_all(self) -> None:
+        self.session.set_filters(Filters())
+        self.read(self.session)
+
+    def _show_errors(self, errors: dict) -> None:
+        fields = (("mesh", self.mesh_error, self.mesh_box),
+                  ("expression", self.expression_error, self.expression_edit))
+        for field, label, edit in fields:
+            text = errors.get(field, "")
+            label.setText(text)
+            label.setVisible(bool(text))
+            edit.setStyleSheet("border: 1px solid #c0392b" if text else "")
+
+
+def _row(*widgets) -> QtWidgets.QWidget:
+    row = QtWidgets.QWidget()
+    layout = QtWidgets.QHBoxLayout(row)
+    layout.setContentsMargins(0, 0, 0, 0)
+    for widget in widgets:
+        layout.addWidget(widget)
+    return row
+
+
+def _error_label() -> QtWidgets.QLabel:
+    """In a fixed pitch: carets stand below the fault."""
+    label = QtWidgets.QLabel(visible=False)
+    label.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
+    label.setStyleSheet("color: #c0392b")
+    label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
+    return label

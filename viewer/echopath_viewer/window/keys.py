@@ -1,0 +1,42 @@
+"""Keys of the window: one table that makes the shortcuts and the help."""
+from __future__ import annotations
+
+from .qt import QtWidgets
+
+# Key, name of the method of MainWindow, what it does.
+KEYS = (
+    ("Ctrl+O", "open_dialog", "Open a frame file"),
+    ("Ctrl+S", "save_view_dialog", "Save this view"),
+    ("Ctrl+L", "load_view_dialog", "Load a view"),
+    ("Ctrl+P", "screenshot_dialog", "Save a picture of the window"),
+    ("Ctrl+E", "export_rays_dialog", "Export the rays (VTK)"),
+    ("F", "look_fit", "Look at everything"),
+    ("R", "look_radar", "The radar's eye"),
+    ("T", "look_top", "From above"),
+    ("S", "look_side", "From the side"),
+    ("H", "toggle_hits", "Hit points on or off"),
+    ("C", "next_colour", "Next colouring of the rays"),
+    ("M", "toggle_layout", "All maps or a large one"),
+    ("Space", "toggle_play", "Play or pause"),
+    ("Left", "previous_chirp", "One chirp back"),
+    ("Right", "next_chirp", "One chirp on"),
+    ("Esc", "clear_selection", "Select nothing"),
+    ("?", "show_help", "This list"),
+)
+MOUSE = (
+    ("Map: click, drag", "the rays of a cell, of a rectangle"),
+    ("Map: wheel, right button, double click", "zoom, move, reset"),
+    ("Scene: drag, wheel, middle button", "turn, zoom, move"), ("Scene: click", "a ray, or the body under the cursor"),
+    ("Scene: Ctrl + click", "the mesh under the cursor, walls too"), ("Tree: click, right button", "map of a mesh, more"),
+    ("Table: click a heading, Ctrl+C", "sort, copy rows"),
+)
+
+
+def help_dialog(parent) -> QtWidgets.QDialog:
+    """The keys and what the mouse does."""
+    dialog = QtWidgets.QDialog(parent)
+    dialog.setWindowTitle("Keys and mouse")
+    rows = [(key, text) for key, _, text in KEYS] + list(MOUSE)
+    html = "".join(f"<tr><td><b>{key}</b>&nbsp;&nbsp;</td><td>{text}</td></tr>" for key, text in rows)
+    QtWidgets.QVBoxLayout(dialog).addWidget(QtWidgets.QLabel(f"<table>{html}</table>"))
+    return dialog

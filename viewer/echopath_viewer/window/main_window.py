@@ -1,0 +1,349 @@
+"""The window of the viewer."""
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import echopath as ep
+from echopath.files import written_whole
+
+from ..model import COLOUR_MODES, Session, from_file, from_frame
+from ..model.view_state import apply_state, load_state, save_state, state_of
+from ..scene_builder import VIEWS, export_meshes, export_rays
+from .busy import run_with_progress
+from .demo import simulate_demo
+from .empty_page import EmptyPage
+from .filter_box import FilterBox
+from .keys import KEYS, help_dialog
+from .map_area import MapArea
+from .qt import Qt, QtCore, QtGui, QtWidgets
+from .ray_table import RayTable
+from .scene_tree import SceneTree
+from .time_bar import TimeBar
+from .view3d import View3D
+
+TITLE = "Echopath"
+SIZE = (1600, 960)
+VIEW_TITLES = {"radar": "Radar's eye", "top": "Top", "side": "Side", "fit": "Fit"}
+CONTENT_PAGE, EMPTY_PAGE = 0, 1
+
+
+class MainWindow(QtWidgets.QMainWindow):
+    """Scene tree and filters, 3-D view with its time bar, maps and table: all views of one session."""
+
+    def __init__(self):
+        super().__init__()
+        self.session = None
+        self.setWindowTitle(TITLE)
+        self.resize(*SIZE)
+        self.setAcceptDrops(True)
+        self.tree, self.filter_box, self.view3d = SceneTree(), FilterBox(), View3D(self)
+        self.time_bar, self.map_area, self.table = TimeBar(), MapArea(), RayTable()
+        self.banner, self.empty_page = Banner(), EmptyPage()
+        self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
+        self._stale = set()
+        self._arrange()
+        self._add_actions()
+        self._connect()
+        self._set_content_shown(False)
+
+    # --- frames ---
+
+    def open_file(self, path) -> bool:
+        """Shows a frame file, or says above what was shown before what is wrong with it."""
+        try:
+            self.show_input(from_file(path))
+        except (ep.FileError, ValueError) as error:
+            self.show_message(str(error))
+            return False
+        return True
+
+    def show_input(self, view_input) -> None:
+        """Shows what `model.inputs` has read."""
+        self.session = Session(view_input)
+        self.show_message("")
+        for part in (self.tree, self.filter_box, self.map_area, self.time_bar):
+            part.show_session(self.session)
+        self._set_content_shown(True)
+        self.view3d.show_session(self.session)
+        self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
+        self.table.show_session(self.session)
+        self._show_slow_time()
+        self.session.listen(self._changed)
+        self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
+
+    def show_message(self, text: str) -> None:
+        """Shows a line above everything until it is clicked away; "" takes it away."""
+        self.banner.setText(text)
+        self.banner.setVisible(bool(text))
+
+    def _simulate_demo(self) -> None:
+        frame = run_with_progress(self, "Street demo", simulate_demo)
+        if frame is not None:
+            self.show_input(from_frame(frame, title="street demo"))
+
+    # --- following the session ---
+
+    def _changed(self, topics: set) -> None:
+        """At once for what moves with the mouse; lists and counts when this turn of the event loop is over."""
+        self.view3d.update_topics(topics)
+        self.map_area.update_topics(topics)
+        if "time" in topics:
+            self.time_bar.read(self.session)
+        self._stale |= topics
+        self._listing.start()
+
+    def _refresh_lists(self) -> None:
+        stale, self._stale = self._stale, set()
+        if stale & {"rays", "meshes"}:
+            self.tree.refresh()
+        if stale & {"rays", "selection"}:
+            self.table.show_session(self.session)
+        if stale & {"rays", "selection", "colours"}:
+            self.filter_box.show_counts()
+        if stale & {"selection", "rays"}:
+            self._show_slow_time()
+
+    def _show_slow_time(self) -> None:
+        session = self.session
+        power = run_with_progress(self, "Signal of the selected rays", lambda progress: session.slow_time_power(progress))
+        if power is not None:
+            what = "the selected rays" if session.box is not None else "everything"
+            self.time_bar.show_power(power, f"Power by chirp, {what}")
+
+    def _choose_node(self, name: str) -> None:
+        wanted = None if name == self.session.node else name
+        run_with_progress(self, f"Map of {name}", lambda progress: self.session.select_node(wanted, progress))
+
+    def _name_part(self, name: str) -> None:
+        self.filter_box.apply()
+        try:
+            part = run_with_progress(self, f"Map of {name}", lambda progress: self.session.add_part(name, progress))
+        except ValueError as error:
+            self.filter_box.show_name_error(str(error))
+            return
+        self.filter_box.show_name_error("")
+        if part is not None:
+            self.filter_box.name_edit.clear()
+
+    def _only_over(self, name: str) -> None:
+        self.session.set_filters(dataclasses.replace(self.session.filters, mesh=name))
+        self.filter_box.read(self.session)
+
+    # --- actions, by the names in keys.py ---
+
+    def look_fit(self) -> None:
+        self.view3d.look("fit")
+
+    def look_radar(self) -> None:
+        self.view3d.look("radar")
+
+    def look_top(self) -> None:
+        self.view3d.look("top")
+
+    def look_side(self) -> None:
+        self.view3d.look("side")
+
+    def toggle_hits(self) -> None:
+        self.filter_box.hits_check.toggle()
+
+    def next_colour(self) -> None:
+        box = self.filter_box.colour_box
+        box.setCurrentIndex((box.currentIndex() + 1) % len(COLOUR_MODES))
+
+    def toggle_layout(self) -> None:
+        self.map_area.show_one(self.map_area.layout_box.currentIndex() == 0)
+
+    def toggle_play(self) -> None:
+        self.time_bar.play_button.toggle()
+
+    def previous_chirp(self) -> None:
+        self.session.set_chirp(self.session.chirp - 1)
+
+    def next_chirp(self) -> None:
+        self.session.set_chirp(self.session.chirp + 1)
+
+    def clear_selection(self) -> None:
+        self.session.select_cells(None)
+        if self.session.node is not None:
+            self.session.select_node(None)
+
+    def show_help(self) -> None:
+        help_dialog(self).show()
+
+    def open_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getOpenFileName, "Open a frame", "frame.h5", "Frames (*.h5 *.hdf5)", self.open_file)
+
+    def save_view_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getSaveFileName, "Save this view", "view.json", "Views (*.json)", self.save_view)
+
+    def load_view_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getOpenFileName, "Load a view", "view.json", "Views (*.json)", self.load_view)
+
+    def screenshot_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getSaveFileName, "Save a picture", "echopath.png", "PNG (*.png)", self.screenshot)
+
+    def export_rays_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getSaveFileName, "Export the rays", "rays.vtp", "VTK polydata (*.vtp)",
+                  lambda path: export_rays(self.session, path))
+
+    def export_meshes_dialog(self) -> None:
+        self._ask(QtWidgets.QFileDialog.getSaveFileName, "Export the meshes", "meshes.vtp", "VTK polydata (*.vtp)",
+                  lambda path: export_meshes(self.session, path))
+
+    def _ask(self, dialog, title: str, name: str, kinds: str, work) -> None:
+        path, _ = dialog(self, title, name, kinds)
+        if not path:
+            return
+        try:
+            work(path)
+        except (ep.FileError, ValueError) as error:
+            self.show_message(str(error))
+
+    def save_view(self, path) -> None:
+        """Writes what is shown, camera included, as JSON."""
+        looks = {"camera": self.view3d.camera_state(), "show_hits": self.filter_box.hits_check.isChecked(),
+                 "one_map": self.map_area.layout_box.currentIndex() == 1, "map_view": list(self.map_area.view.getRect())}
+        save_state(state_of(self.session) | looks, path)
+
+    def load_view(self, path) -> None:
+        """Shows what was saved, as far as it fits the frame. Raises ep.FileError."""
+        state = load_state(path)
+        misfits = apply_state(self.session, state)
+        self.filter_box.read(self.session)
+        self.filter_box.hits_check.setChecked(bool(state.get("show_hits", False)))
+        self.map_area.show_one(bool(state.get("one_map", False)))
+        if "map_view" in state:
+            self.map_area.set_view(QtCore.QRectF(*state["map_view"]))
+        if "camera" in state:
+            self.view3d.set_camera_state(state["camera"])
+        self.show_message("This view is of another frame. " + "; ".join(misfits) if misfits else "")
+
+    def screenshot(self, path) -> None:
+        """Writes a picture of the window. Raises ep.FileError."""
+        self.view3d.render()
+        with written_whole(Path(path).with_suffix(".png")) as temporary:
+            self.grab().save(str(temporary), "PNG")
+
+    # --- making ---
+
+    def _arrange(self) -> None:
+        left = _splitter(Qt.Orientation.Vertical, (self.tree, 1), (self.filter_box, 0))
+        middle = QtWidgets.QWidget()
+        column = QtWidgets.QVBoxLayout(middle)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.view3d, 1)
+        column.addWidget(self.time_bar)
+        right = _splitter(Qt.Orientation.Vertical, (self.map_area, 3), (self.table, 1))
+        self.content = _splitter(Qt.Orientation.Horizontal, (left, 0), (middle, 3), (right, 2))
+        self.content.setSizes([300, 690, 610])
+        right.setSizes([620, 260])
+        self.pages = QtWidgets.QStackedWidget()
+        self.pages.addWidget(self.content)
+        self.pages.addWidget(self.empty_page)
+        page = QtWidgets.QWidget()
+        column = QtWidgets.QVBoxLayout(page)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.banner)
+        column.addWidget(self.pages, 1)
+        self.setCentralWidget(page)
+
+    def _add_actions(self) -> None:
+        bar = self.addToolBar("Main")
+        bar.setMovable(False)
+        actions = {}
+        for key, method, text in KEYS:
+            action = QtGui.QAction(text, self)
+            action.setShortcut(QtGui.QKeySequence(key))
+            action.setToolTip(f"{text} ({key})")
+            action.triggered.connect(lambda _=False, method=method: getattr(self, method)())
+            self.addAction(action)
+            actions[method] = action
+        meshes = QtGui.QAction("Export the meshes (VTK)", self, triggered=lambda: self.export_meshes_dialog())
+        self._needs_frame = [action for method, action in actions.items() if method not in ("open_dialog", "show_help")]
+        self._needs_frame.append(meshes)
+        file_menu = self.menuBar().addMenu("File")
+        for name in ("open_dialog", "save_view_dialog", "load_view_dialog", "screenshot_dialog", "export_rays_dialog"):
+            file_menu.addAction(actions[name])
+        file_menu.addAction(meshes)
+        look_menu = self.menuBar().addMenu("View")
+        for name in ("look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
+                     "toggle_play", "previous_chirp", "next_chirp", "clear_selection"):
+            look_menu.addAction(actions[name])
+        self.menuBar().addMenu("Help").addAction(actions["show_help"])
+        self._fill_bar(bar, actions)
+
+    def _fill_bar(self, bar, actions: dict) -> None:
+        for name, text in (("open_dialog", "Open"), ("save_view_dialog", "Save view"), ("load_view_dialog", "Load view"),
+                           ("screenshot_dialog", "Picture"), ("export_rays_dialog", "Export rays")):
+            actions[name].setIconText(text)
+            bar.addAction(actions[name])
+        bar.addSeparator()
+        for view in reversed(VIEWS):
+            actions[f"look_{view}"].setIconText(VIEW_TITLES[view])
+            bar.addAction(actions[f"look_{view}"])
+        bar.addSeparator()
+        actions["clear_selection"].setIconText("Select nothing")
+        bar.addAction(actions["clear_selection"])
+        actions["show_help"].setIconText("Keys (?)")
+        bar.addAction(actions["show_help"])
+
+    def _connect(self) -> None:
+        self._listing.timeout.connect(self._refresh_lists)
+        self.tree.node_clicked.connect(self._choose_node)
+        self.tree.rays_wanted.connect(self._only_over)
+        self.filter_box.part_named.connect(self._name_part)
+        self.filter_box.hits_toggled.connect(self._show_hits)
+        self.view3d.ray_clicked.connect(lambda ray: self.session.select_ray(ray))
+        self.view3d.nothing_clicked.connect(lambda: self.session.select_ray(None))
+        self.view3d.mesh_clicked.connect(lambda mesh: self._choose_node(self.session.mesh_names[mesh]))
+        self.table.ray_chosen.connect(lambda ray: self.session.select_ray(ray))
+        self.empty_page.open_wanted.connect(self.open_dialog)
+        self.empty_page.demo_wanted.connect(self._simulate_demo)
+
+    def _show_hits(self, is_shown: bool) -> None:
+        if self.view3d.builder is not None:
+            self.view3d.builder.set_show_hits(is_shown)
+            self.view3d.render_soon()
+
+    def _set_content_shown(self, is_shown: bool) -> None:
+        self.pages.setCurrentIndex(CONTENT_PAGE if is_shown else EMPTY_PAGE)
+        for action in self._needs_frame:
+            action.setEnabled(is_shown)
+
+    # --- Qt ---
+
+    def dragEnterEvent(self, event):  # noqa: N802
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event):  # noqa: N802
+        self.open_file(event.mimeData().urls()[0].toLocalFile())
+
+    def closeEvent(self, event):  # noqa: N802
+        self.time_bar.stop()
+        self.session = None
+        self.view3d.builder = None
+        self.view3d.close()
+        super().closeEvent(event)
+
+
+def _splitter(orientation, *widgets) -> QtWidgets.QSplitter:
+    splitter = QtWidgets.QSplitter(orientation)
+    for index, (widget, stretch) in enumerate(widgets):
+        splitter.addWidget(widget)
+        splitter.setStretchFactor(index, stretch)
+    splitter.setChildrenCollapsible(False)
+    return splitter
+
+
+class Banner(QtWidgets.QLabel):
+    """A line that says what is wrong, until it is clicked."""
+
+    def __init__(self):
+        super().__init__(visible=False, wordWrap=True)
+        self.setStyleSheet("background: #fdecea; color: #7a1f14; padding: 8px; border-bottom: 1px solid #c0392b")
+        self.setToolTip("Click to close")
+
+    def mousePressEvent(self, _event):  # noqa: N802
+        self.hide()

@@ -1,0 +1,144 @@
+"""The 3-D view."""
+from __future__ import annotations
+
+import numpy as np
+from pyvistaqt import QtInteractor
+from vtkmodules.vtkRenderingCore import vtkCellPicker
+
+from ..model.picking import nearest_segment
+from ..scene_builder import SceneBuilder
+from .qt import Qt, QtCore, Signal
+
+CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
+
+
+class View3D(QtInteractor):
+    """Draws a session; tells what is clicked: a ray, else the body under the cursor; with Ctrl always the mesh."""
+
+    ray_clicked = Signal(int)
+    mesh_clicked = Signal(int)
+    nothing_clicked = Signal()
+
+    def __init__(self, parent=None):
+        self.builder = None  # a resize may come before the constructor has ended
+        # Multisampling takes most of the time where there is no graphics card.
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        self._press, self._is_fresh = None, False
+        self._render_timer = QtCore.QTimer(self, singleShot=True, interval=0)
+        self._render_timer.timeout.connect(self.render)
+        style = self.iren.interactor.GetInteractorStyle()
+        style.AddObserver("StartInteractionEvent", lambda *_: self._set_moving(True))
+        style.AddObserver("EndInteractionEvent", lambda *_: self._set_moving(False))
+
+    def show_session(self, session) -> None:
+        """Replaces what is drawn."""
+        self.clear()
+        self.builder = SceneBuilder(self, session)
+        self._is_fresh = True
+        QtCore.QTimer.singleShot(0, self._first_look)
+
+    def _first_look(self) -> None:
+        """Once the window has its size."""
+        if self.builder is not None and self._is_fresh:
+            self.look("fit")
+
+    def update_topics(self, topics: set) -> None:
+        self.builder.update(topics)
+        self.render_soon()
+
+    def look(self, view: str) -> None:
+        self._is_fresh = False
+        self.builder.look(view)
+        self.render_soon()
+
+    def render_soon(self) -> None:
+        """Once, when all changes of this turn of the event loop are made."""
+        self._render_timer.start()
+
+    def camera_state(self) -> dict:
+        camera = self.camera
+        return {"position": list(camera.position), "focal_point": list(camera.focal_point), "up": list(camera.up),
+                "view_angle": camera.view_angle}
+
+    def set_camera_state(self, state: dict) -> None:
+        self._is_fresh = False
+        for name in ("position", "focal_point", "up", "view_angle"):
+            setattr(self.camera, name, state[name])
+        self.reset_camera_clipping_range()
+        self.render_soon()
+
+    def _set_moving(self, is_moving: bool) -> None:
+        if self.builder is not None:
+            self.builder.set_moving(is_moving)
+            if not is_moving:
+                self.render_soon()
+
+    # --- picking ---
+
+    def clip_from_world(self):
+        """[4, 4] of the camera with its perspective."""
+        matrix = self.camera.GetCompositeProjectionTransformMatrix(self.width() / max(self.height(), 1), -1.0, 1.0)
+        return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+
+    def ray_at(self, x: float, y: float) -> int | None:
+        """The path whose ray is drawn at a pixel from the upper left, None where there is none."""
+        for layer in self.builder.drawn_layers():
+            segments = layer.segments
+            row = nearest_segment(segments.points, segments.ends, self.clip_from_world(), (self.width(), self.height()),
+                                  (x, y), CLICK_REACH)
+            if row is not None:
+                return int(segments.rays[segments.ray[row]])
+        return None
+
+    def mesh_at(self, x: float, y: float, with_mirrors: bool) -> int | None:
+        """The mesh drawn at a pixel; bodies come before mirrors, which are large and see-through."""
+        session, actors = self.builder.session, self.builder.meshes.actors
+        is_mirror = [mesh.material.mirror for mesh in session.scene.meshes]
+        for mirrors in (False, True)[:1 + with_mirrors]:
+            picker = vtkCellPicker()
+            picker.PickFromListOn()
+            for mesh, actor in enumerate(actors):
+                if is_mirror[mesh] == mirrors and actor.GetVisibility():
+                    picker.AddPickList(actor)
+            scale = self.devicePixelRatioF()
+            if picker.Pick(x * scale, (self.height() - 1 - y) * scale, 0.0, self.renderer):
+                return next(mesh for mesh, actor in enumerate(actors) if actor is picker.GetActor())
+        return None
+
+    def _click(self, x: float, y: float, wants_mesh: bool) -> None:
+        ray = None if wants_mesh else self.ray_at(x, y)
+        mesh = self.mesh_at(x, y, wants_mesh) if ray is None else None
+        if ray is not None:
+            self.ray_clicked.emit(ray)
+        elif mesh is not None:
+            self.mesh_clicked.emit(mesh)
+        else:
+            self.nothing_clicked.emit()
+
+    # --- Qt ---
+
+    def resizeEvent(self, event):  # noqa: N802
+        super().resizeEvent(event)
+        if self.builder is not None:
+            self.builder.redraw_legend()
+            self.render_soon()
+
+    def mousePressEvent(self, event):  # noqa: N802
+        self._press = event.position() if event.button() == Qt.MouseButton.LeftButton else None
+        super().mousePressEvent(event)
+
+    def mouseReleaseEvent(self, event):  # noqa: N802
+        super().mouseReleaseEvent(event)
+        press, self._press = self._press, None
+        if press is None or self.builder is None:
+            return
+        if (event.position() - press).manhattanLength() <= CLICK_REACH:
+            at = event.position()
+            self._click(at.x(), at.y(), bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
+
+    def keyPressEvent(self, event):  # noqa: N802
+        """Keys are the window's: VTK's own would quit or change to wire frames."""
+        event.ignore()
+
+    def keyReleaseEvent(self, event):  # noqa: N802
+        event.ignore()

@@ -56,7 +56,7 @@ def cube_shape(radar) -> tuple:
 def power_of_one(paths, path: int, radar, zero_pad: int):
     mask = np.zeros(paths.num_paths, bool)
     mask[path] = True
-    cube = ep.synthesize(paths.select(mask), radar, method="direct", replay="exact")
+    cube = ep.synthesize(paths.select(mask), radar, method="direct", evaluate="chirps")
     return np.abs(ep.range_doppler(cube, radar, window="hann", zero_pad=zero_pad).values) ** 2
 
 

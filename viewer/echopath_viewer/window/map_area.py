@@ -52,6 +52,7 @@ class MapArea(QtWidgets.QWidget):
         maps.addLayout(self.grid, 1)
         maps.addWidget(self.colour_bar)
         self.read_out.setWordWrap(True)
+        self.read_out.setFixedHeight(2 * self.fontMetrics().lineSpacing() + 4)  # the maps must not move with the text
         self.read_out.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)

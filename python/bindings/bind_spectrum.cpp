@@ -8,21 +8,10 @@
 #include "cube_array.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "run_job.h"
+#include "window_name.h"
 
 namespace echopath::bindings {
 namespace {
-
-// "hann", or ("chebyshev", 80).
-Window as_window(const py::object& value) {
-  if (py::isinstance<py::str>(value)) return Window::named(value.cast<std::string>());
-  const bool pair = (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) && py::len(value) == 2;
-  if (!pair) {
-    throw py::type_error("window: must be a name or (name, sidelobe level in dB), got " +
-                         py::str(value).cast<std::string>());
-  }
-  const py::sequence parts = value;
-  return Window::named(parts[0].cast<std::string>(), parts[1].cast<double>());
-}
 
 RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const py::object& window, int zero_pad) {
   const std::vector<std::complex<double>> values = as_cube(cube, radar);
@@ -58,6 +47,9 @@ void bind_spectrum(py::module_& m) {
       .def_property_readonly("range", [](const py::object& self) {
         return numpy_view(self.cast<const RangeDoppler&>().range, self);
       }, "[range] in m, ascending from 0")
+      .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
+      .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
+                    "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", &text_of);
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/signal/simd.h"
+#include "echopath/base/simd.h"
 
 namespace echopath {
 namespace {

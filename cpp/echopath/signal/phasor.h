@@ -1,6 +1,6 @@
 #pragma once
 // e^{j 2 pi x} from a phase in cycles, written so that compilers vectorise the loops that call it.
-#include "echopath/signal/simd.h"
+#include "echopath/base/simd.h"
 
 namespace echopath {
 

@@ -9,10 +9,10 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/simd.h"
 #include "echopath/signal/carrier.h"
 #include "echopath/signal/method.h"
 #include "echopath/signal/per_sample.h"
-#include "echopath/signal/simd.h"
 
 namespace echopath {
 namespace {

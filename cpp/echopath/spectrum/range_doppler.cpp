@@ -97,6 +97,8 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
           "must have transmitters x receivers x chirps x samples values", size);
 
   RangeDoppler map;
+  map.window = window;
+  map.zero_pad = zero_pad;
   map.num_transmitters = static_cast<int>(radar.transmitters.size());
   map.num_receivers = static_cast<int>(radar.receivers.size());
   const int range_size = waveform.num_samples * zero_pad, doppler_size = waveform.num_chirps * zero_pad;

@@ -15,6 +15,9 @@ struct RangeDoppler {
   std::vector<double> velocity;              // [V] m/s, ascending, receding positive
   std::vector<double> range;                 // [R] m, ascending from 0
   std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |peak|^2 is received power
+  Window window;                             // on both axes
+  int zero_pad = 1;
+  bool is_tdm_compensated = false;           // whether the phase between TDM slots has been taken out
 };
 
 // Range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for real

@@ -11,13 +11,13 @@
 namespace echopath {
 namespace {
 
-// sum_k (-1)^k coefficients[k] cos(2 pi k i / n)
-std::vector<double> cosine_window(int n, const std::vector<double>& coefficients) {
+// sum_k (-1)^k coefficients[k] cos(2 pi k (i + shift) / n)
+std::vector<double> cosine_window(int n, double shift, const std::vector<double>& coefficients) {
   std::vector<double> samples(n);
   for (int i = 0; i < n; ++i) {
     for (size_t k = 0; k < coefficients.size(); ++k) {
       const double sign = k % 2 == 0 ? 1.0 : -1.0;
-      samples[i] += sign * coefficients[k] * std::cos(kTwoPi * static_cast<double>(k) * i / n);
+      samples[i] += sign * coefficients[k] * std::cos(kTwoPi * static_cast<double>(k) * (i + shift) / n);
     }
   }
   return samples;
@@ -52,6 +52,22 @@ std::vector<double> chebyshev_window(int n, double sidelobe_db) {
   return samples;
 }
 
+// shift: of cosine windows, in steps; 0 makes them periodic, 1/2 symmetric.
+std::vector<double> samples_of(const Window& window, int n, double shift) {
+  require(n >= 1, "n", "must be at least 1", n);
+  if (n == 1) return {1.0};
+  switch (window.kind) {
+    case WindowKind::kRect: return std::vector<double>(n, 1.0);
+    case WindowKind::kHann: return cosine_window(n, shift, {0.5, 0.5});
+    case WindowKind::kHamming: return cosine_window(n, shift, {0.54, 0.46});
+    case WindowKind::kBlackmanHarris: return cosine_window(n, shift, {0.35875, 0.48829, 0.14128, 0.01168});
+    case WindowKind::kChebyshev: break;
+  }
+  require(window.sidelobe_db >= 20.0 && window.sidelobe_db <= 300.0, "sidelobe_db", "must be in [20, 300]",
+          window.sidelobe_db);
+  return chebyshev_window(n, window.sidelobe_db);
+}
+
 double sum_of(const std::vector<double>& samples) { return std::accumulate(samples.begin(), samples.end(), 0.0); }
 
 }  // namespace
@@ -66,20 +82,9 @@ Window Window::named(const std::string& name, double sidelobe_db) {
   return {static_cast<WindowKind>(found - names.begin()), sidelobe_db};
 }
 
-std::vector<double> window_samples(const Window& window, int n) {
-  require(n >= 1, "n", "must be at least 1", n);
-  if (n == 1) return {1.0};
-  switch (window.kind) {
-    case WindowKind::kRect: return std::vector<double>(n, 1.0);
-    case WindowKind::kHann: return cosine_window(n, {0.5, 0.5});
-    case WindowKind::kHamming: return cosine_window(n, {0.54, 0.46});
-    case WindowKind::kBlackmanHarris: return cosine_window(n, {0.35875, 0.48829, 0.14128, 0.01168});
-    case WindowKind::kChebyshev: break;
-  }
-  require(window.sidelobe_db >= 20.0 && window.sidelobe_db <= 300.0, "sidelobe_db", "must be in [20, 300]",
-          window.sidelobe_db);
-  return chebyshev_window(n, window.sidelobe_db);
-}
+std::vector<double> window_samples(const Window& window, int n) { return samples_of(window, n, 0.0); }
+
+std::vector<double> centred_window_samples(const Window& window, int n) { return samples_of(window, n, 0.5); }
 
 double coherent_gain(const std::vector<double>& samples) {
   return sum_of(samples) / static_cast<double>(samples.size());

@@ -22,6 +22,9 @@ struct Window {
 // Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 
+// The same for few samples in space: cosine windows are sampled at i + 1/2 instead of i, hence symmetric and nowhere 0.
+std::vector<double> centred_window_samples(const Window& window, int n);
+
 double coherent_gain(const std::vector<double>& samples);               // sum w / n
 double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
 double scalloping_loss_db(const std::vector<double>& samples);          // loss of a tone half-way between bins, dB

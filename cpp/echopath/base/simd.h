@@ -1,5 +1,5 @@
 #pragma once
-// Hot loops of this module are plain loops; GCC compiles the functions marked here once per instruction set and picks
+// Hot loops are plain loops; GCC compiles the functions marked here once per instruction set and picks
 // at load time. Bits differ between instruction sets (fused multiply-add), never between thread counts.
 // Sanitizers run before the picking is possible, and clang 14 does not know these names: one baseline version there.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \

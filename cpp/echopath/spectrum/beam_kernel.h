@@ -1,0 +1,32 @@
+#pragma once
+// Many beams over many snapshots: a complex matrix product whose squares are added up, in plain loops.
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "echopath/base/job.h"
+
+namespace echopath {
+
+// Beams that receive plane waves: steering^H times a vector over the elements.
+class BeamKernel {
+ public:
+  static constexpr int kColumns = 32;  // handled together
+
+  explicit BeamKernel(const Eigen::MatrixXcd& steering);  // [elements, directions]
+  int64_t num_directions() const { return steering_.cols(); }
+  int64_t num_elements() const { return steering_.rows(); }
+
+  // power [directions, kColumns] += |steering^H columns|^2 of each of at most kColumns columns [elements].
+  void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, std::vector<double>& power) const;
+
+  // Sum over all columns of |steering^H column|^2, [directions]. Raises Cancelled.
+  Eigen::VectorXd power(const Eigen::MatrixXcd& columns, const Job* job = nullptr) const;
+
+ private:
+  Eigen::MatrixXcd steering_;
+  int64_t padded_;               // elements, a multiple of those added per pass
+  std::vector<double> re_, im_;  // [directions, padded] of steering^H
+};
+
+}  // namespace echopath

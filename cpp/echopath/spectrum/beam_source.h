@@ -1,0 +1,55 @@
+#pragma once
+// Beams from the cells of a map.
+#include <Eigen/Core>
+#include <vector>
+
+#include "echopath/spectrum/beam_kernel.h"
+#include "echopath/spectrum/beamform.h"
+
+namespace echopath {
+
+// What beams of one array see of a set of snapshots, in any direction.
+class CellBeam {
+ public:
+  // Bartlett. weights [elements], own [elements, snapshots].
+  CellBeam(const Eigen::VectorXd& weights, const Eigen::MatrixXcd& own);
+  // Capon. covariance [elements, elements] Hermitian, to be loaded; 0: there is no power.
+  CellBeam(const Eigen::MatrixXcd& covariance, const Eigen::MatrixXcd& own, double loading);
+
+  // Power [directions] of the beams, summed over the snapshots. Raises Cancelled.
+  Eigen::VectorXd power(const BeamKernel& beams, const Job* job = nullptr) const;
+
+ private:
+  // Bartlett: weighted snapshots x. Capon: R^-1 x, and a square root W of R^-1 = W W^H: the power is
+  // |a^H R^-1 x|^2 / (a^H R^-1 a)^2.
+  Eigen::MatrixXcd snapshots_, root_;
+};
+
+// Keeps a reference to the map.
+class BeamSource {
+ public:
+  BeamSource(const RangeDoppler& map, const Radar& radar, const BeamformOptions& options);
+  BeamSource(const BeamSource&) = delete;
+
+  const VirtualArray& array() const { return array_; }
+  int64_t num_velocities() const { return reader_.num_velocities(); }
+
+  // Of one cell; `fold` as in ElementReader::read.
+  CellBeam cell(int64_t velocity, int64_t range, int fold = 0) const;
+  // Of all velocities of one range, the power summed over them.
+  CellBeam all_velocities(int64_t range) const;
+  // Bartlett: the snapshots of ranges [first, first + count) of one velocity times the weights, [elements, count].
+  Eigen::MatrixXcd weighted(int64_t velocity, int64_t first, int64_t count) const;
+
+ private:
+  Eigen::MatrixXcd covariance(const Eigen::MatrixXcd& snapshots) const;
+  Eigen::MatrixXcd neighbourhood(int64_t velocity, int64_t range, int fold) const;  // [elements, snapshots]
+
+  const BeamformOptions options_;
+  const VirtualArray array_;
+  const ElementReader reader_;
+  Eigen::VectorXd weights_;    // kBartlett
+  std::vector<int> mirrored_;  // element at the opposite point, for forward_backward
+};
+
+}  // namespace echopath

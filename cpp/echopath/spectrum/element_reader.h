@@ -1,0 +1,41 @@
+#pragma once
+// Cells of a range-Doppler map as vectors over the elements of its virtual array.
+#include <Eigen/Core>
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "echopath/spectrum/range_doppler.h"
+#include "echopath/spectrum/virtual_array.h"
+
+namespace echopath {
+
+// What becomes of channels that share an element.
+enum class Overlaps { kAverage, kFirst };
+
+// Keeps references to the map and the array.
+class ElementReader {
+ public:
+  // compensate: take out the phase between TDM slots, unless that is done already
+  ElementReader(const RangeDoppler& map, const VirtualArray& array, const ChirpSequence& waveform, Overlaps overlaps,
+                bool compensate);
+  int64_t num_elements() const { return static_cast<int64_t>(first_.size()) - 1; }
+  int64_t num_velocities() const { return num_velocities_; }
+  int64_t num_ranges() const { return num_ranges_; }
+
+  // Ranges [first, first + count) of one velocity -> values [elements, count], sqrt(W). For a target at
+  // v + 2 fold v_max the phase between slots is another one (tdm.h); fold has no effect without compensation.
+  void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, int fold = 0) const;
+
+ private:
+  std::complex<double> weight(int64_t entry, int64_t velocity, int fold) const;
+
+  const RangeDoppler& map_;
+  int64_t num_velocities_, num_ranges_;
+  bool compensate_;
+  std::vector<int64_t> first_;                 // [elements + 1] into channel_
+  std::vector<int64_t> channel_;               // tx * num_receivers + rx
+  std::vector<std::complex<double>> phasor_;   // [tx, V]
+};
+
+}  // namespace echopath

@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/estimate_angles.h"
+#include "echopath/spectrum/tdm.h"
+#include "plane_waves.h"
+
+namespace echopath {
+namespace {
+
+using testing::Complex;
+using testing::kDegree;
+const double kHalf = 0.5 * testing::wavelength();
+// The search ends with steps of the grid times 0.35^9, at most a few degrees.
+constexpr double kFine = 1e-5;
+
+AngleGrid search_grid(const Radar& radar) { return default_angles(virtual_array(radar), kSearchStep); }
+
+Radar plane_radar(int columns, int rows) {
+  std::vector<Vec3> receivers;
+  for (int i = 0; i < columns * rows; ++i) receivers.emplace_back(0.0, i % columns * kHalf, i / columns * kHalf);
+  return testing::radar_with({{0.1, 0.0, 1.0}}, receivers);
+}
+
+TEST(EstimateAngles, AWaveIsFoundBetweenTheStepsOfTheGrid) {
+  const Radar radar = plane_radar(8, 6);
+  for (const auto& [left, up] : {std::pair{0.123, -0.217}, {-0.81, 0.33}, {0.0, 0.0}, {0.5001, 0.6}}) {
+    for (const BeamMethod method : {BeamMethod::kBartlett, BeamMethod::kCapon}) {
+      RangeDoppler map = testing::empty_map(radar);
+      testing::add_wave(map, radar, direction(left, up), {2.0, 1.0}, 3, 2);
+      EstimateOptions options;
+      options.beams.method = method;
+      const AngleEstimates found = estimate_angles(map, radar, {{3, 2}}, search_grid(radar), options);
+      ASSERT_EQ(found.cell.size(), 1u);
+      EXPECT_NEAR(found.azimuth[0], left, kFine);
+      EXPECT_NEAR(found.elevation[0], up, kFine);
+      EXPECT_NEAR(found.power[0], 5.0, 1e-6);
+      EXPECT_EQ(found.velocity[0], map.velocity[3]);
+      // From the middle between the transmitter and the mean receiver.
+      const Vec3 middle(0.05, 0.25 * 7 * kHalf, 0.5 * (1.0 + 2.5 * kHalf));
+      EXPECT_NEAR((found.points[0] - middle - map.range[2] * direction(left, up)).norm(), 0.0, kFine * map.range[2]);
+    }
+  }
+}
+
+TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {
+  const Radar radar = testing::line_radar(16);
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(std::asin(-0.25), 0.0), 1.0, 0, 1);  // at nulls of each other
+  testing::add_wave(map, radar, direction(std::asin(0.5), 0.0), 2.0, 0, 1);
+  EstimateOptions options;
+  options.max_peaks = 3;
+  options.peak_range_db = 9.0;
+  const AngleEstimates found = estimate_angles(map, radar, {{0, 0}, {0, 1}}, search_grid(radar), options);
+  ASSERT_EQ(found.cell, (std::vector<int64_t>{1, 1}));  // nothing in the first cell; side lobes are 13 dB down
+  EXPECT_NEAR(found.azimuth[0], std::asin(0.5), 0.5 * kDegree);
+  EXPECT_NEAR(found.azimuth[1], std::asin(-0.25), 0.5 * kDegree);
+  EXPECT_NEAR(found.power[0], 4.0, 0.2);
+  EXPECT_NEAR(found.power[1], 1.0, 0.2);
+}
+
+TEST(EstimateAngles, FoldsAreTheVelocitiesWhoseSlotsAgree) {
+  const Vec3 step(0, kHalf, 0);
+  const Radar radar = testing::radar_with(testing::line(5, 4 * step), testing::line(4, step));
+  const double span = 2.0 * radar.waveform.max_velocity(5);
+  EstimateOptions options;
+  options.folds = 2;
+  for (int fold = -2; fold <= 2; ++fold) {
+    RangeDoppler map = testing::empty_map(radar);
+    testing::add_wave(map, radar, direction(0.3, 0.0), 1.0, 6, 0, true, fold);
+    const AngleEstimates found = estimate_angles(map, radar, {{6, 0}}, search_grid(radar), options);
+    EXPECT_NEAR(found.velocity[0], map.velocity[6] + fold * span, 1e-9);
+    EXPECT_NEAR(found.azimuth[0], 0.3, kFine);
+    EXPECT_NEAR(found.power[0], 1.0, 1e-6);
+  }
+}
+
+TEST(EstimateAngles, AnglesStayInTheGrid) {
+  const Radar radar = testing::line_radar(4);
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(0.5, 0.0), 1.0, 0, 0);
+  const AngleEstimates found = estimate_angles(map, radar, {{0, 0}}, {{-0.2, 0.0, 0.2}, {0.1}});
+  EXPECT_EQ(found.azimuth, std::vector<double>{0.2});
+  EXPECT_EQ(found.elevation, std::vector<double>{0.1});
+}
+
+TEST(EstimateAngles, DoesNotDependOnTheNumberOfThreads) {
+  const Radar radar = plane_radar(3, 3);
+  RangeDoppler map = testing::empty_map(radar);
+  for (size_t i = 0; i < map.values.size(); ++i) map.values[i] = std::polar(1.0, 0.1 * static_cast<double>(i * i % 61));
+  std::vector<Cell> cells;
+  for (int64_t i = 0; i < 32; ++i) cells.push_back({i / 4, i % 4});
+  set_num_threads(1);
+  const auto one = estimate_angles(map, radar, cells, search_grid(radar));
+  set_num_threads(4);
+  const auto four = estimate_angles(map, radar, cells, search_grid(radar));
+  set_num_threads(0);
+  EXPECT_EQ(one.azimuth, four.azimuth);
+  EXPECT_EQ(one.power, four.power);
+}
+
+TEST(EstimateAngles, NoCellsGiveNoEstimates) {
+  const Radar radar = testing::line_radar(3);
+  EXPECT_TRUE(estimate_angles(testing::empty_map(radar), radar, {}, search_grid(radar)).cell.empty());
+}
+
+TEST(EstimateAngles, BadInputIsAnError) {
+  const Vec3 step(0, kHalf, 0);
+  const Radar radar = testing::radar_with(testing::line(3, 4 * step), testing::line(4, step));
+  const RangeDoppler map = testing::empty_map(radar);
+  const auto call = [&](EstimateOptions options, const RangeDoppler& from) {
+    return estimate_angles(from, radar, {{0, 0}}, search_grid(radar), options);
+  };
+  EstimateOptions peaks, depth, folds, plain;
+  peaks.max_peaks = 0;
+  depth.peak_range_db = -1.0;
+  folds.folds = 2;  // three transmitters tell one fold each way apart
+  for (const EstimateOptions& bad : {peaks, depth, folds}) EXPECT_THROW(call(bad, map), std::invalid_argument);
+  folds.folds = 1;
+  EXPECT_NO_THROW(call(folds, map));
+  EXPECT_THROW(call(folds, compensate_tdm(map, radar)), std::invalid_argument);
+  folds.beams.compensate = false;
+  EXPECT_THROW(call(folds, map), std::invalid_argument);
+  EXPECT_THROW(estimate_angles(map, radar, {{0, 4}}, search_grid(radar)), std::out_of_range);
+  Job job;
+  job.cancel();
+  EXPECT_THROW(estimate_angles(map, radar, {{0, 0}}, search_grid(radar), plain, &job), Cancelled);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/range_azimuth.h"
+#include "plane_waves.h"
+
+namespace echopath {
+namespace {
+
+using testing::Complex;
+constexpr double kRounding = 1e-12;  // of unit waves
+constexpr int kChirps = 16, kSamples = 40;
+
+// A cube of tones: range bin r and velocity bin v, from azimuth `left`, of half-wavelength receivers.
+void add_tone(std::vector<Complex>& cube, const Radar& radar, double r, double v, double left, double amplitude) {
+  size_t i = 0;
+  for (size_t rx = 0; rx < radar.receivers.size(); ++rx) {
+    for (int j = 0; j < kChirps; ++j) {
+      for (int n = 0; n < kSamples; ++n, ++i) {
+        const double cycles = r * n / kSamples + v * j / kChirps - 0.5 * static_cast<double>(rx) * std::sin(left);
+        cube[i] += amplitude * std::polar(1.0, kTwoPi * cycles);
+      }
+    }
+  }
+}
+
+const double kLeft = 0.3;
+const AngleGrid kGrid{{-0.4, 0.0, kLeft}, {0.0}};
+
+TEST(RangeAzimuth, APointGivesItsPowerWhateverWindowAndPadding) {
+  const Radar radar = testing::line_radar(6, kChirps, kSamples);
+  std::vector<Complex> cube(6 * kChirps * kSamples);
+  add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
+  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kChebyshev}) {
+    for (const int pad : {1, 3}) {
+      const RangeDoppler map = range_doppler(cube, radar, {kind, 60.0}, pad);
+      const RangeAzimuth all = range_azimuth(map, radar, kGrid);
+      EXPECT_NEAR(all.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      const RangeAzimuth one = range_azimuth(map, radar, kGrid, map.velocity[(kChirps / 2 + 2) * pad]);
+      EXPECT_NEAR(one.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      EXPECT_FALSE(all.velocity.has_value());
+      EXPECT_EQ(*one.velocity, map.velocity[(kChirps / 2 + 2) * pad]);
+    }
+  }
+}
+
+TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowers) {
+  const Radar radar = testing::line_radar(6, kChirps, kSamples);
+  std::vector<Complex> cube(6 * kChirps * kSamples);
+  add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
+  add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
+  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  EXPECT_NEAR(range_azimuth(map, radar, kGrid).power[2 * kSamples + 7], 10.0, 1e-10);
+  EXPECT_NEAR(range_azimuth(map, radar, kGrid, map.velocity[3]).power[2 * kSamples + 7], 1.0, 1e-10);
+}
+
+TEST(RangeAzimuth, BothMethodsGiveTheMeanOverChirps) {
+  // Without a window the sum over velocities is the mean power over chirps (Parseval), whatever the chirps hold.
+  const Radar radar = testing::line_radar(4, kChirps, kSamples);
+  std::vector<Complex> cube(4 * kChirps * kSamples);
+  for (size_t i = 0; i < cube.size(); ++i) cube[i] = std::polar(1.0, 0.7 * static_cast<double>(i * i % 101));
+  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kRect}, 2);
+  const RangeAzimuth all = range_azimuth(map, radar, {{kLeft}, {0.0}});
+  for (const int r : {0, 11, 50, 79}) {
+    double mean = 0.0;
+    for (int j = 0; j < kChirps; ++j) {
+      Complex beam;
+      for (int rx = 0; rx < 4; ++rx) {
+        for (int n = 0; n < kSamples; ++n) {
+          const double cycles = 0.5 * rx * std::sin(kLeft) - static_cast<double>(r * n) / (2 * kSamples);
+          beam += cube[(rx * kChirps + j) * kSamples + n] * std::polar(1.0 / (4 * kSamples), kTwoPi * cycles);
+        }
+      }
+      mean += std::norm(beam) / kChirps;
+    }
+    EXPECT_NEAR(all.power[r], mean, kRounding);
+  }
+}
+
+TEST(RangeAzimuth, OfSeveralElevationsTheLargestIsTaken) {
+  const double half = 0.5 * testing::wavelength();
+  const Radar radar = testing::radar_with({Vec3::Zero()}, {{0, 0, 0}, {0, half, 0}, {0, 0, half}, {0, half, half}});
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(0.3, 0.4), 1.0, 4, 1);
+  const double v = map.velocity[4];
+  const RangeAzimuth level = range_azimuth(map, radar, {{0.3}, {0.0}}, v);
+  const RangeAzimuth all = range_azimuth(map, radar, {{0.3}, {0.0, 0.4}}, v);
+  EXPECT_NEAR(all.power[1], 1.0, kRounding);
+  EXPECT_LT(level.power[1], 0.8);
+}
+
+TEST(RangeAzimuth, CaponResolvesWhatBartlettDoesNot) {
+  const Radar radar = testing::line_radar(12, kChirps, kSamples);
+  std::vector<Complex> cube(12 * kChirps * kSamples);
+  const double apart = 2.5 * testing::kDegree;
+  add_tone(cube, radar, 7.0, 2.0, apart, 1.0);
+  add_tone(cube, radar, 7.0, -4.0, -apart, 1.0);
+  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  const AngleGrid grid{{-apart, 0.0, apart}, {0.0}};
+  BeamformOptions options;
+  const auto row = [&] {
+    const std::vector<double> power = range_azimuth(map, radar, grid, {}, options).power;
+    return std::vector<double>{power[7], power[kSamples + 7], power[2 * kSamples + 7]};
+  };
+  const auto bartlett = row();
+  EXPECT_GT(bartlett[1], std::max(bartlett[0], bartlett[2]));
+  options.method = BeamMethod::kCapon;
+  options.diagonal_loading = 1e-3;
+  const auto capon = row();
+  EXPECT_LT(capon[1], 0.1 * std::min(capon[0], capon[2]));
+  EXPECT_NEAR(capon[0], 1.0, 0.05);
+}
+
+TEST(RangeAzimuth, DoesNotDependOnTheNumberOfThreads) {
+  const Radar radar = testing::line_radar(5, 8, 70);
+  RangeDoppler map = testing::empty_map(radar);
+  for (size_t i = 0; i < map.values.size(); ++i) map.values[i] = std::polar(1.0, 0.1 * static_cast<double>(i * i % 61));
+  for (const BeamMethod method : {BeamMethod::kBartlett, BeamMethod::kCapon}) {
+    BeamformOptions options;
+    options.method = method;
+    set_num_threads(1);
+    const auto one = range_azimuth(map, radar, kGrid, {}, options).power;
+    set_num_threads(4);
+    const auto four = range_azimuth(map, radar, kGrid, {}, options).power;
+    set_num_threads(0);
+    EXPECT_EQ(one, four);
+  }
+}
+
+TEST(RangeAzimuth, BadInputIsAnError) {
+  const Radar radar = testing::line_radar(3);
+  const RangeDoppler map = testing::empty_map(radar);
+  EXPECT_THROW(range_azimuth(map, radar, {{}, {0.0}}), std::invalid_argument);
+  const double step = map.velocity[1] - map.velocity[0];
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, map.velocity.back() + 0.6 * step), std::invalid_argument);
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, std::nan("")), std::invalid_argument);
+  EXPECT_NO_THROW(range_azimuth(map, radar, kGrid, map.velocity.front() - 0.5 * step));
+  Job job;
+  job.cancel();
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, {}, {}, &job), Cancelled);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "echopath/spectrum/virtual_array.h"
+#include "plane_waves.h"
+
+namespace echopath {
+namespace {
+
+using testing::line;
+using testing::radar_with;
+constexpr double kRounding = 1e-15;  // m, of sums of positions of centimetres
+const double kHalf = 0.5 * testing::wavelength();
+
+std::vector<int> columns_of(const VirtualArray& array) {
+  std::vector<int> columns;
+  for (const VirtualElement& element : array.elements) columns.push_back(element.column);
+  return columns;
+}
+
+TEST(VirtualArray, PositionsAreSumsOfTransmitterAndReceiver) {
+  const Radar radar = radar_with({{0, 0.1, 0}, {0.3, 0, 1}}, {{0, 0, 2}, {0, 0.02, 0}, {0.5, 0, 0}});
+  const VirtualArray array = virtual_array(radar);
+  ASSERT_EQ(array.positions.size(), 6u);
+  for (int tx = 0; tx < 2; ++tx) {
+    for (int rx = 0; rx < 3; ++rx) {
+      EXPECT_EQ(array.positions[tx * 3 + rx], Vec3(radar.transmitters[tx].position + radar.receivers[rx].position));
+    }
+  }
+}
+
+TEST(VirtualArray, ThreeTimesFourIsALineOfTwelve) {
+  const Vec3 step(0, kHalf, 0), high(0, 0, 1);
+  const VirtualArray array = virtual_array(radar_with(line(3, 4 * step, high), line(4, step, high)));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(array.grid->num_rows, 1);
+  EXPECT_EQ(array.grid->num_columns, 12);
+  EXPECT_NEAR(array.grid->column_spacing, kHalf, kRounding);
+  EXPECT_NEAR((array.grid->column_axis - Vec3::UnitY()).norm(), 0.0, kRounding);
+  EXPECT_LT(array.grid->deviation, kRounding);
+  EXPECT_TRUE(array.gaps().empty());
+  EXPECT_EQ(array.num_overlaps(), 0);
+  EXPECT_NEAR(array.centre().y(), 5.5 * kHalf, kRounding);
+}
+
+TEST(VirtualArray, ColumnsCountToTheLeftAndRowsUpWhateverTheOrderOfTheAntennas) {
+  const VirtualArray array =
+      virtual_array(radar_with({{0, 0, 0}, {0, 0, -kHalf}}, line(3, Vec3(0, -kHalf, 0))));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(array.grid->num_rows, 2);
+  EXPECT_EQ(array.grid->num_columns, 3);
+  EXPECT_GT(array.grid->column_axis.y(), 0.99);
+  EXPECT_GT(array.grid->row_axis.z(), 0.99);
+  const VirtualElement& first = array.elements.front();  // row 0, column 0: the lowest and rightmost
+  EXPECT_EQ(first.channels, std::vector<int>{5});
+  for (const VirtualElement& element : array.elements) {
+    EXPECT_NEAR(element.position.y(), (element.column - 2) * kHalf, kRounding);
+    EXPECT_NEAR(element.position.z(), (element.row - 1) * kHalf, kRounding);
+  }
+}
+
+TEST(VirtualArray, OverlapsAreOneElementOfSeveralChannels) {
+  const Vec3 step(0, kHalf, 0);
+  const VirtualArray array = virtual_array(radar_with(line(2, 3 * step), line(4, step)));
+  EXPECT_EQ(array.elements.size(), 7u);
+  EXPECT_EQ(array.num_overlaps(), 1);
+  EXPECT_EQ(array.elements[3].channels, (std::vector<int>{3, 4}));
+  EXPECT_TRUE(array.gaps().empty());
+}
+
+TEST(VirtualArray, GapsAreThePointsOfTheGridWithoutAnElement) {
+  // The minimum redundancy array of four: 0, 1, 4, 6.
+  const VirtualArray array = virtual_array(radar_with(
+      {Vec3::Zero()}, {{0, 0, 0}, {0, kHalf, 0}, {0, 4 * kHalf, 0}, {0, 6 * kHalf, 0}}));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(columns_of(array), (std::vector<int>{0, 1, 4, 6}));
+  EXPECT_EQ(array.gaps(), (std::vector<std::pair<int, int>>{{0, 2}, {0, 3}, {0, 5}}));
+}
+
+TEST(VirtualArray, TheStepIsTheLargestThatAllDistancesAreMultiplesOf) {
+  const double d = 0.7 * testing::wavelength();
+  const VirtualArray array = virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {0, 2 * d, 0}, {0, 5 * d, 0}}));
+  ASSERT_TRUE(array.grid);
+  EXPECT_NEAR(array.grid->column_spacing, d, kRounding);
+  EXPECT_EQ(array.grid->num_columns, 6);
+}
+
+TEST(VirtualArray, AVerticalLineHasRowsAndOneColumn) {
+  const VirtualArray array = virtual_array(radar_with({Vec3::Zero()}, line(5, Vec3(0, 0, kHalf))));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(array.grid->num_rows, 5);
+  EXPECT_EQ(array.grid->num_columns, 1);
+  EXPECT_GT(array.grid->row_axis.z(), 0.99);
+}
+
+TEST(VirtualArray, TurnedGridsKeepTheirShape) {
+  std::vector<Vec3> plane;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) plane.emplace_back(0.0, column * kHalf, 1.3 * row * kHalf);
+  }
+  const Quaternion turns[] = {
+      Quaternion(Eigen::AngleAxisd(0.5, Vec3::UnitX())),                                          // rolled
+      Quaternion(Eigen::AngleAxisd(-0.2, Vec3::UnitY())),                                         // looking up
+      Quaternion(Eigen::AngleAxisd(1.1, Vec3::UnitZ()) * Eigen::AngleAxisd(0.3, Vec3::UnitX()))};
+  for (const Quaternion& turn : turns) {
+    std::vector<Vec3> turned;
+    for (const Vec3& position : plane) turned.push_back(turn * position);
+    const VirtualArray array = virtual_array(radar_with({{0.1, 0.2, 0.3}}, turned));
+    ASSERT_TRUE(array.grid);
+    EXPECT_EQ(array.grid->num_rows, 3);
+    EXPECT_EQ(array.grid->num_columns, 4);
+    EXPECT_NEAR((array.grid->column_axis - turn * Vec3::UnitY()).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(array.grid->row_spacing, 1.3 * kHalf, 1e-12);
+  }
+}
+
+TEST(VirtualArray, PositionsRoundedToTenMicrometresAreStillOnTheGrid) {
+  std::vector<Vec3> receivers;
+  for (int i = 0; i < 86; ++i) receivers.emplace_back(0.0, std::round(i * kHalf * 1e5) * 1e-5, 0.0);
+  const VirtualArray array = virtual_array(radar_with({Vec3::Zero()}, receivers));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(array.grid->num_columns, 86);
+  EXPECT_NEAR(array.grid->column_spacing, kHalf, 1e-7);
+  EXPECT_LT(array.grid->deviation, 5.1e-6);
+  EXPECT_GT(array.grid->deviation, 1e-6);
+}
+
+TEST(VirtualArray, ArraysWithoutEqualStepsHaveNoGrid) {
+  EXPECT_FALSE(virtual_array(testing::circle_radar()).grid);
+  const double h = kHalf;
+  EXPECT_FALSE(virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {h, 0, 0}, {0, h, 0}, {0, 0, h}})).grid);
+  EXPECT_FALSE(virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {0, h, 0}, {0, 1.618034 * h, 0}, {0, 100 * h, 0}})).grid);
+}
+
+TEST(VirtualArray, OneChannelIsAGridOfOnePoint) {
+  const VirtualArray array = virtual_array(radar_with({{0, 0, 1}}, {{0, 0.01, 1}}));
+  ASSERT_TRUE(array.grid);
+  EXPECT_EQ(array.grid->num_rows * array.grid->num_columns, 1);
+  EXPECT_EQ(array.extent(), Vec3(0, 0, 0));
+  EXPECT_THROW(virtual_array(Radar{}), std::invalid_argument);
+}
+
+TEST(DefaultAngles, CoverWhatTheArrayTellsApart) {
+  const AngleGrid half = default_angles(virtual_array(testing::line_radar(12)));
+  EXPECT_NEAR(half.azimuth.front(), -0.5 * kPi, 1e-7);  // the arcsine of one within a rounding
+  EXPECT_EQ(half.azimuth.size(), 181u);
+  EXPECT_EQ(half.elevation, std::vector<double>{0.0});
+  const double d = testing::wavelength();  // unambiguous to +-30 degrees
+  const AngleGrid whole = default_angles(virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, d, 0)))));
+  EXPECT_NEAR(whole.azimuth.back(), kPi / 6.0, 1e-12);
+  const AngleGrid up = default_angles(virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, 0, kHalf)))));
+  EXPECT_EQ(up.azimuth, std::vector<double>{0.0});
+  EXPECT_NEAR(up.elevation.front(), -0.25 * kPi, 1e-12);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,287 @@
+"""Angles: against a slow beamformer, and of targets whose place is known, through the whole chain."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import _core
+from support import slow_beams
+
+C = ep.speed_of_light
+WAVELENGTH = C / 77.5e9
+HALF = 0.5 * WAVELENGTH
+DEGREE = np.pi / 180.0
+ROUNDING = 1e-10             # relative to the peak, of sums of some hundred terms
+TARGET_RADIUS = 0.05         # m, of the spheres that stand for points
+# A sphere's echo comes from its point nearest to the antennas, within the footprint's error; beams of 7 to 30 degrees.
+DIRECTION_TOLERANCE = 0.15 * DEGREE
+
+
+def waveform(num_chirps=32, num_samples=128, start_frequency=77e9):
+    return ep.ChirpSequence(start_frequency=start_frequency, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
+                            num_chirps=num_chirps, chirp_interval=30e-6)
+
+
+def mimo(transmitters, receivers, height=0.0, motion=None, chirps=None):
+    """Antennas at multiples (left, up) of half a wavelength."""
+    def antennas(steps):
+        return [ep.Antenna((0.0, left * HALF, height + up * HALF)) for left, up in steps]
+
+    return ep.Radar(chirps or waveform(), transmitters=antennas(transmitters), receivers=antennas(receivers), motion=motion)
+
+
+LINE = [(column, 0) for column in range(4)]
+PLANE = [(column, row) for row in range(2) for column in range(4)]
+
+
+def three_by_four(**changes):
+    return mimo([(0, 0), (4, 0), (8, 0)], LINE, **changes)
+
+
+def four_by_eight(**changes):
+    """A grid of 4 rows and 8 columns."""
+    return mimo([(0, 0), (4, 0), (0, 2), (4, 2)], PLANE, **changes)
+
+
+def noise_map(radar, seed=1):
+    cube = ep.add_noise(np.zeros((len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps,
+                                  radar.waveform.num_samples)), radar, seed=seed)
+    return ep.range_doppler(cube, radar)
+
+
+def cube_of_points(radar, points):
+    """Signals of points (position [3], velocity [3], amplitude) from their two legs at the middle of each chirp."""
+    cube = np.zeros((len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps,
+                     radar.waveform.num_samples), complex)
+    for position, velocity, amplitude in points:
+        for m, transmitter in enumerate(radar.transmitters):
+            times = np.array([radar.chirp_time(m, j) for j in range(radar.waveform.num_chirps)])
+            places = np.asarray(position) + times[:, None] * np.asarray(velocity)
+            out = np.linalg.norm(places - transmitter.position, axis=1)
+            for n, receiver in enumerate(radar.receivers):
+                delay = (out + np.linalg.norm(places - receiver.position, axis=1)) / C
+                cube[m, n] += _core.synthesize_echoes(radar.waveform, delay[:, None], np.full((len(times), 1), amplitude, complex),
+                                                      num_slots=len(radar.transmitters), method="direct")
+    return cube
+
+
+def strongest_cell(spectrum):
+    power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+    return np.unravel_index(power.argmax(), power.shape)
+
+
+def test_beams_equal_the_slow_sum():
+    radar = four_by_eight()
+    spectrum = noise_map(radar)
+    azimuth, elevation = np.linspace(-1.2, 1.2, 7), np.array([-0.3, 0.0, 0.5])
+    beams = ep.beamform(spectrum, radar, azimuth, elevation)
+    assert beams.power.shape == (3, 7, 32, 128)
+    grid = np.meshgrid(azimuth, elevation)
+    expected = slow_beams.bartlett(spectrum, radar, grid[0].ravel(), grid[1].ravel()).reshape(beams.power.shape)
+    np.testing.assert_allclose(beams.power, expected, rtol=0, atol=ROUNDING * expected.max())
+
+
+def test_capon_equals_the_slow_inverse():
+    radar = three_by_four()
+    spectrum = noise_map(radar)
+    azimuth = np.linspace(-1.0, 1.0, 9)
+    cell = (10, 50)
+    beams = ep.beamform(spectrum, radar, azimuth, cells=[cell], method="capon", diagonal_loading=0.05,
+                        velocity_neighbours=1, range_neighbours=3)
+    vectors = slow_beams.still_values(spectrum, radar).reshape(12, 32, 128)
+    snapshots = vectors[:, 9:12, 47:54].reshape(12, -1)
+    steering = slow_beams.steering(radar, azimuth, np.zeros(9)).reshape(9, 12)
+    expected = slow_beams.capon(snapshots, vectors[:, 10, 50], steering, 0.05)
+    np.testing.assert_allclose(beams.power[0, :, 0], expected, rtol=ROUNDING)
+
+
+def test_angle_fft_equals_beams_at_its_directions():
+    radar = four_by_eight()
+    spectrum = noise_map(radar)
+    angles = ep.angle_fft(spectrum, radar, window="rect", zero_pad=2)
+    assert angles.values.shape == (8, 16, 32, 128)
+    up, left = angles.sin_elevation[3], angles.sin_azimuth[11]
+    elevation, azimuth = np.arcsin(up), np.arcsin(left / np.sqrt(1.0 - up**2))
+    expected = slow_beams.bartlett(spectrum, radar, np.array([azimuth]), np.array([elevation]))[0]
+    np.testing.assert_allclose(np.abs(angles.values[3, 11]) ** 2, expected, rtol=0, atol=ROUNDING * expected.max())
+    np.testing.assert_allclose(np.sin(angles.azimuth), angles.sin_azimuth, rtol=0, atol=1e-15)
+
+
+def test_range_azimuth_equals_the_slow_mean():
+    """Over all velocities, Hann's noise bandwidth being 1.5."""
+    radar = three_by_four()
+    spectrum = noise_map(radar)
+    azimuth = np.linspace(-1.0, 1.0, 5)
+    slow = slow_beams.bartlett(spectrum, radar, azimuth, np.zeros(5))
+    np.testing.assert_allclose(ep.range_azimuth(spectrum, radar, azimuth).power, slow.sum(axis=1) / 1.5, rtol=ROUNDING)
+    velocity = spectrum.velocity[7]
+    np.testing.assert_allclose(ep.range_azimuth(spectrum, radar, azimuth, velocity=velocity).power, slow[:, 7], rtol=0,
+                               atol=ROUNDING * slow.max())
+
+
+def test_noise_falls_by_the_number_of_elements():
+    radar = three_by_four()
+    power = np.mean([ep.beamform(noise_map(radar, seed), radar, [-0.5, 0.2]).power.mean() for seed in range(6)])
+    cell = _core.noise_power(radar) * 1.5**2 / (32 * 128)  # of one channel, Hann on both axes
+    assert power == pytest.approx(cell / 12, rel=0.02)     # 2e4 independent cells: 0.7 % each way
+    assert ep.range_azimuth(noise_map(radar), radar, [-0.5, 0.2]).power.mean() == pytest.approx(
+        _core.noise_power(radar) * 1.5 / 128 / 12, rel=0.05)
+
+
+def test_the_edge_of_an_array_near_a_target_is_behind_by_its_published_phase():
+    """k D^2 / 8R for D = 0.1 m, R = 5 m at 77 GHz: 0.4035 rad."""
+    chirps = waveform(num_chirps=1, start_frequency=76.5e9)
+    receivers = [ep.Antenna((0.0, y, 0.0)) for y in (-0.05, 0.0, 0.05)]
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=receivers)
+    spectrum = ep.range_doppler(cube_of_points(radar, [((5.0, 0, 0), (0, 0, 0), 1.0)]), radar)
+    _, distance = strongest_cell(spectrum)
+    left, middle, right = spectrum.values[0, :, 0, distance]
+    assert np.angle(left / middle) == pytest.approx(0.4035, abs=5e-4)
+    assert np.angle(right / middle) == pytest.approx(0.4035, abs=5e-4)
+
+
+def scene_of_spheres(*centres, velocity=None):
+    scene = ep.Scene()
+    motion = ep.LinearMotion(velocity=velocity) if velocity is not None else None
+    for index, centre in enumerate(centres):
+        scene.add(ep.actors.sphere(TARGET_RADIUS), name=f"ball{index}", material="metal", position=tuple(centre),
+                  smooth=True, motion=motion)
+    return scene
+
+
+def at(distance, azimuth, elevation):
+    return distance * slow_beams.unit(np.array(azimuth), np.array(elevation))
+
+
+def spectrum_of(scene, radar, num_rays=3000):
+    return ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=num_rays)), radar)
+
+
+@pytest.mark.parametrize("azimuth, elevation", [(25, 0), (-40, 0), (0, 20), (0, -15), (30, -12)])
+def test_a_sphere_is_found_where_it_is(azimuth, elevation):
+    """Left and right, up and down: through trace, replay, synthesis and both transforms."""
+    radar = four_by_eight(height=1.0)
+    centre = at(8.0, azimuth * DEGREE, elevation * DEGREE) + [0, 0, 1.0]
+    spectrum = spectrum_of(scene_of_spheres(centre), radar)
+    found = ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)])
+    assert found.azimuth[0] == pytest.approx(azimuth * DEGREE, abs=DIRECTION_TOLERANCE)
+    assert found.elevation[0] == pytest.approx(elevation * DEGREE, abs=2 * DIRECTION_TOLERANCE)
+    # At the sphere's front, in the cell of 0.15 m; seen from the middle of the antennas, 3 mm off the origin.
+    front = at(8.0 - TARGET_RADIUS, azimuth * DEGREE, elevation * DEGREE) + [0, 0, 1.0]
+    assert np.linalg.norm(found.points[0] - front) < 0.1
+    angles = ep.angle_fft(spectrum, radar)
+    _, e, a, *_ = np.unravel_index(np.abs(angles.values).argmax(), (1, *angles.values.shape))
+    assert np.sign(np.round(angles.sin_azimuth[a], 1)) == np.sign(azimuth)
+    assert np.sign(np.round(angles.sin_elevation[e], 1)) == np.sign(elevation)
+
+
+def test_angles_are_those_in_the_frame_of_a_turned_radar():
+    yaw, pitch = 50 * DEGREE, -10 * DEGREE  # to the left, then nose up (about +y, which points left)
+    turn_left = np.array([np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)])
+    turn_up = np.array([np.cos(pitch / 2), 0, np.sin(pitch / 2), 0])
+    w0, z0, w1, y1 = turn_left[0], turn_left[3], turn_up[0], turn_up[2]
+    quaternion = (w0 * w1, -z0 * y1, w0 * y1, z0 * w1)
+    place = [3.0, -2.0, 1.5]
+    motion = ep.KeyframeMotion(times=[-1.0, 1.0], translations=[place, place], rotations=[quaternion, quaternion])
+    radar = four_by_eight(motion=motion)
+    world = radar.world_from_radar(0.0)
+    centre = world[:3, :3] @ at(7.0, 0.3, 0.15) + world[:3, 3]
+    spectrum = spectrum_of(scene_of_spheres(centre), radar)
+    found = ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)])
+    assert found.azimuth[0] == pytest.approx(0.3, abs=DIRECTION_TOLERANCE)
+    assert found.elevation[0] == pytest.approx(0.15, abs=2 * DIRECTION_TOLERANCE)
+
+
+def test_a_moving_sphere_needs_its_slots_compensated():
+    """10 m/s away: 0.974568 rad per slot, 4 elements of half a wavelength per slot."""
+    radar = three_by_four(chirps=waveform(num_chirps=64))
+    azimuth = 20 * DEGREE
+    spectrum = spectrum_of(scene_of_spheres(at(8.0, azimuth, 0.0), velocity=at(10.0, azimuth, 0.0)), radar)
+    cell = strongest_cell(spectrum)
+    found = ep.estimate_angles(spectrum, radar, cells=[cell])
+    assert found.azimuth[0] == pytest.approx(azimuth, abs=DIRECTION_TOLERANCE)
+    wrong = ep.estimate_angles(spectrum, radar, cells=[cell], compensate=False)
+    shift = np.sin(wrong.azimuth[0]) - np.sin(azimuth)
+    assert shift == pytest.approx(-0.974568 / (4 * np.pi), abs=0.01)  # the steps within a slot hold the beam a little
+    by_hand = ep.estimate_angles(ep.compensate_tdm(spectrum, radar), radar, cells=[cell])
+    assert by_hand.azimuth[0] == found.azimuth[0]
+
+
+def test_slots_of_one_place_differ_by_the_published_phase():
+    radar = mimo([(0, 0), (0, 0)], [(0, 0)], chirps=waveform(num_chirps=128))
+    spectrum = spectrum_of(scene_of_spheres([8.0, 0, 0], velocity=(10.0, 0, 0)), radar)
+    first, second = spectrum.values[(slice(None), 0, *strongest_cell(spectrum))]
+    assert np.angle(second / first) == pytest.approx(0.974568, abs=1e-3)
+
+
+def test_fast_targets_unfold_by_their_slots():
+    """v_max = 10.75 m/s for three transmitters; 14 m/s appears at -7.5 m/s."""
+    radar = three_by_four(chirps=waveform(num_chirps=64))
+    spectrum = ep.range_doppler(cube_of_points(radar, [(at(10.0, 0.4, 0.0), at(14.0, 0.4, 0.0), 1e-5)]), radar)
+    cell = strongest_cell(spectrum)
+    assert spectrum.velocity[cell[0]] == pytest.approx(14.0 - 2 * radar.waveform.max_velocity(3), abs=0.2)
+    found = ep.estimate_angles(spectrum, radar, cells=[cell], folds=1)
+    assert found.velocity[0] == pytest.approx(14.0, abs=0.2)
+    assert found.azimuth[0] == pytest.approx(0.4, abs=DIRECTION_TOLERANCE)
+    assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
+
+
+def test_a_map_shows_targets_at_their_range_azimuth_and_power():
+    radar = three_by_four(chirps=waveform(num_chirps=16))
+    centres = [at(5.0, 0.5, 0.0), at(8.0, -0.2, 0.0)]
+    spectrum = spectrum_of(scene_of_spheres(*centres), radar)
+    picture = ep.range_azimuth(spectrum, radar)
+    power = np.mean(np.abs(spectrum.values[:, :, 8]) ** 2, axis=(0, 1))
+    for distance, azimuth in ((5.0, 0.5), (8.0, -0.2)):
+        near = np.abs(picture.range - distance + TARGET_RADIUS) < 0.3
+        a, r = np.unravel_index(picture.power[:, near].argmax(), (len(picture.azimuth), near.sum()))
+        assert picture.azimuth[a] == pytest.approx(azimuth, abs=0.6 * DEGREE)
+        assert picture.power[:, near][a, r] == pytest.approx(power[near][r], rel=0.02)  # of the other's side lobes
+
+
+def test_virtual_arrays_tell_what_they_are():
+    array = ep.virtual_array(mimo([(0, 0), (3, 0)], LINE, height=1.0))
+    assert array.positions.shape == (2, 4, 3) and array.elements.shape == (7, 3)
+    np.testing.assert_allclose(array.positions, slow_beams.channel_positions(mimo([(0, 0), (3, 0)], LINE, height=1.0)))
+    assert array.num_overlaps == 1 and array.element_of_channel.tolist() == [[0, 1, 2, 3], [3, 4, 5, 6]]
+    assert array.grid_shape == (1, 7) and array.gaps.shape == (0, 2)
+    assert array.grid_spacing == pytest.approx((0.0, HALF)) and array.grid_deviation < 1e-12
+    np.testing.assert_allclose(array.grid_axes, [[0, 0, 1], [0, 1, 0]], atol=1e-12)
+    assert "7 elements on a grid of 1 x 7" in repr(array)
+    sparse = ep.virtual_array(mimo([(0, 0)], [(0, 0), (1, 0), (4, 0)]))
+    assert sparse.gaps.tolist() == [[0, 2], [0, 3]]
+    bent = [(np.cos(0.7 * i), np.sin(0.7 * i)) for i in range(9)]
+    none = ep.virtual_array(mimo([(0, 0)], bent))
+    assert none.grid_shape is None and none.grid_axes is None and "no grid" in repr(none)
+
+
+def test_axes_may_be_numbers_lists_or_left_to_the_array():
+    radar = four_by_eight()
+    spectrum = noise_map(radar)
+    assert ep.beamform(spectrum, radar, 0.1, cells=[[0, 0], [1, 2]]).power.shape == (1, 1, 2)
+    assert ep.beamform(spectrum, radar, [0.1, 0.2], [-0.1, 0, 0.1], cells=[[0, 0]]).power.shape == (3, 2, 1)
+    azimuth, elevation = ep.virtual_array(radar).default_angles()
+    whole = ep.beamform(spectrum, radar, None, None, cells=[[3, 4]])
+    np.testing.assert_array_equal(whole.azimuth, azimuth)
+    np.testing.assert_array_equal(whole.elevation, elevation)
+    assert ep.range_azimuth(spectrum, radar, elevation=None).power.shape == (len(azimuth), 128)
+
+
+def test_bad_input_names_the_argument():
+    radar = three_by_four()
+    spectrum = noise_map(radar)
+    for call, error, text in [
+            (lambda: ep.beamform(spectrum, radar, method="music"), ValueError, "^method: must be 'bartlett' or 'capon'"),
+            (lambda: ep.beamform(spectrum, radar, [0.2, 0.1]), ValueError, "^azimuth: must be ascending"),
+            (lambda: ep.beamform(spectrum, radar, elevation=2.0), ValueError, "^elevation: "),
+            (lambda: ep.beamform(spectrum, radar, cells=[[32, 0]]), IndexError, "^cells: .*got \\(32, 0\\)"),
+            (lambda: ep.beamform(spectrum, radar, cells=[[0.5, 0]]), TypeError, "^cells: "),
+            (lambda: ep.beamform(spectrum, radar, overlap="first"), TypeError, "'overlap', the nearest right one is 'overlaps'"),
+            (lambda: ep.range_azimuth(spectrum, radar, velocity=99.0), ValueError, "^velocity: .*got 99"),
+            (lambda: ep.angle_fft(spectrum, radar, windows="hann"), TypeError, "nearest right one is 'window'"),
+            (lambda: ep.angle_fft(spectrum, four_by_eight()), ValueError, "^spectrum: must have the radar's 4 x 8"),
+            (lambda: ep.estimate_angles(spectrum, radar, cells=[[0, 0]], folds=2), ValueError, "^folds: "),
+            (lambda: ep.compensate_tdm(ep.compensate_tdm(spectrum, radar), radar), ValueError, "^spectrum: ")]:
+        with pytest.raises(error, match=text):
+            call()

@@ -98,7 +98,7 @@ void bind_sim(py::module_& m) {
 radar: another waveform, array or motion than that of the trace, or None
 tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
 method: "auto", "direct" (the reference), "recurrence" or "nufft"
-evaluate: "interpolated" (lengths and amplitudes by polynomials in time, to phase_tolerance in rad), "chirps" (in every chirp: the
+evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of each path), "chirps" (in every chirp: the
     reference), or "samples" (interpolated, and moving echoes with the delay of every sample: for fast rotors, a sine and a
     cosine per path and sample)
 progress: callable(stage, fraction) or None

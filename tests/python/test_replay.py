@@ -8,6 +8,7 @@ FREQUENCY = 77e9
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
 DELAY_PHASE_TOLERANCE = 2e-5   # rad: the phase tolerance of the replay, 1e-5 rad, on both ways
 ADDITIVITY = 1e-12
+INTERPOLATION_ERROR = 1e-4      # of amplitudes, the tolerance of the replay; phases are to 1e-5 rad
 
 
 def make_radar(num_chirps=64, chirp_interval=60e-6, transmitters=((0, 0, 1),), receivers=((0, 0.01, 1),), **keywords):
@@ -121,7 +122,7 @@ def test_interpolated_replay_is_the_exact_one():
     paths = ep.trace(walking_scene(), radar, num_rays=3000)
     exact = ep.synthesize(paths, radar, evaluate="chirps", method="direct")
     error = np.linalg.norm(ep.synthesize(paths, radar, method="direct") - exact) / np.linalg.norm(exact)
-    assert error < 1e-4  # of 1e-5 rad and of amplitudes to the same order
+    assert error < INTERPOLATION_ERROR
 
 
 def rotor_scene(rate, radius):

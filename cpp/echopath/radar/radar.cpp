@@ -46,6 +46,16 @@ void require_index(int index, int count, const char* name) {
                           std::to_string(index));
 }
 
+// Replay asks for gains once per path, antenna and instant: the usual whole exponents must not cost a call of pow.
+double power_of(double base, double exponent) {
+  constexpr int kLargestWhole = 16;
+  const int whole = exponent <= kLargestWhole ? static_cast<int>(exponent) : 0;
+  if (whole != exponent) return std::pow(base, exponent);
+  double power = 1.0;
+  for (int i = 0; i < whole; ++i) power *= base;
+  return power;
+}
+
 }  // namespace
 
 void ChirpSequence::validate() const {
@@ -92,7 +102,7 @@ AntennaPattern AntennaPattern::of_table(GainTable table) {
 double AntennaPattern::gain(double cos_boresight) const {
   require(kind != Kind::kTable, "cos_boresight", "tells no gain of a table, which needs a direction", cos_boresight);
   if (kind == Kind::kIsotropic) return peak_gain;
-  return cos_boresight > 0.0 ? peak_gain * std::pow(cos_boresight, exponent) : 0.0;
+  return cos_boresight > 0.0 ? peak_gain * power_of(cos_boresight, exponent) : 0.0;
 }
 
 AntennaGain AntennaPattern::toward(const Vec3& direction) const {

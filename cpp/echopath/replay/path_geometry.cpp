@@ -45,25 +45,37 @@ void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
   posed.curvature = smooth.curvature;
 }
 
+void pose_triangle(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
+  const Mat3& rotation = instant.rotation(hit.mesh_id);
+  Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
+  if (hit.deformed) {
+    const std::vector<Vec3>& vertices = instant.local_vertices(hit.mesh_id);
+    corner = vertices[hit.triangle[0]];
+    edge_u = vertices[hit.triangle[1]] - corner;
+    edge_v = vertices[hit.triangle[2]] - corner;
+  }
+  posed.edge_u = rotation * edge_u;
+  posed.edge_v = rotation * edge_v;
+  posed.point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * posed.edge_u + hit.v * posed.edge_v;
+  posed.normal = posed.edge_u.cross(posed.edge_v).normalized();
+  posed.is_smooth = hit.normals != nullptr;
+  if (posed.is_smooth) curve(hit, instant, posed);
+}
+
+// Most hits are on rigid facets and need no more than this.
+void pose_point(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
+  posed.point = instant.rotation(hit.mesh_id) * hit.point + instant.translation(hit.mesh_id);
+  posed.normal = (instant.normal_matrix(hit.mesh_id) * hit.normal).normalized();
+  posed.is_smooth = false;
+}
+
 }  // namespace
 
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
   for (int k = 0; k < path.count; ++k) {
     const LocalHit& hit = path.hits[k];
-    const Mat3& rotation = instant.rotation(hit.mesh_id);
-    Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
-    if (hit.deformed) {
-      const std::vector<Vec3>& vertices = instant.local_vertices(hit.mesh_id);
-      corner = vertices[hit.triangle[0]];
-      edge_u = vertices[hit.triangle[1]] - corner;
-      edge_v = vertices[hit.triangle[2]] - corner;
-    }
-    out[k].edge_u = rotation * edge_u;
-    out[k].edge_v = rotation * edge_v;
-    out[k].point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * out[k].edge_u + hit.v * out[k].edge_v;
-    out[k].normal = out[k].edge_u.cross(out[k].edge_v).normalized();
-    out[k].is_smooth = hit.normals != nullptr;
-    if (out[k].is_smooth) curve(hit, instant, out[k]);
+    if (hit.deformed || hit.normals || path.has_cell_at(k)) pose_triangle(hit, instant, out[k]);
+    else pose_point(hit, instant, out[k]);
   }
 }
 

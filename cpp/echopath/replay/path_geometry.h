@@ -13,13 +13,14 @@ struct LocalHit {
   Triangle triangle{};
   double u = 0.0, v = 0.0;
   Vec3 corner, edge_u, edge_v;  // of its triangle at rest
+  Vec3 point, normal;           // at rest, on the facet; unit
   // Unit vertex normals at rest where the triangle is taken as smooth, else null.
   const std::array<Vec3, 3>* normals = nullptr;
 };
 
 struct PosedHit {
   Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
-  Vec3 edge_u, edge_v;
+  Vec3 edge_u, edge_v;   // only where the path asks for them (LocalPath::has_cell_at) or the triangle bends
   Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
   bool is_smooth = false;
 };
@@ -48,6 +49,8 @@ struct LocalPath {
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
+  // The launch cell lies on the triangle of this hit.
+  bool has_cell_at(int hit) const { return diffuse == 0 && hit == last_material; }
   // First and last hit that are material points; -1 where the path has mirrors only.
   int first_material = -1, last_material = -1;
 };

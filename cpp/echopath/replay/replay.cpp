@@ -13,9 +13,23 @@
 namespace echopath {
 namespace {
 
-constexpr std::array<int, 5> kOrders = {6, 10, 16, 24, 32};
+constexpr std::array<int, 10> kOrders = {4, 6, 8, 10, 12, 14, 16, 20, 24, 32};
 constexpr int kStaticLevel = 0;
 constexpr int kExactLevel = static_cast<int>(kOrders.size()) + 1;
+
+// What a polynomial through `order` values, `stride` apart, has left: from its last two Chebyshev coefficients.
+template <typename Value>
+double tail_of(const FrameNodes& nodes, const Value* values, size_t stride) {
+  const auto order = static_cast<size_t>(nodes.order);
+  Value before_last = 0.0, last = 0.0;
+  for (size_t k = 0; k < order; ++k) {
+    // Relative to the first node: the sums must not drown in the rounding of the whole length.
+    const Value value = values[k * stride] - values[0];
+    before_last += nodes.tail[k] * value;
+    last += nodes.tail[order + k] * value;
+  }
+  return std::abs(last) + 0.25 * std::abs(before_last);
+}
 
 }  // namespace
 
@@ -23,6 +37,12 @@ constexpr int kExactLevel = static_cast<int>(kOrders.size()) + 1;
 struct Replayer::Level {
   FrameNodes nodes;
   std::vector<Instant> instants;
+};
+
+// [node, channel, path]
+struct Replayer::NodeValues {
+  std::vector<double> lengths;                    // m
+  std::vector<std::complex<double>> amplitudes;   // sqrt(W)
 };
 
 struct Replayer::Block {
@@ -56,6 +76,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
     smooth_normals_.push_back(node.smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>());
   }
   trace_instant_ = std::make_unique<Instant>(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time);
+  set_mesh_levels();
 }
 
 Replayer::~Replayer() = default;
@@ -128,6 +149,8 @@ Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
       local.corner = vertices[local.triangle[0]];
       local.edge_u = vertices[local.triangle[1]] - local.corner;
       local.edge_v = vertices[local.triangle[2]] - local.corner;
+      local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
+      local.normal = local.edge_u.cross(local.edge_v).normalized();
       if (node.smooth) local.normals = block.smooth_normals(local, smooth_normals_[hit.mesh_id]);
       if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
         path.image |= uint64_t{1} << k;
@@ -187,71 +210,104 @@ void Replayer::set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const 
   path.cell.is_known = path.cell.tangent[0].allFinite() && path.cell.tangent[1].allFinite();
 }
 
-// Values [node, channel, path]; false when `check` finds a tail above the tolerance.
-bool Replayer::evaluate_level(const Block& block, const Level& level, bool check, std::vector<double>& lengths,
-                              std::vector<std::complex<double>>& amplitudes) const {
+Replayer::NodeValues Replayer::evaluate_level(const Block& block, const Level& level) const {
   const size_t num_paths = block.paths.size(), channels = static_cast<size_t>(num_channels());
   const size_t num_nodes = level.instants.size(), node_stride = channels * num_paths;
-  lengths.resize(num_nodes * node_stride);
-  amplitudes.resize(num_nodes * node_stride);
+  NodeValues values{std::vector<double>(num_nodes * node_stride), std::vector<std::complex<double>>(num_nodes * node_stride)};
   EvaluationScratch scratch;
   scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
   for (size_t node = 0; node < num_nodes; ++node) {
     for (size_t p = 0; p < num_paths; ++p) {
-      const ChannelValues out{lengths.data() + node * node_stride + p, amplitudes.data() + node * node_stride + p,
+      const ChannelValues out{values.lengths.data() + node * node_stride + p, values.amplitudes.data() + node * node_stride + p,
                               static_cast<int64_t>(num_paths)};
       evaluate_path(block.paths[p], level.instants[node], radio_, scratch, out);
     }
   }
-  if (!check) return true;
-  const int order = level.nodes.order;
-  for (int piece = 0; piece < level.nodes.num_pieces(); ++piece) {
-    const double* values = lengths.data() + static_cast<size_t>(piece * order) * node_stride;
-    for (size_t i = 0; i < node_stride; ++i) {
-      double before_last = 0.0, last = 0.0;
-      for (int k = 0; k < order; ++k) {
-        // Relative to the first node: the sums must not drown in the rounding of the whole length.
-        const double value = values[static_cast<size_t>(k) * node_stride + i] - values[i];
-        before_last += level.nodes.tail[static_cast<size_t>(k)] * value;
-        last += level.nodes.tail[static_cast<size_t>(order + k)] * value;
-      }
-      if (radio_.wavenumber * (std::abs(last) + 0.25 * std::abs(before_last)) > settings_.phase_tolerance) return false;
+  return values;
+}
+
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
+  const Level& once = level(kStaticLevel);
+  return by_channel(once, indices.size(), evaluate_level(localise(indices), once));
+}
+
+std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices) const {
+  const Level& every_chirp = level(kExactLevel);
+  return by_channel(every_chirp, indices.size(), evaluate_level(localise(indices), every_chirp));
+}
+
+std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index, std::vector<int64_t>& failed) const {
+  const Level& polynomial = level(index);
+  NodeValues values = evaluate_level(localise(indices), polynomial);
+  const size_t num_paths = indices.size();
+  for (size_t p = 0; p < num_paths; ++p) {
+    if (follows(polynomial.nodes, values, num_paths, p)) continue;
+    failed.push_back(indices[p]);
+    for (size_t i = p; i < values.amplitudes.size(); i += num_paths) values.amplitudes[i] = 0.0;
+  }
+  return by_channel(polynomial, num_paths, values);
+}
+
+// The polynomials follow lengths and amplitudes of path `p` in all channels.
+bool Replayer::follows(const FrameNodes& nodes, const NodeValues& values, size_t num_paths, size_t p) const {
+  const size_t node_stride = static_cast<size_t>(num_channels()) * num_paths;
+  for (size_t at = p; at < node_stride; at += num_paths) {
+    double largest = 0.0;
+    for (size_t i = at; i < values.amplitudes.size(); i += node_stride) largest = std::max(largest, std::abs(values.amplitudes[i]));
+    for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
+      const size_t first = static_cast<size_t>(piece * nodes.order) * node_stride + at;
+      if (radio_.wavenumber * tail_of(nodes, &values.lengths[first], node_stride) > settings_.phase_tolerance) return false;
+      if (tail_of(nodes, &values.amplitudes[first], node_stride) > settings_.amplitude_tolerance * largest) return false;
     }
   }
   return true;
 }
 
-std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  evaluate_level(localise(indices), level(kStaticLevel), false, lengths, amplitudes);
-  return by_channel(level(kStaticLevel), indices.size(), lengths, amplitudes);
+// Levels that cost less than evaluation in every chirp.
+int Replayer::count_levels() const {
+  if (settings_.exact) return 0;
+  int count = 0;
+  while (count + 1 < kExactLevel && std::ssize(level(count + 1).nodes.times) <= num_exact_nodes()) ++count;
+  return count;
 }
 
-std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices) const {
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  evaluate_level(localise(indices), level(kExactLevel), false, lengths, amplitudes);
-  return by_channel(level(kExactLevel), indices.size(), lengths, amplitudes);
-}
-
-std::optional<std::vector<Echoes>> Replayer::interpolated(std::span<const int64_t> indices) const {
-  if (settings_.exact) return std::nullopt;
-  const Block block = localise(indices);
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  for (int index = kStaticLevel + 1; index < kExactLevel; ++index) {
-    if (std::ssize(level(index).nodes.times) > num_exact_nodes()) break;
-    if (evaluate_level(block, level(index), true, lengths, amplitudes)) {
-      return by_channel(level(index), indices.size(), lengths, amplitudes);
+// The distances of a mesh's outermost vertices from the transmitters tell how many nodes its motion needs: an echo's length
+// is made of such distances.
+bool Replayer::fits(const Level& level, uint32_t mesh_id) const {
+  const size_t num_vertices = level.instants.front().local_vertices(mesh_id).size();
+  const size_t step = std::max<size_t>(1, num_vertices / 16);
+  for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
+    std::vector<double> distance;
+    for (const Instant& instant : level.instants) {
+      const Vec3 point = instant.rotation(mesh_id) * instant.local_vertices(mesh_id)[vertex] + instant.translation(mesh_id);
+      distance.push_back(2.0 * (point - instant.transmitters.front().position).norm());
+    }
+    for (int piece = 0; piece < level.nodes.num_pieces(); ++piece) {
+      const double* first = distance.data() + piece * level.nodes.order;
+      if (radio_.wavenumber * tail_of(level.nodes, first, 1) > settings_.phase_tolerance) return false;
     }
   }
-  return std::nullopt;
+  return true;
+}
+
+void Replayer::set_mesh_levels() {
+  num_levels_ = count_levels();
+  for (uint32_t id = 0; id < mesh_moves_.size(); ++id) {
+    int& needed = mesh_level_.emplace_back(1);
+    if (mesh_moves_[id] == 0 && !radar_.motion) continue;
+    while (needed <= num_levels_ && !fits(level(needed), id)) ++needed;
+  }
+}
+
+int Replayer::first_level(int64_t path) const {
+  const Hit* hits = paths_.hits_of(path);
+  int needed = std::min(1, num_levels_ + 1);
+  for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, mesh_level_[hits[k].mesh_id]);
+  return needed;
 }
 
 // From [node, channel, path] to the form that synthesis takes.
-std::vector<Echoes> Replayer::by_channel(const Level& level, size_t num_paths, const std::vector<double>& lengths,
-                                         const std::vector<std::complex<double>>& amplitudes) const {
+std::vector<Echoes> Replayer::by_channel(const Level& level, size_t num_paths, const NodeValues& values) const {
   const size_t num_nodes = level.nodes.times.size();
   const auto channels = static_cast<size_t>(num_channels());
   std::vector<Echoes> out(channels);
@@ -264,8 +320,8 @@ std::vector<Echoes> Replayer::by_channel(const Level& level, size_t num_paths, c
     for (size_t node = 0; node < num_nodes; ++node) {
       const size_t from = (node * channels + channel) * num_paths, to = node * num_paths;
       for (size_t p = 0; p < num_paths; ++p) {
-        echoes.delay[to + p] = lengths[from + p] / kSpeedOfLight;
-        echoes.amplitude[to + p] = amplitudes[from + p];
+        echoes.delay[to + p] = values.lengths[from + p] / kSpeedOfLight;
+        echoes.amplitude[to + p] = values.amplitudes[from + p];
       }
     }
   }
@@ -282,13 +338,11 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
   amplitudes.resize(channels * indices.size());
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
-    std::vector<double> block_lengths;
-    std::vector<std::complex<double>> block_amplitudes;
-    evaluate_level(localise(indices.subspan(begin, size)), single, false, block_lengths, block_amplitudes);
+    const NodeValues values = evaluate_level(localise(indices.subspan(begin, size)), single);
     for (size_t channel = 0; channel < channels; ++channel) {
       const auto from = static_cast<ptrdiff_t>(channel * size), to = static_cast<ptrdiff_t>(channel * indices.size() + begin);
-      std::copy_n(block_lengths.begin() + from, size, lengths.begin() + to);
-      std::copy_n(block_amplitudes.begin() + from, size, amplitudes.begin() + to);
+      std::copy_n(values.lengths.begin() + from, size, lengths.begin() + to);
+      std::copy_n(values.amplitudes.begin() + from, size, amplitudes.begin() + to);
     }
   }, job);
 }

@@ -5,7 +5,6 @@
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide).
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <span>
 
 #include "echopath/replay/amplitude.h"
@@ -14,7 +13,8 @@
 namespace echopath {
 
 struct ReplaySettings {
-  double phase_tolerance = 1e-5;  // rad: aim for the interpolated phase, see Replayer::echoes
+  double phase_tolerance = 1e-5;  // rad: aim for the interpolated phase, see Replayer::interpolated
+  double amplitude_tolerance = 1e-4;  // likewise, of the interpolated amplitude relative to the largest of the path
   bool exact = false;             // evaluate in every chirp instead of interpolating
   bool per_sample = false;        // for signals with the delay of every sample (signal/per_sample.h)
 };
@@ -33,9 +33,13 @@ class Replayer {
   // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
   // Of paths that are all static: evaluated once.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
-  // By a Chebyshev polynomial of order 6, 10, 16, 24 or 32 per smooth piece of the frame: the first whose last two coefficients
-  // stay below the phase tolerance for all these paths. Nothing where none does, or where it would cost more than `exact`.
-  std::optional<std::vector<Echoes>> interpolated(std::span<const int64_t> paths) const;
+  // By a Chebyshev polynomial per smooth piece of the frame, of the order of `level` (4 to 32 nodes). A path whose last two
+  // coefficients exceed a tolerance, of length or amplitude, has amplitude 0 here and is added to `failed`.
+  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int level, std::vector<int64_t>& failed) const;
+  // Levels are 1 to num_levels(); none where fewer chirps than nodes would make `exact` cheaper, or where that was asked for.
+  int num_levels() const { return num_levels_; }
+  // Where to begin with a path, from the motion of the meshes that it touches; num_levels() + 1 where none will do.
+  int first_level(int64_t path) const;
   // At nodes in every chirp, num_exact_nodes() in all.
   std::vector<Echoes> exact(std::span<const int64_t> paths) const;
   int64_t num_exact_nodes() const;
@@ -52,10 +56,13 @@ class Replayer {
   Block localise(std::span<const int64_t> paths) const;
   void add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;
   void set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const;
-  bool evaluate_level(const Block& block, const Level& level, bool check, std::vector<double>& lengths,
-                      std::vector<std::complex<double>>& amplitudes) const;
-  std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const std::vector<double>& lengths,
-                                 const std::vector<std::complex<double>>& amplitudes) const;
+  struct NodeValues;
+  NodeValues evaluate_level(const Block& block, const Level& level) const;
+  std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const NodeValues& values) const;
+  bool follows(const FrameNodes& nodes, const NodeValues& values, size_t num_paths, size_t p) const;
+  int count_levels() const;
+  void set_mesh_levels();
+  bool fits(const Level& level, uint32_t mesh_id) const;
 
   const Paths& paths_;
   const Radar& radar_;
@@ -65,6 +72,8 @@ class Replayer {
   std::vector<uint8_t> mesh_is_mirror_;   // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;  // by mesh ID, at rest; empty where facets are meant
   std::unique_ptr<const Instant> trace_instant_;
+  std::vector<int> mesh_level_;           // by mesh ID: the first that follows its motion
+  int num_levels_ = 0;
   mutable std::mutex levels_mutex_;
   mutable std::vector<std::unique_ptr<const Level>> levels_;
 };

@@ -1,7 +1,6 @@
 #include "echopath/sim/synthesize.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -30,22 +29,31 @@ struct Stream {
   Job* job;
 
   void add_still(const std::vector<int64_t>& paths) {
-    run(paths, block_size(replayer.num_channels(), 1), [&](auto part) { return std::optional(replayer.still(part)); });
+    run(paths, block_size(replayer.num_channels(), 1), [&](auto part, auto&) { return replayer.still(part); });
   }
 
+  // Each path at the order that its meshes need; where that was not enough, at the next.
   void add_moving(const std::vector<int64_t>& paths) {
-    const std::vector<int64_t> rough = run(paths, block_size(replayer.num_channels(), kNodesOfAPath),
-                                           [&](auto part) { return replayer.interpolated(part); });
-    run(rough, block_size(replayer.num_channels(), replayer.num_exact_nodes()),
-        [&](auto part) { return std::optional(replayer.exact(part)); });
+    const int num_levels = replayer.num_levels();
+    std::vector<std::vector<int64_t>> by_level(static_cast<size_t>(num_levels) + 2);
+    for (const int64_t path : paths) by_level[static_cast<size_t>(replayer.first_level(path))].push_back(path);
+    const int64_t size = block_size(replayer.num_channels(), kNodesOfAPath);
+    for (int level = 1; level <= num_levels; ++level) {
+      const auto at = static_cast<size_t>(level);
+      const std::vector<int64_t> failed = run(by_level[at], size, [&](auto part, std::vector<int64_t>& left) {
+        return replayer.interpolated(part, level, left);
+      });
+      by_level[at + 1].insert(by_level[at + 1].end(), failed.begin(), failed.end());
+    }
+    run(by_level.back(), block_size(replayer.num_channels(), replayer.num_exact_nodes()),
+        [&](auto part, auto&) { return replayer.exact(part); });
   }
 
  private:
-  // Blocks are replayed in parallel, a fixed number at a time, and added in their order. Returns the paths of blocks for which
-  // `replay` gave nothing.
+  // Blocks are replayed in parallel, a fixed number at a time, and added in their order. Returns the paths that `replay` left.
   template <typename Replay>
   std::vector<int64_t> run(const std::vector<int64_t>& paths, int64_t size, const Replay& replay) {
-    std::vector<int64_t> left;
+    std::vector<int64_t> all_left;
     const auto num_paths = static_cast<int64_t>(paths.size());
     for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
       const int64_t num_blocks = std::min(kBlocksInFlight, (num_paths - begin + size - 1) / size);
@@ -53,18 +61,18 @@ struct Stream {
         const int64_t first = begin + i * size;
         return std::span<const int64_t>(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
       };
-      std::vector<std::optional<ByChannel>> blocks(static_cast<size_t>(num_blocks));
+      std::vector<ByChannel> blocks(static_cast<size_t>(num_blocks));
+      std::vector<std::vector<int64_t>> left(blocks.size());
       parallel_for(num_blocks, [&](int64_t i) {
         if (job) job->throw_if_cancelled();
-        blocks[static_cast<size_t>(i)] = replay(part(i));
+        blocks[static_cast<size_t>(i)] = replay(part(i), left[static_cast<size_t>(i)]);
       });
       for (int64_t i = 0; i < num_blocks; ++i) {
-        std::optional<ByChannel>& block = blocks[static_cast<size_t>(i)];
-        if (block) add(*block, part(i));
-        else left.insert(left.end(), part(i).begin(), part(i).end());
+        add(blocks[static_cast<size_t>(i)], part(i));
+        all_left.insert(all_left.end(), left[static_cast<size_t>(i)].begin(), left[static_cast<size_t>(i)].end());
       }
     }
-    return left;
+    return all_left;
   }
 
   void add(ByChannel& channels, std::span<const int64_t> paths) {

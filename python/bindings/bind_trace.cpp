@@ -480,7 +480,8 @@ Raises ValueError where an index leads nowhere.)")
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
         R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
-num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count
+num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count. Between a target
+and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces
 seed: the same seed gives the same bits
 start_time: s, first sample of the frame
 polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised) or

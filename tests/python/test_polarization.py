@@ -126,15 +126,19 @@ def legs_of(over):
     return ends, arrivals, [mirrored(k, LEAN) if by_wall else k for k, by_wall in zip(arrivals, over)]
 
 
-def plate_echo(corner, first, second, over, reflect, num=300):
-    """Physical optics, currents 2 n x H, of a metal plate: the midpoint sum over its points, sqrt(W)."""
-    grid = (np.arange(num) + 0.5) / num
-    points = (corner + grid[:, None, None] * first + grid[None, :, None] * second).reshape(-1, 3)
+def plate_echo(corner, first, second, over, reflect):
     ends, arrivals, starts = legs_of(over)
-    lengths = [np.linalg.norm(points - end, axis=1) for end in ends]
     # Both as fields of a launch: that of the receiver gives what it makes of a current.
     lit = [reflect(across(vector, start), start, LEAN) if by_wall else across(vector, start)
            for vector, start, by_wall in zip((SENT, RECEIVED), starts, over)]
+    return plate_sum(corner, first, second, ends, arrivals, lit)
+
+
+def plate_sum(corner, first, second, ends, arrivals, lit, num=300):
+    """Physical optics, currents 2 n x H, of a metal plate: the midpoint sum over its points, sqrt(W)."""
+    grid = (np.arange(num) + 0.5) / num
+    points = (corner + grid[:, None, None] * first + grid[None, :, None] * second).reshape(-1, 3)
+    lengths = [np.linalg.norm(points - end, axis=1) for end in ends]
     normal = unit(np.cross(first, second))
     normal = -np.sign(normal @ arrivals[0]) * normal
     current = np.cross(normal, np.cross(arrivals[0], lit[0]))
@@ -157,6 +161,42 @@ def test_a_turned_metal_plate_beside_a_leaning_wall(route, permittivity):
     paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 15, max_bounces=3)
     expected = plate_echo(corner, first, second, ROUTES[route], reflect)
     assert abs(fields(paths.select(route)).sum() / expected - 1) < PLATE_TOLERANCE
+
+
+FLOOR, EARTH, BRICK = np.array((0.0, 0, -2)), 5 - .3j, 2.5 - .1j
+PLANES = {"floor": (FLOOR, V, field_off(EARTH)), "wall": (WALL_POINT, LEAN, field_off(BRICK))}
+
+
+def leg_over(antenna, moment, names):
+    """The image of an antenna over planes in turn, its direction of travel at the target, and its field there."""
+    end = antenna
+    for name in names:
+        end = image(end, *PLANES[name][:2])
+    directions = [unit(TARGET - end)]
+    for name in reversed(names):
+        directions.insert(0, mirrored(directions[0], PLANES[name][1]))
+    field = across(moment, directions[0])
+    for name, direction in zip(names, directions):
+        field = PLANES[name][2](field, direction, PLANES[name][1])
+    return end, directions[-1], field
+
+
+@pytest.mark.parametrize("there, back", [(("floor", "wall"), ()), ((), ("floor", "wall")), (("wall", "floor"), ("wall",)),
+                                         (("floor", "wall"), ("wall", "floor"))])
+def test_a_turned_metal_plate_between_floor_and_wall(there, back):
+    """`there` and `back`: planes on the way from the transmitter and on that from the receiver."""
+    ends, arrivals, lit = zip(leg_over(TRANSMITTER, SENT, there), leg_over(RECEIVER, RECEIVED, back))
+    facing = unit(-arrivals[0] - arrivals[1])  # it mirrors this route to the receiver
+    first = 0.02 * unit(np.cross(facing, (0.3, 0.2, 1.0)))
+    second = 0.02 * np.cross(facing, unit(first))
+    corner = TARGET - 0.5 * (first + second)
+    floor = rectangle((-50, -50, -2), (100, 0, 0), (0, 100, 0)), ep.Material(permittivity=EARTH, mirror=True)
+    scene = scene_of(target=(rectangle(corner, first, second), METAL), floor=floor,
+                     wall=leaning_wall(ep.Material(permittivity=BRICK, mirror=True)))
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 15, max_bounces=5)
+    route = " ".join(f"'{name}'" for name in (*there, "target", *reversed(back)))
+    expected = plate_sum(corner, first, second, ends, arrivals, lit)
+    assert abs(fields(paths.select(f"T {route} R")).sum() / expected - 1) < PLATE_TOLERANCE
 
 
 def test_a_rough_patch_beside_a_leaning_wall():
@@ -218,13 +258,16 @@ def matrices_by_hit(paths, hit):
     return dict(zip(zip(paths.triangle_id[at], paths.u[at], paths.v[at]), paths.jones))
 
 
-def test_both_orders_of_a_ghost_carry_the_same_in_exchanged_polarisations():
+@pytest.mark.parametrize("mirrors", [("wall",), ("floor", "wall"), ("wall", "floor")])
+def test_both_orders_of_a_ghost_carry_the_same_in_exchanged_polarisations(mirrors):
     ball = ep.Material(reflectivity=.5, scattering=1.0, cross_polarization=.3)
     earth = ep.Material(permittivity=5 - .3j, mirror=True)
-    scene = scene_of(ball=(sphere((6, 0, 0), .3, 3), ball), wall=leaning_wall(earth))
-    paths = traced(scene, make_radar(TRANSMITTER), num_rays=4000, max_bounces=2)
-    there = matrices_by_hit(paths.select("T 'wall' 'ball' R"), 1)
-    back = matrices_by_hit(paths.select("T 'ball' 'wall' R"), 0)
+    floor = rectangle((-50, -50, -2), (100, 0, 0), (0, 100, 0)), earth
+    scene = scene_of(ball=(sphere((6, 0, 0), .3, 3), ball), floor=floor, wall=leaning_wall(earth))
+    paths = traced(scene, make_radar(TRANSMITTER), num_rays=16000, max_bounces=3)
+    names = [f"'{name}'" for name in mirrors]
+    there = matrices_by_hit(paths.select(f"T {' '.join(names)} 'ball' R"), len(names))
+    back = matrices_by_hit(paths.select(f"T 'ball' {' '.join(reversed(names))} R"), 0)
     common = list(there.keys() & back.keys())
     assert len(common) > 1000
     opposite = np.array([[1, -1], [-1, 1]])  # the horizontal of the way back points the other way

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kDefensiveShare = 0.15;
 constexpr size_t kMaxCones = 254;
+// Difference of axes and versines, relative to the latter: planes at right angles have one image in both orders.
+constexpr double kSameCone = 1e-9;
 
 struct Sphere {
   Vec3 centre = Vec3::Zero();
@@ -41,24 +43,25 @@ Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name) {
   return stratum;
 }
 
-// No wider than the vertices need, as seen from `apex`, in `mirror` where there is one: a long object seen end-on fills
-// little of its bounding sphere.
+// As the antenna sees it over a sequence of mirrors (in travel order from there).
+Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
+  for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
+  return point;
+}
+
+// No wider than the vertices need, as `image` shows them to `apex`: a long object seen end-on fills little of its bounding
+// sphere.
+template <class Image>
 void tighten(Stratum& cone, const EmbreeScene& geometry, const std::vector<uint32_t>& mesh_ids, const Vec3& apex,
-             const Mirror* mirror) {
+             const Image& image) {
   double widest = 0.0;
   for (const uint32_t id : mesh_ids) {
     for (const Vec3& vertex : geometry.vertices(id)) {
-      const Vec3 toward = ((mirror ? mirror->image(vertex) : vertex) - apex).normalized();
+      const Vec3 toward = (image(vertex) - apex).normalized();
       widest = std::max(widest, 0.5 * (toward - cone.axis).squaredNorm());
     }
   }
   cone.versine = std::min(cone.versine, widest * (1.0 + 1e-4));
-}
-
-bool image_is_in_reach(const Mirror& mirror, const Sphere& sphere, const Vec3& transmitter) {
-  const double antenna_side = mirror.signed_distance(transmitter);
-  const double object_side = mirror.signed_distance(sphere.centre);
-  return antenna_side != 0 && object_side * antenna_side > -std::abs(antenna_side) * sphere.radius;
 }
 
 // Meshes that are not mirrors, by child of the root.
@@ -77,40 +80,71 @@ std::vector<std::pair<int, std::vector<uint32_t>>> objects_of(const Scene& scene
   return objects;
 }
 
-struct Cones {
-  std::vector<Stratum> objects, images;
+struct Cone {
+  Stratum stratum;
+  int num_mirrors = 0;  // between the antenna and the object
+
+  bool is_same(const Cone& other) const {
+    const double difference = (stratum.axis - other.stratum.axis).norm() + std::abs(stratum.versine - other.stratum.versine);
+    return difference < kSameCone * stratum.versine;
+  }
+  // Of the rays, relative to other cones.
+  int64_t share() const { return num_mirrors < 2 ? kWholeShare : kWholeShare >> 2 * (num_mirrors - 1); }
+  static constexpr int64_t kWholeShare = int64_t{1} << 2 * (kMaxLegMirrors - 1);
 };
 
-Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchSettings& settings) {
-  Cones cones;
-  for (const auto& [object, mesh_ids] : objects_of(scene)) {
-    const Sphere sphere = bounding_sphere(geometry, mesh_ids);
-    if ((sphere.centre - settings.transmitter).norm() <= sphere.radius) continue;
-    const std::string& name = scene.nodes()[static_cast<size_t>(object)].name;
-    cones.objects.push_back(cone_around(sphere, settings.transmitter, name));
-    tighten(cones.objects.back(), geometry, mesh_ids, settings.transmitter, nullptr);
-    if (!settings.with_images) continue;
-    for (const Mirror& mirror : mirrors) {
-      if (!image_is_in_reach(mirror, sphere, settings.transmitter)) continue;
-      const Sphere image{mirror.image(sphere.centre), sphere.radius};
-      cones.images.push_back(cone_around(image, settings.transmitter, name + " over " + scene.node_of(mirror.mesh_id).name));
-      tighten(cones.images.back(), geometry, mesh_ids, settings.transmitter, &mirror);
+// A cone around each image of an object that a beam may show.
+std::vector<Cone> aim_at_images(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                                const std::vector<Beam>& beams, const std::vector<uint32_t>& mesh_ids, const Sphere& sphere,
+                                const Cone& direct, const Vec3& apex) {
+  std::vector<Cone> cones;
+  for (const Beam& beam : beams) {
+    if (!beam.reaches(sphere.centre, sphere.radius)) continue;
+    const auto image = [&](const Vec3& point) { return image_of(point, mirrors, beam.mirrors); };
+    std::string name = direct.stratum.name;
+    for (size_t k = beam.mirrors.size(); k-- > 0;) {
+      name += " over " + scene.node_of(mirrors[static_cast<size_t>(beam.mirrors[k])].mesh_id).name;
     }
+    Cone cone{cone_around({image(sphere.centre), sphere.radius}, apex, name), static_cast<int>(beam.mirrors.size())};
+    tighten(cone.stratum, geometry, mesh_ids, apex, image);
+    const bool is_new = std::none_of(cones.begin(), cones.end(), [&](const Cone& other) { return cone.is_same(other); });
+    if (is_new) cones.push_back(std::move(cone));
   }
   return cones;
 }
 
-std::vector<Stratum> limited(Cones cones) {
-  const auto wider = [](const Stratum& a, const Stratum& b) { return a.versine > b.versine; };
+struct Cones {
+  std::vector<Cone> objects, images;
+};
+
+Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchSettings& settings) {
+  Cones cones;
+  const Vec3& apex = settings.transmitter;
+  const std::vector<Beam> beams = find_beams(apex, mirrors, settings.max_image_mirrors);
+  for (const auto& [object, mesh_ids] : objects_of(scene)) {
+    const Sphere sphere = bounding_sphere(geometry, mesh_ids);
+    if ((sphere.centre - apex).norm() <= sphere.radius) continue;
+    Cone direct{cone_around(sphere, apex, scene.nodes()[static_cast<size_t>(object)].name)};
+    tighten(direct.stratum, geometry, mesh_ids, apex, [](const Vec3& vertex) { return vertex; });
+    const std::vector<Cone> images = aim_at_images(scene, geometry, mirrors, beams, mesh_ids, sphere, direct, apex);
+    cones.objects.push_back(std::move(direct));
+    cones.images.insert(cones.images.end(), images.begin(), images.end());
+  }
+  return cones;
+}
+
+std::vector<Cone> limited(Cones cones) {
+  const auto wider = [](const Cone& a, const Cone& b) { return a.stratum.versine > b.stratum.versine; };
   if (cones.objects.size() > kMaxCones) {
     std::stable_sort(cones.objects.begin(), cones.objects.end(), wider);
     cones.objects.resize(kMaxCones);
   }
-  std::vector<Stratum> strata = std::move(cones.objects);
-  if (strata.size() + cones.images.size() <= kMaxCones) {
-    strata.insert(strata.end(), cones.images.begin(), cones.images.end());
+  for (int too_many = kMaxLegMirrors; too_many > 0 && cones.objects.size() + cones.images.size() > kMaxCones; --too_many) {
+    std::erase_if(cones.images, [&](const Cone& cone) { return cone.num_mirrors >= too_many; });
   }
-  return strata;
+  std::vector<Cone> all = std::move(cones.objects);
+  all.insert(all.end(), cones.images.begin(), cones.images.end());
+  return all;
 }
 
 // Each batch has a shift of its own in each stratum.
@@ -124,18 +158,13 @@ std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batch
   return shifts;
 }
 
-void share_rays(LaunchPlan& plan, int64_t num_rays, Sampler sampler) {
-  const auto num_cones = static_cast<int64_t>(plan.strata.size()) - 1;
-  const auto aimed = num_cones > 0 ? static_cast<int64_t>(std::llround((1.0 - kDefensiveShare) * static_cast<double>(num_rays))) : 0;
-  plan.first_ray.assign(1, 0);
-  for (int64_t k = 0; k <= num_cones; ++k) {
-    const int64_t share = k < num_cones ? aimed * (k + 1) / num_cones - aimed * k / num_cones : num_rays - aimed;
-    Stratum& stratum = plan.strata[static_cast<size_t>(k)];
-    plan.points.push_back(disc_points(sampler, share, shifts_of(plan.seed, k, plan.batches)));
-    stratum.num_rays = plan.points.back()->size();
-    if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back()->cell_area() / stratum.solid_angle();
-    plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
-  }
+void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sampler) {
+  const auto k = static_cast<int64_t>(plan.strata.size());
+  plan.points.push_back(disc_points(sampler, num_rays, shifts_of(plan.seed, k, plan.batches)));
+  stratum.num_rays = plan.points.back()->size();
+  if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back()->cell_area() / stratum.solid_angle();
+  plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
+  plan.strata.push_back(std::move(stratum));
 }
 
 }  // namespace
@@ -145,12 +174,22 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   LaunchPlan plan;
   plan.seed = settings.seed;
   plan.batches = settings.batches;
-  plan.strata = limited(aim(scene, geometry, mirrors, settings));
-  Stratum& defensive = plan.strata.emplace_back();
+  plan.first_ray.assign(1, 0);
+  const std::vector<Cone> cones = limited(aim(scene, geometry, mirrors, settings));
+  int64_t shares = 0, shared = 0;
+  for (const Cone& cone : cones) shares += cone.share();
+  const double aimed_share = cones.empty() ? 0.0 : 1.0 - kDefensiveShare;
+  const auto aimed = static_cast<int64_t>(std::llround(aimed_share * static_cast<double>(settings.num_rays)));
+  for (const Cone& cone : cones) {
+    const int64_t before = aimed * shared / shares;
+    shared += cone.share();
+    add_stratum(plan, cone.stratum, aimed * shared / shares - before, settings.sampler);
+  }
+  Stratum defensive;
   defensive.axis = settings.boresight;
   defensive.versine = settings.field_versine;
   defensive.name = "field of view";
-  share_rays(plan, settings.num_rays, settings.sampler);
+  add_stratum(plan, std::move(defensive), settings.num_rays - aimed, settings.sampler);
   return plan;
 }
 
@@ -174,11 +213,12 @@ Vec3 LaunchPlan::direction(int index, int64_t ray) const {
   return ((1.0 - versine) * stratum.axis + across[0] * first + across[1] * second).normalized();
 }
 
-double LaunchPlan::ray_density(const Vec3& direction, int own) const {
+double LaunchPlan::ray_density(const Vec3& direction, int own, double aimed_share) const {
   double density = 0.0;
   for (int k = 0; k < static_cast<int>(strata.size()); ++k) {
     const Stratum& stratum = strata[static_cast<size_t>(k)];
-    if (stratum.num_rays > 0 && (k == own || stratum.contains(direction))) density += stratum.ray_density;
+    if (stratum.num_rays == 0 || (k != own && !stratum.contains(direction))) continue;
+    density += (is_defensive(k) ? 1.0 : aimed_share) * stratum.ray_density;
   }
   return density;
 }

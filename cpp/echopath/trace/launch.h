@@ -2,16 +2,17 @@
 // Where rays start: strata of directions and the low-discrepancy set inside each.
 #include <vector>
 
-#include "echopath/trace/mirrors.h"
+#include "echopath/trace/mirror_beams.h"
 #include "echopath/trace/sampler.h"
 
 namespace echopath {
 
-// One cone around each object as seen from `transmitter`, about the centre of its box, one around its image in each
-// mirror, and a defensive stratum over the antenna's field of view. Objects are the children of the scene's root, without their mirrors,
-// whose bounding sphere does not hold the antenna. Objects and images share 85 % of the rays equally, the defensive stratum
-// has the rest (all, where there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
-// At most 255 strata: images are left out first, then the objects of the smallest solid angle.
+// One cone around each object as seen from `transmitter`, about the centre of its box, one around each of its images over
+// mirrors, and a defensive stratum over the antenna's field of view, the last one. Objects are the children of the scene's
+// root, without their mirrors, whose bounding sphere does not hold the antenna. The cones share 85 % of the rays: equal shares
+// for objects and images over one mirror, a quarter of it for each mirror more. The defensive stratum has the rest (all, where
+// there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
+// At most 255 strata: images over the most mirrors are left out first, then the objects of the smallest solid angle.
 struct LaunchPlan {
   std::vector<Stratum> strata;
   // Of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc.
@@ -26,9 +27,11 @@ struct LaunchPlan {
   double lattice_density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density / batches; }
   // Unit direction of a ray.
   Vec3 direction(int stratum, int64_t ray) const;
+  bool is_defensive(int stratum) const { return stratum + 1 == static_cast<int>(strata.size()); }
   // Expected rays per sr toward `direction`, of all strata together (balance heuristic). `own`: a stratum that is counted
-  // in any case, -1 for none: a ray at the rim of its cone must not fall out of it by rounding.
-  double ray_density(const Vec3& direction, int own = -1) const;
+  // in any case, -1 for none: a ray at the rim of its cone must not fall out of it by rounding. `aimed_share`: of the rays
+  // of the cones that count.
+  double ray_density(const Vec3& direction, int own = -1, double aimed_share = 1.0) const;
 };
 
 struct LaunchSettings {
@@ -36,7 +39,7 @@ struct LaunchSettings {
   uint64_t seed = 0;
   Sampler sampler = Sampler::kLattice;
   int batches = 1;  // independent shifts of the set of each stratum, which share its rays
-  bool with_images = true;
+  int max_image_mirrors = kMaxLegMirrors;  // images over more get no cone
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;

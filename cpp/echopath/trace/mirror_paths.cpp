@@ -3,11 +3,18 @@
 #include <cmath>
 #include <optional>
 
+#include "echopath/trace/mirror_beams.h"
+
 namespace echopath {
 namespace {
 
-constexpr double kEdgeTolerance = 1e-6;    // m: how far outside its polygon a specular point may lie
-constexpr int64_t kMaxSequences = 100000;  // mirror sequences tried; longer ones are left out beyond
+constexpr double kOutside = 1e-9;     // m: how far outside its polygon a specular point may lie
+constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are at a common edge
+constexpr size_t kMaxBeams = 20000;   // sequences of mirrors tried; the longest are left out beyond
+// A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the true
+// one, and of one as far on the other side. In no direction that a scene is likely to be built along.
+constexpr double kAside = 1e-5;  // m
+const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
 constexpr int kImageStratum = 255;
 
 // Barycentric hit of a point of the plane in a mirror's mesh.
@@ -21,7 +28,7 @@ std::optional<Hit> locate(const EmbreeScene& geometry, const Scene& scene, const
     const auto height = [&](const Vec3& from, const Vec3& to) {  // distance inside an edge, m
       return normal.dot((to - from).cross(point - from)) / (to - from).norm();
     };
-    if (height(a, b) < -kEdgeTolerance || height(b, c) < -kEdgeTolerance || height(c, a) < -kEdgeTolerance) continue;
+    if (height(a, b) < -kOutside || height(b, c) < -kOutside || height(c, a) < -kOutside) continue;
     const double u = normal.dot((a - c).cross(point - c)) / twice_area, v = normal.dot((b - a).cross(point - a)) / twice_area;
     return Hit{mirror.mesh_id, i, static_cast<float>(u), static_cast<float>(v)};
   }
@@ -34,16 +41,11 @@ class ImageSearch {
               PathBlock& block)
       : geometry_(geometry), scene_(scene), mirrors_(mirrors), settings_(settings), block_(block) {}
 
-  void extend() {
-    const int depth = static_cast<int>(sequence_.size());
-    if (depth > 0) try_sequence();
-    if (depth == settings_.max_bounces) return;
-    for (int next = 0; next < static_cast<int>(mirrors_.size()); ++next) {
-      if (depth > 0 && sequence_.back() == next) continue;
-      if (++tried_ > kMaxSequences) return;
-      sequence_.push_back(next);
-      extend();
-      sequence_.pop_back();
+  void run() {
+    for (const Beam& beam : find_beams(settings_.transmitter, mirrors_, settings_.max_bounces, kMaxBeams)) {
+      if (!beam.reaches(settings_.receiver, kAtEdge)) continue;
+      sequence_ = beam.mirrors;
+      try_sequence();
     }
   }
 
@@ -51,33 +53,41 @@ class ImageSearch {
   const Mirror& mirror(size_t k) const { return mirrors_[static_cast<size_t>(sequence_[k])]; }
 
   void try_sequence() {
-    if (!find_points() || !sees_all()) return;
+    int num_found = 0;
+    for (const double side : {1.0, -1.0}) num_found += follow(settings_.receiver + side * kAside * kAsideDirection) ? 1 : 0;
+    if (num_found == 0) return;
+    const std::complex<double> weight = (settings_.is_polarized ? 1.0 : field()) * (0.5 * num_found);
+    if (std::abs(weight) == 0) return;
+    block_.add(hits_.data(), static_cast<int>(hits_.size()), 0, weight, kImageStratum);
+    if (settings_.is_polarized) block_.set_jones(jones_matrix());
+    block_.statistics.num_hits += static_cast<int64_t>(hits_.size());
+  }
+
+  // To a receiver there; sets hits_ where it gets through.
+  bool follow(const Vec3& receiver) {
+    if (!find_points(receiver) || !sees_all(receiver)) return false;
     std::vector<Hit> hits;
     for (size_t k = 0; k < points_.size(); ++k) {
       const std::optional<Hit> hit = locate(geometry_, scene_, mirror(k), points_[k]);
-      if (!hit) return;
+      if (!hit) return false;
       hits.push_back(*hit);
     }
-    const std::complex<double> weight = (settings_.is_polarized ? 1.0 : field()) * corner_share();
-    if (std::abs(weight) == 0) return;
-    block_.add(hits.data(), static_cast<int>(hits.size()), 0, weight, kImageStratum);
-    if (settings_.is_polarized) block_.set_jones(jones_matrix());
-    block_.statistics.num_hits += static_cast<int64_t>(hits.size());
+    hits_ = std::move(hits);
+    return true;
   }
 
   // Specular points from the receiver backwards through the images of the transmitter.
-  bool find_points() {
+  bool find_points(const Vec3& receiver) {
     const size_t n = sequence_.size();
     std::vector<Vec3> images(n + 1);
     images[0] = settings_.transmitter;
     for (size_t k = 0; k < n; ++k) images[k + 1] = mirror(k).image(images[k]);
     points_.assign(n, Vec3::Zero());
-    Vec3 target = settings_.receiver;
+    Vec3 target = receiver;
     for (size_t k = n; k-- > 0;) {
       const double behind = mirror(k).signed_distance(images[k + 1]), before = mirror(k).signed_distance(target);
-      const bool at_edge = std::abs(before) < kEdgeTolerance;  // the next bounce lies on this plane too
-      if (!at_edge && behind * before >= 0) return false;
-      points_[k] = at_edge ? target : Vec3(target + before / (before - behind) * (images[k + 1] - target));
+      if (behind * before >= 0) return false;
+      points_[k] = target + before / (before - behind) * (images[k + 1] - target);
       target = points_[k];
     }
     return true;
@@ -87,26 +97,26 @@ class ImageSearch {
   Vec3 lifted_toward(size_t k, const Vec3& target) const {
     Vec3 point = points_[k];
     for (size_t other = 0; other < points_.size(); ++other) {
-      if ((points_[other] - points_[k]).norm() > kEdgeTolerance) continue;
+      if ((points_[other] - points_[k]).norm() > kAtEdge) continue;
       const Mirror& plane = mirror(other);
       point = geometry_.lifted(point, plane.signed_distance(target) >= 0 ? plane.normal : Vec3(-plane.normal));
     }
     return point;
   }
 
-  bool sees_all() {
+  bool sees_all(const Vec3& receiver) {
     const size_t n = points_.size();
     for (size_t k = 0; k <= n; ++k) {
-      const Vec3 from = k == 0 ? settings_.transmitter : lifted_toward(k - 1, k == n ? settings_.receiver : points_[k]);
-      const Vec3 to = k == n ? settings_.receiver : lifted_toward(k, k == 0 ? settings_.transmitter : points_[k - 1]);
-      if (k > 0 && k < n && (points_[k] - points_[k - 1]).norm() < kEdgeTolerance) continue;
+      const Vec3 from = k == 0 ? settings_.transmitter : lifted_toward(k - 1, k == n ? receiver : points_[k]);
+      const Vec3 to = k == n ? receiver : lifted_toward(k, k == 0 ? settings_.transmitter : points_[k - 1]);
+      if (k > 0 && k < n && (points_[k] - points_[k - 1]).norm() < kAtEdge) continue;
       ++block_.statistics.num_queries;
       if (geometry_.occluded(from, to)) return false;
     }
     return true;
   }
 
-  // Where bounces coincide the direction between them is that of the chain of reflections.
+  // Of the path to the true receiver.
   Vec3 departure() const {
     Vec3 image = settings_.receiver;
     for (size_t k = points_.size(); k-- > 0;) image = mirror(k).image(image);
@@ -140,16 +150,6 @@ class ImageSearch {
     return product;
   }
 
-  double corner_share() const {
-    double share = 1.0;
-    int run = 1;
-    for (size_t k = 1; k < points_.size(); ++k) {
-      run = (points_[k] - points_[k - 1]).norm() < kEdgeTolerance ? run + 1 : 1;
-      share /= run;
-    }
-    return share;
-  }
-
   const EmbreeScene& geometry_;
   const Scene& scene_;
   const std::vector<Mirror>& mirrors_;
@@ -157,14 +157,14 @@ class ImageSearch {
   PathBlock& block_;
   std::vector<int> sequence_;
   std::vector<Vec3> points_;
-  int64_t tried_ = 0;
+  std::vector<Hit> hits_;
 };
 
 }  // namespace
 
 void add_mirror_paths(const EmbreeScene& geometry, const Scene& scene, const std::vector<Mirror>& mirrors,
                       const SbrSettings& settings, PathBlock& block) {
-  ImageSearch(geometry, scene, mirrors, settings, block).extend();
+  ImageSearch(geometry, scene, mirrors, settings, block).run();
 }
 
 }  // namespace echopath

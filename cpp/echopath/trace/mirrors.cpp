@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kFlatAbsolute = 1e-4;   // m
 constexpr double kFlatRelative = 1e-6;   // of the mesh's extent
-constexpr double kOnPlane = 1e-4;        // m: a point this near the plane has no image leg over it
 constexpr double kTeLimit = 0.70710678118654752;
 constexpr double kAlongTravel = 0.1;  // sine between field and direction of travel
 
@@ -44,6 +43,34 @@ void require_flat(const Scene& scene, const EmbreeScene& geometry, const Mirror&
           "the mesh '" + scene.node_of(mirror.mesh_id).name + "' must be flat, deviation in m", deviation);
 }
 
+// Corners of the convex hull in the plane of the mirror (Andrew 1979).
+std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& vertices) {
+  const Vec3 first = mirror.normal.unitOrthogonal(), second = mirror.normal.cross(first);
+  std::vector<std::pair<double, double>> points;
+  for (const Vec3& vertex : vertices) {
+    const Vec3 line = vertex - mirror.point;
+    points.emplace_back(first.dot(line), second.dot(line));
+  }
+  std::sort(points.begin(), points.end());
+  std::vector<std::pair<double, double>> hull;
+  const auto turns_left = [&](const auto& next) {
+    const auto &a = hull[hull.size() - 2], &b = hull.back();
+    return (b.first - a.first) * (next.second - a.second) - (b.second - a.second) * (next.first - a.first) > 0;
+  };
+  for (const bool upper : {false, true}) {
+    const size_t begin = hull.size();
+    for (const auto& point : points) {
+      while (hull.size() >= begin + 2 && !turns_left(point)) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();  // begins the other half
+    if (!upper) std::reverse(points.begin(), points.end());
+  }
+  std::vector<Vec3> outline;
+  for (const auto& [x, y] : hull) outline.push_back(mirror.point + x * first + y * second);
+  return outline;
+}
+
 }  // namespace
 
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry) {
@@ -52,6 +79,7 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
     if (!scene.node_of(mesh_id).material->mirror) continue;
     mirrors.push_back(fit_plane(scene, geometry, mesh_id));
     require_flat(scene, geometry, mirrors.back());
+    mirrors.back().outline = outline_of(mirrors.back(), geometry.vertices(mesh_id));
   }
   return mirrors;
 }
@@ -63,58 +91,6 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
   if (te_axis.norm() < 1e-12) return PolarizationMode::kTe;  // normal incidence: both are the same
   if (across.norm() < kAlongTravel) return PolarizationMode::kTm;
   return std::abs(across.dot(te_axis)) >= kTeLimit * scale ? PolarizationMode::kTe : PolarizationMode::kTm;
-}
-
-void LegFinder::find(const Vec3& point, const Vec3& normal, const Vec3& antenna, bool with_mirrors, int skip,
-                     std::vector<Leg>& legs, int64_t& num_queries) const {
-  legs.clear();
-  const Vec3 line = antenna - point;
-  if (skip != -1 && normal.dot(line) > 0) {
-    ++num_queries;
-    if (!geometry_.occluded(geometry_.lifted(point, normal), antenna)) {
-      Leg& leg = legs.emplace_back();
-      leg.length = line.norm();
-      leg.to_antenna = line / leg.length;
-      leg.at_antenna = -leg.to_antenna;
-    }
-  }
-  if (!with_mirrors) return;
-  for (int mirror = 0; mirror < static_cast<int>(mirrors_.size()); ++mirror) {
-    if (mirror == skip) continue;
-    Leg leg;
-    if (over_mirror(mirror, point, normal, antenna, leg, num_queries)) legs.push_back(leg);
-  }
-}
-
-bool LegFinder::over_mirror(int index, const Vec3& point, const Vec3& normal, const Vec3& antenna, Leg& leg,
-                            int64_t& num_queries) const {
-  const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  const double side = mirror.signed_distance(point), antenna_side = mirror.signed_distance(antenna);
-  if (std::abs(side) < kOnPlane || side * antenna_side <= 0) return false;
-  const Vec3 line = mirror.image(antenna) - point;
-  if (normal.dot(line) <= 0) return false;
-  leg.mirror = index;
-  leg.length = line.norm();
-  leg.to_antenna = line / leg.length;
-  leg.at_antenna = -mirror.reflect(leg.to_antenna);
-
-  // One closest-hit query answers both whether the mirror is there and whether the way to it is free.
-  RayHit met;
-  ++num_queries;
-  if (geometry_.intersect(geometry_.lifted(point, normal), leg.to_antenna, met) != EmbreeScene::Verdict::kHit) return false;
-  if (met.hit.mesh_id != mirror.mesh_id) return false;
-  leg.mirror_hit = met.hit;
-  const Vec3 lit_normal = side > 0 ? mirror.normal : Vec3(-mirror.normal);
-  ++num_queries;
-  if (geometry_.occluded(geometry_.lifted(met.position, lit_normal), antenna)) return false;
-
-  leg.mirror_normal = lit_normal;
-  const double cos_incidence = std::abs(leg.to_antenna.dot(mirror.normal));
-  const PolarizationMode mode = polarization_mode(polarization_, leg.to_antenna, mirror.normal);
-  const SurfaceResponse response = respond(*mirror.material, frequency_, cos_incidence, mode);
-  leg.gain = response.gamma * response.coherent;
-  leg.specular_share = response.coherent * response.coherent;
-  return std::abs(leg.gain) > 0;
 }
 
 }  // namespace echopath

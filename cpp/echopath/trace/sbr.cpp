@@ -10,6 +10,7 @@ namespace echopath {
 namespace {
 
 constexpr int kRouletteBounce = 3;  // rays leave this bounce and later ones by Russian roulette
+static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs knows of no roulette");
 // Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 
@@ -48,7 +49,8 @@ double curvature_along(const RayHit& point, const Vec3& direction) {
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
     : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), settings_(settings),
-      legs_(geometry, mirrors, settings.frequency, settings.polarization), mirror_of_mesh_(scene.meshes().size(), -1),
+      legs_(geometry, mirrors, settings.frequency, settings.polarization), transmitter_(legs_.view_of(settings.transmitter)),
+      receiver_(legs_.view_of(settings.receiver)), mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
@@ -143,7 +145,7 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
   ray.from = geometry_.lifted(surface.point.position, surface.point.normal);
   if (specular) bounce_specular(ray, surface, odds.specular * survival);
   else bounce_diffuse(ray, surface, odds.diffuse * survival);
-  if (specular) ray.chain_share = odds.specular;
+  if (specular) ray.chain_share *= odds.specular;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }
 
@@ -159,7 +161,8 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probab
   ray.coefficient *= response.gamma * response.coherent;
   ray.leg_density *= probability;
   const int mirror = mirror_of_mesh_[point.hit.mesh_id];
-  ray.chain = ray.depth == 1 && mirror >= 0 ? mirror : kOther;
+  const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
+  ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
   ray.last_was_mirror = mirror < 0;
   if (mirror < 0) ray.mirror = bounced;
 }
@@ -178,7 +181,7 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
   ray.area *= surface.area;
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
   ray.coherent = false;
-  ray.chain = kOther;
+  ray.sequence = kOther;
   ray.mirror = MirrorBounce{};
   ray.last_was_mirror = false;
   const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);

@@ -3,14 +3,15 @@
 //
 // Regime C (coherent): the ray carries a field, and each unflagged hit radiates by physical optics over every visible
 // receive leg. Regime D (diffuse): the ray carries power with one random phase per diffuse hit. A diffuse hit that the ray
-// reached directly or over one flagged mirror is paired with all its visible transmit and receive legs, under the balance
-// weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only; paths over mirrors alone
-// come from mirror_paths.h.
+// reached directly or over at most kMaxLegMirrors flagged mirrors is paired with all its visible transmit and receive legs,
+// under the balance weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only, by one
+// in eight of the rays that aim at objects and all others; paths over mirrors alone come from mirror_paths.h.
 // A specular bounce off an unflagged surface smaller than its Fresnel zone is no mirror: the ray ends behind it. What it would
 // have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
 // the opposite order would have to use such a mirror.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include "echopath/trace/launch.h"
+#include "echopath/trace/legs.h"
 #include "echopath/trace/path_block.h"
 
 namespace echopath {
@@ -53,6 +54,8 @@ class RayShooter {
   void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   Leg own_leg(const Ray& ray) const;
+  double counted_share(const Surface& surface) const;
+  bool is_counted(const Ray& ray, const Surface& surface) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
   bool bounce(Ray& ray, const Surface& surface) const;
   void bounce_specular(Ray& ray, const Surface& surface, double probability) const;
@@ -76,6 +79,7 @@ class RayShooter {
   const LaunchPlan& plan_;
   SbrSettings settings_;
   LegFinder legs_;
+  AntennaView transmitter_, receiver_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
   std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
   double wavelength_;                // m

@@ -11,6 +11,19 @@ namespace echopath {
 namespace {
 
 constexpr double kNearAntenna = 1e-3;  // m
+// Of the hits that aimed rays make on a mirror, those that become diffuse echoes: such a ray is about an object behind, and
+// the patch of mirror that lies in its way has nothing over the rest of the plane, which the field of view samples.
+constexpr double kMirrorShare = 0.125;
+
+// In travel order: over the transmit leg to `hit`, and over the receive leg.
+std::array<Hit, 2 * kMaxLegMirrors + 1> pair_hits(const Leg& in, const Hit& hit, const Leg& out) {
+  std::array<Hit, 2 * kMaxLegMirrors + 1> hits;
+  size_t count = 0;
+  for (int k = in.num_bounces; k-- > 0;) hits[count++] = in.bounces[static_cast<size_t>(k)].hit;
+  hits[count++] = hit;
+  for (int k = 0; k < out.num_bounces; ++k) hits[count++] = out.bounces[static_cast<size_t>(k)].hit;
+  return hits;
+}
 
 }  // namespace
 
@@ -30,14 +43,15 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
   const bool radiates_power = surface.response.diffuse > 0;
   if (!radiates_field && !radiates_power) return;
-  // A pair may leave out the mirror that the ray came over.
-  const bool with_mirrors = ray.depth < settings_.max_bounces || (ray.chain >= 0 && settings_.max_bounces > 1);
-  legs_.find(point, surface.point.normal, settings_.receiver, with_mirrors, kOther, scratch.receive,
-             block.statistics.num_queries);
+  const bool in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
+  // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
+  if (in_pairs && !is_counted(ray, surface)) return;
+  legs_.find(point, surface.point.normal, receiver_, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther,
+             scratch.receive, block.statistics.num_queries);
   if (scratch.receive.empty()) return;
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
   if (!radiates_power) return;
-  if (ray.coherent && ray.chain != kOther) {
+  if (in_pairs) {
     connect_all_pairs(ray, surface, scratch, block);
   } else {
     connect_diffuse(ray, surface, scratch, block);
@@ -61,12 +75,12 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
 // One path over the ray's own hits and a receive leg, and its reversal.
 void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
                         bool with_reversal, PathBlock& block) const {
-  std::array<Hit, 65> hits;
+  if (ray.depth + leg.num_bounces > settings_.max_bounces) return;
+  std::array<Hit, 64> hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
   int count = ray.depth;
-  if (leg.mirror >= 0 && count == settings_.max_bounces) return;
-  if (leg.mirror >= 0) hits[static_cast<size_t>(count++)] = leg.mirror_hit;
-  if (leg.mirror < 0) block.add_prefix(0, count, bits, weight, ray.stratum);
+  for (int k = 0; k < leg.num_bounces; ++k) hits[static_cast<size_t>(count++)] = leg.bounces[static_cast<size_t>(k)].hit;
+  if (leg.num_bounces == 0) block.add_prefix(0, count, bits, weight, ray.stratum);
   else block.add(hits.data(), count, bits, weight, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
   if (!with_reversal) return;
@@ -117,29 +131,42 @@ void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const S
 
 Leg RayShooter::own_leg(const Ray& ray) const {
   Leg leg;
-  leg.mirror = ray.chain;
+  leg.sequence = ray.sequence;
   leg.length = ray.leg_length;
   leg.to_antenna = -ray.direction;
   leg.at_antenna = ray.launch_direction;
   leg.gain = ray.coefficient;
   leg.specular_share = ray.chain_share;
-  leg.mirror_hit = ray.hits[0];
+  for (int k = ray.depth - 1; k-- > 0;) {
+    leg.bounces[static_cast<size_t>(leg.num_bounces++)].hit = ray.hits[static_cast<size_t>(k)];
+  }
   return leg;
+}
+
+// Of the hits that rays of aimed strata make here, the share that becomes diffuse echoes over all pairs of legs.
+double RayShooter::counted_share(const Surface& surface) const { return surface.material->mirror ? kMirrorShare : 1.0; }
+
+bool RayShooter::is_counted(const Ray& ray, const Surface& surface) const {
+  const double share = plan_.is_defensive(ray.stratum) ? 1.0 : counted_share(surface);
+  if (share == 1.0) return true;
+  const auto hit = static_cast<uint32_t>(ray.depth);
+  return uniform2(settings_.seed, Stream::kThinning, static_cast<uint64_t>(ray.index), hit)[0] < share;
 }
 
 // The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here.
 double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const {
+  const double aimed_share = counted_share(surface);
   double hits_per_area = 0.0;
   for (const Leg& leg : legs) {
-    const int own_stratum = leg.mirror == ray.chain ? ray.stratum : -1;
-    hits_per_area += plan_.ray_density(leg.at_antenna, own_stratum) * leg.specular_share *
+    const int own_stratum = leg.sequence == ray.sequence ? ray.stratum : -1;
+    hits_per_area += plan_.ray_density(leg.at_antenna, own_stratum, aimed_share) * leg.specular_share *
                      surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
   }
   return 1.0 / hits_per_area;
 }
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
-  legs_.find(surface.point.position, surface.point.normal, settings_.transmitter, settings_.max_bounces > 1, ray.chain,
+  legs_.find(surface.point.position, surface.point.normal, transmitter_, settings_.max_bounces - 1, ray.sequence,
              scratch.transmit, block.statistics.num_queries);
   std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
   scratch.transmit.push_back(own_leg(ray));
@@ -154,19 +181,16 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
     const std::complex<double> scalar =
         settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
     const std::complex<double> weight = root_area * scalar * phase;
-    const int first = in.mirror >= 0 ? 1 : 0;
-    const uint64_t bits = uint64_t{1} << first;
+    const uint64_t bits = uint64_t{1} << in.num_bounces;
     for (const Leg& out : scratch.receive) {
-      const int count = first + 1 + (out.mirror >= 0 ? 1 : 0);
+      const int count = in.num_bounces + 1 + out.num_bounces;
       if (count > settings_.max_bounces) continue;
-      if (out.mirror < 0 && in.mirror == ray.chain) {
+      if (out.num_bounces == 0 && in.sequence == ray.sequence) {
         block.add_prefix(0, count, bits, weight, ray.stratum);
-      } else if (out.mirror < 0 && in.mirror < 0) {
+      } else if (out.num_bounces == 0 && in.num_bounces == 0) {
         block.add_prefix(ray.depth - 1, count, bits, weight, ray.stratum);
       } else {
-        std::array<Hit, 3> hits{in.mirror_hit};
-        hits[static_cast<size_t>(first)] = surface.point.hit;
-        if (out.mirror >= 0) hits[static_cast<size_t>(first + 1)] = out.mirror_hit;
+        const auto hits = pair_hits(in, surface.point.hit, out);
         block.add(hits.data(), count, bits, settings_.is_polarized ? weight : weight * out.gain, ray.stratum);
       }
       if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, in, out));

@@ -56,18 +56,22 @@ FieldPair RayShooter::scattered(const Ray& ray, const Surface& surface, const Fi
 // Fields at a surface point of launches along a leg to it.
 FieldPair RayShooter::incident_over(const Leg& leg) const {
   FieldPair fields = launched_fields(leg.at_antenna);
-  if (leg.mirror >= 0) {
-    const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
-    reflect_all(fields, leg.at_antenna, leg.mirror_normal, material, settings_.frequency, leg.specular_share);
+  Vec3 direction = leg.at_antenna;
+  for (int k = leg.num_bounces; k-- > 0;) {
+    const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
+    const Mirror& mirror = mirrors_[static_cast<size_t>(bounce.mirror)];
+    reflect_all(fields, direction, bounce.normal, *mirror.material, settings_.frequency, bounce.specular_share);
+    direction = mirror.reflect(direction);
   }
   return fields;
 }
 
 // Components at the receiver of fields that leave a surface point along a leg.
 JonesMatrix RayShooter::received_over(const Leg& leg, FieldPair fields) const {
-  if (leg.mirror >= 0) {
-    const Material& material = *mirrors_[static_cast<size_t>(leg.mirror)].material;
-    reflect_all(fields, leg.to_antenna, leg.mirror_normal, material, settings_.frequency, leg.specular_share);
+  for (int k = 0; k < leg.num_bounces; ++k) {
+    const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
+    const Material& material = *mirrors_[static_cast<size_t>(bounce.mirror)].material;
+    reflect_all(fields, bounce.direction, bounce.normal, material, settings_.frequency, bounce.specular_share);
   }
   return arriving_components(fields, -leg.at_antenna);
 }
@@ -89,7 +93,7 @@ JonesMatrix RayShooter::diffuse_matrix(const Ray& ray, const Surface& surface, c
 
 // The ray's own way to the hit is one of the legs `in`.
 JonesMatrix RayShooter::pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const {
-  const FieldPair incident = in.mirror == ray.chain ? ray.polarized : incident_over(in);
+  const FieldPair incident = in.sequence == ray.sequence ? ray.polarized : incident_over(in);
   return received_over(out, scattered(ray, surface, incident, -in.to_antenna, out.to_antenna));
 }
 

@@ -9,8 +9,7 @@
 namespace echopath {
 
 inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
-inline constexpr int kDirect = -1;        // transmit chains, besides the index of a mirror
-inline constexpr int kOther = -2;
+inline constexpr MirrorSequence kOther = -1;  // the transmitter was left over something else than a sequence of a leg
 
 // A specular bounce off an unflagged surface.
 struct RayShooter::MirrorBounce {
@@ -27,8 +26,8 @@ struct RayShooter::Ray {
   int depth = 0;              // hits so far
   uint64_t diffuse = 0;       // bit per hit
   bool coherent = true;       // regime C
-  int chain = kDirect;        // how the transmitter was left: directly, over one mirror, otherwise
-  double chain_share = 1.0;   // s_m^2 of that mirror
+  MirrorSequence sequence = kDirect;  // how the transmitter was left
+  double chain_share = 1.0;           // product of s_m^2 of these mirrors
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;

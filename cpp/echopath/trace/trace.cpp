@@ -90,7 +90,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   launch.seed = settings.seed;
   launch.sampler = settings.sampler;
   launch.batches = settings.batches;
-  launch.with_images = settings.max_bounces > 1;
+  launch.max_image_mirrors = std::min(kMaxLegMirrors, settings.max_bounces - 1);
   launch.transmitter = paths.frame.transmitter - origin;
   set_field_of_view(radar, world_from_radar, launch);
   const LaunchPlan plan = plan_launch(*paths.scene, geometry, mirrors, launch);

@@ -174,7 +174,8 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direct
   return Verdict::kHit;
 }
 
-// Moves the hit to the curved surface, unless a crease or a grazing ray forbids it.
+// Moves the hit to the curved surface, unless a crease or a grazing ray forbids it. Where that lies behind the facet
+// (concave), rays that leave it would meet the facet: there the position stays.
 void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const {
   const Triangle& triangle = scene_->node_of(hit.hit.mesh_id).mesh->triangles()[hit.hit.triangle_id];
   const std::vector<Vec3>& of_vertices = normals_[hit.hit.mesh_id];
@@ -183,7 +184,8 @@ void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& directio
   const SmoothPoint smooth = smooth_point(corners, normals, hit.hit.u, hit.hit.v);
   if (std::abs(smooth.normal.dot(direction)) < kSmoothGrazing) return;
   hit.is_smooth = true;
-  hit.position = smooth.position;
+  const double out_of_facet = hit.normal.dot(smooth.position - hit.position);
+  if (out_of_facet * hit.normal.dot(direction) <= 0) hit.position = smooth.position;
   hit.normal = smooth.normal;
   hit.curvature = smooth.curvature;
 }

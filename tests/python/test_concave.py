@@ -1,0 +1,73 @@
+"""Echoes of dishes: concave smooth surfaces, and what they send through their foci, against integrals over the dish."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.shapes import METAL, WAVELENGTH, fields, make_radar, plate, scene_of
+
+CENTRE_TOLERANCE = 0.002   # relative, of the field: the mesh and its edges of 7 mm
+FOCI_TOLERANCE = 0.02      # relative: geometrical optics between the bounces, 1/(k radius) and the corners of the plate
+WAVE_NUMBER = 2 * np.pi / WAVELENGTH
+CENTRE = np.array((4.0, 0, 0))  # of the dish of radius 1 m about x = 5
+HALF_ANGLE = np.radians(15)
+
+both_models = pytest.mark.parametrize("model", ["scalar", "jones"])
+
+
+def dish():
+    across = np.sin(np.linspace(-HALF_ANGLE, HALF_ANGLE, 81))
+    y, z = (axis.ravel() for axis in np.meshgrid(across, across))
+    first = (np.arange(80)[:, None] * 81 + np.arange(80)).ravel()
+    faces = np.concatenate([np.stack([first, first + 1, first + 82], 1), np.stack([first, first + 82, first + 81], 1)])
+    return ep.Mesh(CENTRE + np.stack([np.sqrt(1 - y**2 - z**2), y, z], 1), faces)
+
+
+@both_models
+def test_a_dish_adds_up_at_its_centre(model):
+    mesh = dish()
+    paths = ep.trace(scene_of(dish=(mesh, METAL, True)), make_radar(CENTRE), num_rays=1 << 14, max_bounces=1, polarization=model)
+    # All of it is met along its normal, a metre away: -j A / (4 pi) and the phase of two metres.
+    expected = -1j * mesh.area / (4 * np.pi) * np.exp(-2j * WAVE_NUMBER)
+    assert abs(fields(paths).sum() / expected - 1) < CENTRE_TOLERANCE
+
+
+def field_of_the_dish(transmitter, points, num=200):
+    """Huygens waves of the dish at `points`, its rim faded out, which geometrical optics has not."""
+    across = (np.arange(num) + 0.5) / num * 2 - 1
+    fade = np.where(np.abs(across) < 0.4, 1.0, np.cos(np.pi / 1.2 * (np.abs(across) - 0.4)) ** 2)
+    y, z = (axis.ravel() * np.sin(HALF_ANGLE) for axis in np.meshgrid(across, across))
+    weight = np.outer(fade, fade).ravel() * (2 * np.sin(HALF_ANGLE) / num) ** 2
+    depth = np.sqrt(1 - y**2 - z**2)
+    normal = -np.stack([depth, y, z], 1)
+    ways = CENTRE - normal - transmitter
+    there = np.linalg.norm(ways, axis=1)
+    strength = -1j / WAVELENGTH * weight / depth * -np.sum(ways * normal, axis=1) / there**2
+    field = []
+    for point in points:
+        back = np.linalg.norm(CENTRE - normal - point, axis=1)
+        field.append(np.sum(strength / back * np.exp(-1j * WAVE_NUMBER * (there + back))))
+    return np.array(field)
+
+
+@both_models
+def test_a_plate_behind_both_foci_of_a_dish(model):
+    # The dish focuses .56 m before itself; the plate stands .8 m behind that. All planes of incidence are nearly horizontal, so
+    # that V is TE. A field turns by a quarter at each of the two caustics.
+    transmitter, receiver, target = np.array((0, .6, 0)), np.array((4.3, -2, 0)), np.array((3.6, -.168, 0))
+    to_dish = np.array((5.0, 0, 0)) - target
+    arrival, departure = -to_dish / np.linalg.norm(to_dish), receiver - target
+    departure = departure / np.linalg.norm(departure)
+    facing, side = departure - arrival, 0.02
+    mesh = plate(target, facing, side)
+    scene = scene_of(dish=(dish(), METAL, True), plate=(mesh, METAL))
+    paths = ep.trace(scene, make_radar(transmitter, receiver), num_rays=1 << 18, max_bounces=2, polarization=model)
+    found = fields(paths.select("T 'dish' 'plate' R")).sum()
+
+    grid = (np.arange(12) + 0.5) / 12
+    corner, edges = mesh.vertices[0], (mesh.vertices[1] - mesh.vertices[0], mesh.vertices[3] - mesh.vertices[0])
+    points = (corner + grid[:, None, None] * edges[0] + grid[None, :, None] * edges[1]).reshape(-1, 3)
+    away = np.linalg.norm(receiver - points, axis=1)
+    cos_incidence = -arrival @ facing / np.linalg.norm(facing)
+    wave = field_of_the_dish(transmitter, points) * np.exp(-1j * WAVE_NUMBER * away) / away
+    expected = -1j / (4 * np.pi) * cos_incidence * side**2 * wave.mean()
+    assert abs(found / expected - 1) < FOCI_TOLERANCE

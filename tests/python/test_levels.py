@@ -19,6 +19,9 @@ COEFFICIENT_TOLERANCE_DB = 0.1
 MIRROR = ep.Material.metal(mirror=True)
 EARTH = ep.Material(permittivity=4 - .2j, mirror=True)
 V, H = (0, 0, 1), (0, 1, 0)
+both_models = pytest.mark.parametrize("model", ["scalar", "jones"])
+# Metal reflects with -1 as a whole (scalar) or across the plane of incidence: over ground that is H, at a wall V.
+both_models_of_metal_ground = pytest.mark.parametrize("model, polarization", [("scalar", V), ("jones", H)])
 
 DISTANCES = (20, 30, 50, 100)    # m
 # Two-ray ground, antenna and target .5 m above it: all four paths over the direct one in dB, by distance.
@@ -44,77 +47,97 @@ def wall(y, material):
     return rectangle((-50, y, -50), (110, 0, 0), (0, 0, 100)), material
 
 
-def patch_over(material, polarization, side):
+def patch_over(material, polarization, side, model):
     """All four paths over the direct one in dB, by distance, mean over the roughness."""
     levels = []
     for x in DISTANCES:
         scene = scene_of(patch=(plate((x, 0, .5), (-1, 0, 0), side), lambert(.5)), ground=ground(material))
-        paths = ep.trace(scene, make_radar((0, 0, .5), polarization=polarization), num_rays=3000, max_bounces=3)
+        radar = make_radar((0, 0, .5), polarization=polarization)
+        paths = ep.trace(scene, radar, num_rays=3000, max_bounces=3, polarization=model)
         four = paths.select("T 'ground'? 'patch' 'ground'? R")
         levels.append(decibel(power_by_hit(four, 0) / power_by_hit(paths.select("T 'patch' R"), 0)))
     return levels
 
 
-def four_over_direct(mesh, mirror, height, num_rays, smooth):
+def four_over_direct(mesh, mirror, height, num_rays, smooth, model, polarization=V):
     """Coherent sum of the paths over a flagged metal mirror and of the direct one, over the latter alone, in dB."""
     scene = scene_of(target=(mesh, METAL, smooth), mirror=mirror)
-    paths = ep.trace(scene, make_radar((0, 0, height)), num_rays=num_rays, max_bounces=3)
+    radar = make_radar((0, 0, height), polarization=polarization)
+    paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=3, polarization=model)
     four, direct = paths.select("T 'mirror'? 'target' 'mirror'? R"), paths.select("T 'target' R")
     return decibel(abs(fields(four).sum()) ** 2 / abs(fields(direct).sum()) ** 2)
 
 
-def test_a_point_over_ground_has_the_four_path_factor():
+@both_models_of_metal_ground
+def test_a_point_over_ground_has_the_four_path_factor(model, polarization):
     # A patch of half a millimetre is a point to the fringes.
-    assert patch_over(MIRROR, V, .0005) == pytest.approx(POINT_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
+    assert patch_over(MIRROR, polarization, .0005, model) == pytest.approx(POINT_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
 
 
+def test_metal_ground_mirrors_upright_fields_upright():
+    # 40 log10 |1 + d/g e^{-jk(g - d)}|, d and g the lengths of the direct and the mirrored way.
+    direct, mirrored = np.array(DISTANCES, float), np.hypot(DISTANCES, 1.0)
+    turns = np.exp(-2j * np.pi / WAVELENGTH * (mirrored - direct))
+    expected = 40 * np.log10(np.abs(1 + direct / mirrored * turns))
+    assert patch_over(MIRROR, V, .0005, "jones") == pytest.approx(expected, abs=IMAGE_TOLERANCE_DB)
+
+
+@both_models
 @pytest.mark.parametrize("polarization", [V, H])
-def test_a_point_over_earth_has_the_four_path_factor_of_its_polarisation(polarization):
-    found = patch_over(EARTH, polarization, .0005)
+def test_a_point_over_earth_has_the_four_path_factor_of_its_polarisation(polarization, model):
+    found = patch_over(EARTH, polarization, .0005, model)
     assert found == pytest.approx(POINT_OVER_EARTH[polarization], abs=IMAGE_TOLERANCE_DB)
 
 
-def test_a_rough_patch_over_ground():
-    assert patch_over(MIRROR, V, .01) == pytest.approx(PATCH_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
-    assert patch_over(EARTH, H, .01) == pytest.approx(PATCH_OVER_EARTH_TE, abs=IMAGE_TOLERANCE_DB)
+@both_models
+def test_a_rough_patch_over_ground(model):
+    assert patch_over(MIRROR, H, .01, model) == pytest.approx(PATCH_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
+    assert patch_over(EARTH, H, .01, model) == pytest.approx(PATCH_OVER_EARTH_TE, abs=IMAGE_TOLERANCE_DB)
 
 
-def test_a_metal_plate_over_ground():
+@both_models_of_metal_ground
+def test_a_metal_plate_over_ground(model, polarization):
     mesh = plate((20, 0, .5), (-1, 0, 0), .1)
-    found = four_over_direct(mesh, ground(MIRROR), .5, 1 << 14, False)
+    found = four_over_direct(mesh, ground(MIRROR), .5, 1 << 14, False, model, polarization)
     assert found == pytest.approx(PLATE_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
 
 
-def test_a_metal_sphere_over_ground():
-    found = [four_over_direct(sphere((x, 0, .5), .1, 5), ground(MIRROR), .5, 1 << 13, True) for x in DISTANCES]
+@both_models_of_metal_ground
+def test_a_metal_sphere_over_ground(model, polarization):
+    found = [four_over_direct(sphere((x, 0, .5), .1, 5), ground(MIRROR), .5, 1 << 13, True, model, polarization)
+             for x in DISTANCES]
     assert found == pytest.approx(SPHERE_OVER_METAL, abs=FOUR_PATH_TOLERANCE_DB)
 
 
-def test_a_metal_sphere_in_a_null_of_the_ground():
-    found = four_over_direct(sphere((100, 0, .8), .1, 5), ground(MIRROR), .5, 1 << 15, True)
+@both_models_of_metal_ground
+def test_a_metal_sphere_in_a_null_of_the_ground(model, polarization):
+    found = four_over_direct(sphere((100, 0, .8), .1, 5), ground(MIRROR), .5, 1 << 15, True, model, polarization)
     assert found == pytest.approx(SPHERE_NULL, abs=FOUR_PATH_TOLERANCE_DB)
 
 
+@both_models
 @pytest.mark.parametrize("distance, aside", METAL_SPHERE_AT_WALL)
-def test_a_metal_sphere_at_a_wall(distance, aside):
-    found = four_over_direct(sphere((distance, 0, 0), .1, 5), wall(aside, MIRROR), 0.0, 1 << 14, True)
+def test_a_metal_sphere_at_a_wall(distance, aside, model):
+    found = four_over_direct(sphere((distance, 0, 0), .1, 5), wall(aside, MIRROR), 0.0, 1 << 14, True, model)
     assert found == pytest.approx(METAL_SPHERE_AT_WALL[distance, aside], abs=FOUR_PATH_TOLERANCE_DB)
 
 
-def rough_sphere_levels(wall_material, baseline=0.0):
+def rough_sphere_levels(wall_material, model, baseline=0.0):
     """Mirror -> target, target -> mirror, both as one, two-way ghost: re direct in dB."""
     scene = scene_of(target=(sphere((10, 0, 1), .3, 5), lambert(.5)), wall=wall(3, wall_material))
-    paths = ep.trace(scene, make_radar((0, 0, 1), (0, baseline, 1)), num_rays=1 << 14, max_bounces=3)
+    radar = make_radar((0, 0, 1), (0, baseline, 1))
+    paths = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=3, polarization=model)
     routes = ("'wall' 'target'", "'target' 'wall'", "('wall' 'target' | 'target' 'wall')", "'wall' 'target' 'wall'")
     direct = power_by_hit(paths.select("T 'target' R"), 0)
     return [decibel(power_by_hit(paths.select(f"T {route} R"), 0) / direct) for route in routes]
 
 
+@both_models
 @pytest.mark.parametrize("gamma", WALL_TABLE)
-def test_ghosts_of_a_rough_sphere_at_a_wall(gamma):
+def test_ghosts_of_a_rough_sphere_at_a_wall(gamma, model):
     material = MIRROR if gamma == -1 else ep.Material(reflectivity=gamma**2, mirror=True)
     one, pair, two_way = WALL_TABLE[gamma]
-    assert rough_sphere_levels(material) == pytest.approx([one, one, pair, two_way], abs=WALL_TOLERANCE_DB)
+    assert rough_sphere_levels(material, model) == pytest.approx([one, one, pair, two_way], abs=WALL_TOLERANCE_DB)
 
 
 def test_a_limit_of_bounces_keeps_the_orders_that_fit():
@@ -124,9 +147,10 @@ def test_a_limit_of_bounces_keeps_the_orders_that_fit():
     assert back / there == pytest.approx(1.0, abs=1e-4)  # one hit in 1e4 sees only one of both by rounding
 
 
+@both_models
 @pytest.mark.parametrize("baseline", PAIR_OVER_BASELINE)
-def test_the_pair_of_ghosts_fades_over_the_baseline(baseline):
-    pair = rough_sphere_levels(MIRROR, baseline)[2]
+def test_the_pair_of_ghosts_fades_over_the_baseline(baseline, model):
+    pair = rough_sphere_levels(MIRROR, model, baseline)[2]
     assert pair == pytest.approx(PAIR_OVER_BASELINE[baseline], abs=FRINGE_TOLERANCE_DB)
 
 

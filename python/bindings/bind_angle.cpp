@@ -66,8 +66,9 @@ direction is its received power in W, averaged over channels; noise falls to 1/N
 Raises ValueError where the array is no grid of equal steps (beamform takes any) or the map is not the radar's.)";
 
 // What all beams have in common: stands for @@ in the texts below.
-constexpr const char* kBeamKeywordsDoc = R"(method: "bartlett" (delay and sum) or "capon" (minimum variance: finds the weights that pass the least power from
-    elsewhere; resolves echoes of different velocity or range within a beam, peaks are narrower than steps of the grid)
+constexpr const char* kBeamKeywordsDoc =
+    R"(method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
+    resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
 window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
 overlaps: "average" of channels at one position, or the "first" of them
 compensate: take out the phase between transmit slots (compensate_tdm)
@@ -93,8 +94,10 @@ constexpr const char* kRangeAzimuthDoc = R"(Received power by range and azimuth.
 spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
 azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
 elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
-velocity: m/s, of the cells to take; None: all together. A point gives its received power in W either way; with all
-    velocities noise is that of one chirp, with one it has fallen by the number of chirps.
+velocity: m/s, of the cells to take; None: all velocities
+combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
+    case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
+    about ln(num_chirps) times that of a cell.
 @@Returns a RangeAzimuth with power [azimuth, range] in W. Raises ValueError naming the argument.)";
 
 constexpr const char* kEstimateDoc = R"(Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
@@ -142,8 +145,8 @@ void def_beams(py::module_& m, const char* name, const py::object& elevation, do
   };
   const BeamformOptions standard;
   m.def(name, bound, py::arg("spectrum"), py::arg("radar"), py::arg("azimuth") = py::none(),
-        py::arg("elevation") = elevation, py::kw_only(), names..., py::arg("method") = "bartlett", py::arg("window") = "rect",
-        py::arg("overlaps") = "average", py::arg("compensate") = standard.compensate,
+        py::arg("elevation") = elevation, py::kw_only(), names..., py::arg("method") = "bartlett",
+        py::arg("window") = "rect", py::arg("overlaps") = "average", py::arg("compensate") = standard.compensate,
         py::arg("diagonal_loading") = standard.diagonal_loading,
         py::arg("velocity_neighbours") = standard.velocity_neighbours,
         py::arg("range_neighbours") = standard.range_neighbours,
@@ -160,9 +163,12 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
 }
 
 RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
-                               const BeamformOptions& beams, const py::object& progress, std::optional<double> velocity) {
+                               const BeamformOptions& beams, const py::object& progress, std::optional<double> velocity,
+                               std::string combine) {
+  require(combine == "sum" || combine == "peak", "combine", "must be 'sum' or 'peak'", "'" + combine + "'");
+  const VelocityChoice choice{velocity, combine == "sum" ? Combine::kSum : Combine::kPeak};
   return run_job("range_azimuth", progress,
-                 [&](Job& job) { return range_azimuth(map, radar, angles, velocity, beams, &job); });
+                 [&](Job& job) { return range_azimuth(map, radar, angles, choice, beams, &job); });
 }
 
 AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
@@ -195,7 +201,7 @@ void bind_angle(py::module_& m) {
         py::arg("progress") = py::none(), kAngleFftDoc);
   def_beams(m, "beamform", py::float_(0.0), kPictureStep, kBeamformDoc, &beam_power, py::arg("cells") = py::none());
   def_beams(m, "range_azimuth", py::float_(0.0), kPictureStep, kRangeAzimuthDoc, &range_azimuth_map,
-            py::arg("velocity") = py::none());
+            py::arg("velocity") = py::none(), py::arg("combine") = "sum");
   const EstimateOptions standard;
   def_beams(m, "estimate_angles", py::none(), kSearchStep, kEstimateDoc, &estimates, py::arg("cells"),
             py::arg("max_peaks") = standard.max_peaks, py::arg("peak_range_db") = standard.peak_range_db,

@@ -115,7 +115,7 @@ quarter of wavelength / extent, or of largest_step in rad where that is less; 0 
 
 Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
 0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
-found as a grid, from a tenth of a wavelength on; its points without an element are gaps.
+found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
 Returns a VirtualArray with positions [tx, rx, 3] in m.)");
 }
 

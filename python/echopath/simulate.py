@@ -6,9 +6,9 @@ from functools import cached_property
 
 import echopath as ep
 
+from .azimuth_map import checked_settings, sees_azimuth
 from .path_subset import part_of_path
 from .stages import Stage, StageClock
-
 
 @dataclasses.dataclass
 class Frame:
@@ -20,7 +20,7 @@ class Frame:
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     noise_seed: of the thermal noise, None: no noise
-    spectrum_settings: window and zero_pad of the maps
+    spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     stages: time and peak memory of each stage
     """
@@ -36,6 +36,7 @@ class Frame:
     spectrum_settings: dict
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
+    angle_settings: dict = dataclasses.field(default_factory=dict)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -48,6 +49,18 @@ class Frame:
         """Power of each path at the trace time for the first antennas, [P] in W."""
         return self.paths.power
 
+    @cached_property
+    def range_azimuth(self):
+        """Range-azimuth map of the cube with noise, power [azimuth, range] in W; None where the radar sees no azimuth."""
+        return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar) else None
+
+    def range_azimuth_of(self, spectrum, progress=None):
+        """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
+
+        spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction) or None
+        """
+        return ep.range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
+
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"
         return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
@@ -55,7 +68,8 @@ class Frame:
 
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
-             parts=None, tolerance=1e-7, method="auto", evaluate="interpolated", noise_seed=1, window="hann", zero_pad=1, progress=None) -> Frame:
+             parts=None, tolerance=1e-7, method="auto", evaluate="interpolated", noise_seed=1, window="hann", zero_pad=1,
+             angles=None, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
@@ -63,10 +77,11 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
     tolerance, method, evaluate: as in `synthesize`; window, zero_pad: as in `range_doppler`
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
+    angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
-    partitions = as_partitions(parts)
+    partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     clock = StageClock()
     with clock("trace"):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
@@ -79,9 +94,14 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         labels = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=labels, noise_seed=noise_seed,
-                  spectrum_settings={"window": window, "zero_pad": zero_pad}, stages=clock.stages)
+                  spectrum_settings={"window": window, "zero_pad": zero_pad},
+                  angle_settings=angle_settings, stages=clock.stages)
     with clock("spectra"):
-        return with_spectra(frame)
+        with_spectra(frame)
+    if sees_azimuth(radar):
+        with clock("angles"):
+            frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
+    return frame
 
 
 def with_spectra(frame: Frame) -> Frame:

@@ -1,6 +1,8 @@
 """Angles: against a slow beamformer, and of targets whose place is known, through the whole chain."""
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ import echopath as ep
 from echopath import _core
 from support import slow_beams
 
+DATA = Path(__file__).resolve().parents[2] / "data"
 C = ep.speed_of_light
 WAVELENGTH = C / 77.5e9
 HALF = 0.5 * WAVELENGTH
@@ -61,8 +64,9 @@ def cube_of_points(radar, points):
             out = np.linalg.norm(places - transmitter.position, axis=1)
             for n, receiver in enumerate(radar.receivers):
                 delay = (out + np.linalg.norm(places - receiver.position, axis=1)) / C
-                cube[m, n] += _core.synthesize_echoes(radar.waveform, delay[:, None], np.full((len(times), 1), amplitude, complex),
-                                                      num_slots=len(radar.transmitters), method="direct")
+                strength = np.full((len(times), 1), amplitude, complex)
+                cube[m, n] += _core.synthesize_echoes(radar.waveform, delay[:, None], strength, method="direct",
+                                                      num_slots=len(radar.transmitters))
     return cube
 
 
@@ -240,6 +244,38 @@ def test_a_map_shows_targets_at_their_range_azimuth_and_power():
         assert picture.power[:, near][a, r] == pytest.approx(power[near][r], rel=0.02)  # of the other's side lobes
 
 
+def test_the_scene_of_corners_shows_each_target_at_its_place():
+    from echopath.cli.run import simulate_file
+
+    scene_file = ep.load_scene(DATA / "scenes" / "corners.toml")
+    frame = simulate_file(scene_file, num_rays=30_000)
+    maps = {name: frame.range_azimuth_of(spectrum) for name, spectrum in frame.part_spectra["target"].items()}
+    places = {"corner_right": (6, -35), "corner_left": (9, 10), "corner_far": (14, 30), "ball_approaching": (9.8, -15),
+              "ball_beside": (9, 20)}
+    for name, (distance, azimuth) in places.items():
+        one = maps["corners" if name.startswith("corner") else "balls"]
+        near = np.abs(one.range - distance) < 0.3
+        a, r = np.unravel_index(one.power[:, near].argmax(), (len(one.azimuth), near.sum()))
+        assert one.azimuth[a] == pytest.approx(azimuth * DEGREE, abs=1.0 * DEGREE), name
+    assert frame.range_azimuth.power.shape == (301, 256)
+
+
+def test_settings_of_a_map_are_checked_before_the_trace():
+    radar = mimo([(0, 0)], [(np.cos(0.7 * i), np.sin(0.7 * i)) for i in range(9)])
+    scene = scene_of_spheres([8.0, 0, 0])
+    stages = []
+    for angles, text in (({"window": "hann"}, "^window: "), ({"velocity": 99.0}, "^velocity: "),
+                         ({"azimuth": 9}, "^azimuth: "), ({"windw": "hann"}, "'windw'")):
+        with pytest.raises((ValueError, TypeError), match=text):
+            ep.simulate(scene, radar, angles=angles, progress=lambda stage, fraction: stages.append(stage))
+    assert "trace" not in stages
+
+
+def test_frames_of_one_channel_have_no_map_of_azimuth():
+    frame = ep.simulate(scene_of_spheres([8.0, 0, 0]), mimo([(0, 0)], [(0, 0)]), num_rays=100)
+    assert frame.range_azimuth is None
+
+
 def test_virtual_arrays_tell_what_they_are():
     array = ep.virtual_array(mimo([(0, 0), (3, 0)], LINE, height=1.0))
     assert array.positions.shape == (2, 4, 3) and array.elements.shape == (7, 3)
@@ -277,7 +313,7 @@ def test_bad_input_names_the_argument():
             (lambda: ep.beamform(spectrum, radar, elevation=2.0), ValueError, "^elevation: "),
             (lambda: ep.beamform(spectrum, radar, cells=[[32, 0]]), IndexError, "^cells: .*got \\(32, 0\\)"),
             (lambda: ep.beamform(spectrum, radar, cells=[[0.5, 0]]), TypeError, "^cells: "),
-            (lambda: ep.beamform(spectrum, radar, overlap="first"), TypeError, "'overlap', the nearest right one is 'overlaps'"),
+            (lambda: ep.beamform(spectrum, radar, overlap="first"), TypeError, "the nearest right one is 'overlaps'"),
             (lambda: ep.range_azimuth(spectrum, radar, velocity=99.0), ValueError, "^velocity: .*got 99"),
             (lambda: ep.angle_fft(spectrum, radar, windows="hann"), TypeError, "nearest right one is 'window'"),
             (lambda: ep.angle_fft(spectrum, four_by_eight()), ValueError, "^spectrum: must have the radar's 4 x 8"),

@@ -65,6 +65,16 @@ def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
     assert "rays                              500" in done.stdout and done.stderr == ""
 
 
+def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
+    second = "[[radar.receivers]]\nposition = [0.0, 0.012, 0.0]\n"
+    scene_path.write_text(SCENE.replace("[[objects]]", second + "[[objects]]", 1))
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "range_azimuth.png").read_bytes().startswith(b"\x89PNG")
+    info = call("info", scene_path).stdout
+    assert "2 elements, 2 across x 1 up, 0.517 wavelengths across" in info and "overlaps, gaps" in info
+
+
 def test_run_twice_gives_the_same_bytes(scene_path, tmp_path):
     for out in ("one", "two"):
         assert call("run", scene_path, "--out", tmp_path / out).returncode == 0

@@ -66,7 +66,7 @@ def make_radar():
 @pytest.fixture(scope="module")
 def frame():
     return ep.simulate(make_scene(), make_radar(), num_rays=4000, seed=7, parts=PARTS, noise_seed=3,
-                       window=("chebyshev", 60))
+                       window=("chebyshev", 60), angles={"window": ("chebyshev", 30), "azimuth": [-0.1, 0.0, 0.15]})
 
 
 @pytest.fixture
@@ -139,6 +139,15 @@ def test_a_frame_read_back_is_the_same(frame, saved):
         assert_same_bits(frame.part_of_path[partition], other.part_of_path[partition])
         for part, cube in cubes.items():
             assert_same_bits(cube, other.parts[partition][part])
+
+
+def test_a_range_azimuth_map_is_written_and_made_again(frame, saved):
+    with h5py.File(saved) as file:
+        for name in ("power", "azimuth", "elevation", "range"):
+            assert_same_bits(file["range_azimuth"][name][...], getattr(frame.range_azimuth, name))
+    other = ep.load_frame(saved)
+    assert other.angle_settings == frame.angle_settings
+    assert_same_bits(other.range_azimuth.power, frame.range_azimuth.power)
 
 
 def test_labels_say_which_part_a_path_is_in(frame):

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from echopath.plots import colour_limits, plot_overview, plot_partition, plot_range_doppler, power_dbm, save_png
+from echopath.plots import (colour_limits, plot_overview, plot_partition, plot_range_azimuth, plot_range_doppler,
+                            power_dbm, save_png)
 from echopath.plots.clip import clip_triangles, outline
 
 AREA_TOLERANCE = 1e-12
@@ -96,3 +97,45 @@ def test_the_same_figure_gives_the_same_file(spectrum, tmp_path):
     for name in ("one.png", "two.png"):
         save_png(plot_range_doppler(spectrum), tmp_path / name)
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
+
+
+@pytest.fixture
+def from_above():
+    """Noise and one strong cell at 30 degrees to the left, 6 m away."""
+    azimuth = np.radians(np.arange(-60.0, 61.0, 2.0))
+    power = 1e-16 * np.random.default_rng(4).exponential(size=(len(azimuth), 128))
+    power[45, 40] = 1e-10
+    return SimpleNamespace(azimuth=azimuth, range=np.arange(128) * 0.15, power=power)
+
+
+def brightest_corner(axes):
+    """Mean of the corners (left, ahead) in m of the brightest cell of a picture from above."""
+    mesh = axes.collections[0]
+    row, column = np.unravel_index(mesh.get_array().argmax(), mesh.get_array().shape)
+    return mesh.get_coordinates()[row:row + 2, column:column + 2].reshape(-1, 2).mean(axis=0)
+
+
+def test_left_is_left_and_ahead_is_up_from_above(from_above):
+    axes = plot_range_azimuth(from_above).axes[0]
+    left, ahead = brightest_corner(axes)
+    assert left == pytest.approx(6.0 * np.sin(np.radians(30.0)), abs=0.05)
+    assert ahead == pytest.approx(6.0 * np.cos(np.radians(30.0)), abs=0.05)
+    assert axes.get_xlim()[0] > left > axes.get_xlim()[1]  # larger to the left
+    assert axes.get_ylim()[0] < ahead < axes.get_ylim()[1] < 9.0
+
+
+def test_all_maps_from_above_share_one_scale_and_the_farthest_reach(from_above):
+    power = 1e-3 * from_above.power
+    power[10, 100] = 1e-12  # 15 m
+    weak = SimpleNamespace(azimuth=from_above.azimuth, range=from_above.range, power=power)
+    figure = plot_range_azimuth({"strong": from_above, "weak": weak})
+    panels = [axes for axes in figure.axes if axes.get_title() in ("strong", "weak")]
+    assert len({axes.collections[0].get_clim() for axes in panels}) == 1
+    assert all(axes.get_ylim()[1] > 15.0 for axes in panels)
+
+
+def test_maps_from_above_of_nothing_and_of_one_cell_are_pictures_too(from_above, tmp_path):
+    nothing = SimpleNamespace(azimuth=from_above.azimuth, range=from_above.range, power=0.0 * from_above.power)
+    single = SimpleNamespace(azimuth=np.zeros(1), range=np.zeros(1), power=np.ones((1, 1)))
+    for name, one in (("nothing", nothing), ("single", single)):
+        save_png(plot_range_azimuth(one), tmp_path / f"{name}.png")

@@ -131,10 +131,29 @@ quad = "T 'quad' R"
     assert scene_file.partitions() == {"route": {"direct": "T . R"}, "body": {"quad": "T 'quad' R"}}
 
 
+def test_angles_are_keywords_of_range_azimuth_in_radians(write):
+    assert ep.load_scene(write("")).angle_settings() == {
+        "method": "bartlett", "combine": "peak", "window": "rect", "elevation": 0.0, "diagonal_loading": 0.01,
+        "range_neighbours": 2, "forward_backward": False}
+    settings = ep.load_scene(write("""
+[angle]
+azimuth_deg = [-30, 30, 20]
+elevation_deg = [-10.0, 0.0, 10.0]
+window = ["chebyshev", 40]
+combine = "sum"
+velocity = 1.5
+""")).angle_settings()
+    assert settings["azimuth"] == pytest.approx(np.radians([-30.0, -10.0, 10.0, 30.0]))
+    assert settings["elevation"] == pytest.approx(np.radians([-10.0, 0.0, 10.0]))
+    assert (settings["window"], settings["combine"], settings["velocity"]) == (("chebyshev", 40), "sum", 1.5)
+
+
 def test_one_flat_table_of_parts_is_one_partition(write):
     assert ep.load_scene(write('[parts]\ndirect = "T . R"\n')).partitions() == {"parts": {"direct": "T . R"}}
 
 
+CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
+                 for i in range(9))
 FAULTS = [
     (RADAR.replace("bandwidth", "bandwith"), "radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"),
     (RADAR.replace("bandwidth = 1e9", ""), "radar.waveform.bandwidth: is missing"),
@@ -147,6 +166,13 @@ FAULTS = [
     (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
     (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
     (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be one of rect, hann"),
+    (RADAR + "[angle]\nmethod = 'music'", "angle.method: must be 'bartlett' or 'capon', got 'music'"),
+    (RADAR + "[angle]\nazimuth_deg = [10, -10, 1]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
+    (RADAR + "[angle]\nazimuth_deg = [0, 10, 0]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
+    (RADAR + "[angle]\nelevation_deg = [5, 5]", "angle.elevation_deg: must be a number or an ascending list"),
+    (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
+    (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
+    (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}", "parts: must be all expressions (one partition) or all tables"),
     (RADAR + mesh_object("material = 'concret'"), "objects[0].material: unknown material 'concret'"),
     (RADAR + mesh_object("material = {scatering = 0.3}"),

@@ -115,10 +115,12 @@ std::optional<GridFit> fit_plane(const std::vector<Vec3>& points, const Vec3& ax
                                  double min_spacing) {
   const Vec3 other = normal.cross(axis);
   const bool is_upright = std::abs(axis.z()) > std::abs(other.z());
-  return fit_axes(points, to_the_left(is_upright ? other : axis), upwards(is_upright ? axis : other), tolerance, min_spacing);
+  return fit_axes(points, to_the_left(is_upright ? other : axis), upwards(is_upright ? axis : other), tolerance,
+                  min_spacing);
 }
 
-std::optional<GridFit> fit_line(const std::vector<Vec3>& points, const Vec3& axis, double tolerance, double min_spacing) {
+std::optional<GridFit> fit_line(const std::vector<Vec3>& points, const Vec3& axis, double tolerance,
+                                double min_spacing) {
   const Vec3 across = horizontal_normal(axis);
   if (axis.z() * axis.z() > 0.5) return fit_axes(points, to_the_left(across), upwards(axis), tolerance, min_spacing);
   return fit_axes(points, to_the_left(axis), upwards(axis.cross(across)), tolerance, min_spacing);

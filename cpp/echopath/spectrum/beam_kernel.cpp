@@ -28,13 +28,19 @@ ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_
 
 // weights [directions, padded], columns [padded, kColumns]
 ECHOPATH_SIMD void add_squares_of_block(int64_t directions, int64_t padded, const double* weight_re,
-                                        const double* weight_im, const double* re, const double* im, double* power) {
+                                        const double* weight_im, const double* re, const double* im, Combine combine,
+                                        double* power) {
   for (int64_t d = 0; d < directions; ++d) {
     alignas(64) double out_re[kColumns] = {}, out_im[kColumns] = {};
     for (int64_t e = 0; e < padded; e += kElements) {
-      add_elements(weight_re + d * padded + e, weight_im + d * padded + e, re + e * kColumns, im + e * kColumns, out_re, out_im);
+      const double *row_re = weight_re + d * padded + e, *row_im = weight_im + d * padded + e;
+      add_elements(row_re, row_im, re + e * kColumns, im + e * kColumns, out_re, out_im);
     }
-    for (int c = 0; c < kColumns; ++c) power[d * kColumns + c] += out_re[c] * out_re[c] + out_im[c] * out_im[c];
+    double* total = power + d * kColumns;
+    for (int c = 0; c < kColumns; ++c) {
+      const double square = out_re[c] * out_re[c] + out_im[c] * out_im[c];
+      total[c] = combine == Combine::kSum ? total[c] + square : std::max(total[c], square);
+    }
   }
 }
 
@@ -53,7 +59,8 @@ BeamKernel::BeamKernel(const Eigen::MatrixXcd& steering)
   }
 }
 
-void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, std::vector<double>& power) const {
+void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, Combine combine,
+                             std::vector<double>& power) const {
   std::vector<double> re(padded_ * kColumns), im(padded_ * kColumns);
   for (int64_t c = 0; c < columns.cols(); ++c) {
     for (int64_t e = 0; e < num_elements(); ++e) {
@@ -61,17 +68,23 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
       im[e * kColumns + c] = columns(e, c).imag();
     }
   }
-  add_squares_of_block(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), power.data());
+  add_squares_of_block(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine, power.data());
 }
 
-Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, const Job* job) const {
-  if (columns.cols() < kFewColumns) return (steering_.adjoint() * columns).rowwise().squaredNorm();
+Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {
+  const bool is_sum = combine == Combine::kSum;
+  if (columns.cols() < kFewColumns) {
+    const Eigen::MatrixXd squares = (steering_.adjoint() * columns).cwiseAbs2();
+    return is_sum ? Eigen::VectorXd(squares.rowwise().sum()) : Eigen::VectorXd(squares.rowwise().maxCoeff());
+  }
   std::vector<double> squares(num_directions() * kColumns);
   for (int64_t first = 0; first < columns.cols(); first += kColumns) {
     if (job) job->throw_if_cancelled();
-    add_squares(columns.middleCols(first, std::min<int64_t>(kColumns, columns.cols() - first)), squares);
+    const int64_t count = std::min<int64_t>(kColumns, columns.cols() - first);
+    add_squares(columns.middleCols(first, count), combine, squares);
   }
-  return Eigen::Map<const Eigen::MatrixXd>(squares.data(), kColumns, num_directions()).colwise().sum();
+  const Eigen::Map<const Eigen::MatrixXd> by_column(squares.data(), kColumns, num_directions());
+  return is_sum ? Eigen::VectorXd(by_column.colwise().sum()) : Eigen::VectorXd(by_column.colwise().maxCoeff());
 }
 
 }  // namespace echopath

@@ -8,6 +8,8 @@
 
 namespace echopath {
 
+enum class Combine { kSum, kPeak };  // of the powers of several snapshots: their sum, or the largest
+
 // Beams that receive plane waves: steering^H times a vector over the elements.
 class BeamKernel {
  public:
@@ -17,11 +19,11 @@ class BeamKernel {
   int64_t num_directions() const { return steering_.cols(); }
   int64_t num_elements() const { return steering_.rows(); }
 
-  // power [directions, kColumns] += |steering^H columns|^2 of each of at most kColumns columns [elements].
-  void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, std::vector<double>& power) const;
+  // Combines power [directions, kColumns] with |steering^H columns|^2 of each of at most kColumns columns [elements].
+  void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, Combine combine, std::vector<double>& power) const;
 
-  // Sum over all columns of |steering^H column|^2, [directions]. Raises Cancelled.
-  Eigen::VectorXd power(const Eigen::MatrixXcd& columns, const Job* job = nullptr) const;
+  // |steering^H column|^2 [directions], combined over all columns. Raises Cancelled.
+  Eigen::VectorXd power(const Eigen::MatrixXcd& columns, Combine combine = Combine::kSum, const Job* job = nullptr) const;
 
  private:
   Eigen::MatrixXcd steering_;

@@ -49,11 +49,11 @@ CellBeam::CellBeam(const MatrixXcd& covariance, const MatrixXcd& own, double loa
   root_ = factor.matrixU().solve(MatrixXcd::Identity(covariance.rows(), covariance.rows()));
 }
 
-Eigen::VectorXd CellBeam::power(const BeamKernel& beams, const Job* job) const {
+Eigen::VectorXd CellBeam::power(const BeamKernel& beams, Combine combine, const Job* job) const {
   if (snapshots_.size() == 0) return Eigen::VectorXd::Zero(beams.num_directions());
-  const Eigen::VectorXd power = beams.power(snapshots_, job);
+  const Eigen::VectorXd power = beams.power(snapshots_, combine, job);
   if (root_.size() == 0) return power;
-  return power.cwiseQuotient(beams.power(root_, job).cwiseAbs2());
+  return power.cwiseQuotient(beams.power(root_, Combine::kSum, job).cwiseAbs2());
 }
 
 BeamSource::BeamSource(const RangeDoppler& map, const Radar& radar, const BeamformOptions& options)

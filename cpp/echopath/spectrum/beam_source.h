@@ -16,8 +16,8 @@ class CellBeam {
   // Capon. covariance [elements, elements] Hermitian, to be loaded; 0: there is no power.
   CellBeam(const Eigen::MatrixXcd& covariance, const Eigen::MatrixXcd& own, double loading);
 
-  // Power [directions] of the beams, summed over the snapshots. Raises Cancelled.
-  Eigen::VectorXd power(const BeamKernel& beams, const Job* job = nullptr) const;
+  // Power [directions] of the beams, combined over the snapshots. Raises Cancelled.
+  Eigen::VectorXd power(const BeamKernel& beams, Combine combine = Combine::kSum, const Job* job = nullptr) const;
 
  private:
   // Bartlett: weighted snapshots x. Capon: R^-1 x, and a square root W of R^-1 = W W^H: the power is
@@ -36,7 +36,7 @@ class BeamSource {
 
   // Of one cell; `fold` as in ElementReader::read.
   CellBeam cell(int64_t velocity, int64_t range, int fold = 0) const;
-  // Of all velocities of one range, the power summed over them.
+  // Of all velocities of one range.
   CellBeam all_velocities(int64_t range) const;
   // Bartlett: the snapshots of ranges [first, first + count) of one velocity times the weights, [elements, count].
   Eigen::MatrixXcd weighted(int64_t velocity, int64_t first, int64_t count) const;

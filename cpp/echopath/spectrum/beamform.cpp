@@ -40,14 +40,14 @@ using Powers = std::vector<double>;  // [directions, kRangesPerTask]
 
 Powers bartlett_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip) {
   Powers power(beams.num_directions() * kRangesPerTask);
-  beams.add_squares(source.weighted(strip.velocity, strip.first, strip.count), power);
+  beams.add_squares(source.weighted(strip.velocity, strip.first, strip.count), Combine::kSum, power);
   return power;
 }
 
 Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip, const Job* job) {
   Powers power(beams.num_directions() * kRangesPerTask);
   for (int64_t i = 0; i < strip.count; ++i) {
-    const Eigen::VectorXd values = source.cell(strip.velocity, strip.first + i).power(beams, job);
+    const Eigen::VectorXd values = source.cell(strip.velocity, strip.first + i).power(beams, Combine::kSum, job);
     for (int64_t d = 0; d < values.size(); ++d) power[d * kRangesPerTask + i] = values[d];
   }
   return power;

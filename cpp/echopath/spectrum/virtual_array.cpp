@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kMinSpacing = 0.1;  // wavelengths
+constexpr double kMinSpacing = 0.2;  // wavelengths
 
 std::vector<Vec3> sums_of_positions(const Radar& radar) {
   std::vector<Vec3> positions;

@@ -47,7 +47,7 @@ struct VirtualArray {
 // The virtual array of a radar's antennas. A path's length falls by x.u when an antenna moves by x toward the unit
 // direction u of a target, so a pair of antennas receives the phase of one that sits at x_tx + x_rx.
 // The grid's axes are the horizontal and the upward direction in the plane of the elements where these fit, otherwise
-// those of two elements that do. Steps may be any from a tenth of a wavelength; at most 16 times as many points as
+// those of two elements that do. Steps may be any from a fifth of a wavelength; at most 16 times as many points as
 // elements along each axis.
 VirtualArray virtual_array(const Radar& radar);
 

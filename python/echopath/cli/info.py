@@ -68,12 +68,27 @@ def _describe_radar(radar) -> list[str]:
     max_range = cell * waveform.num_samples * (0.5 if waveform.real else 1.0)
     return ["radar",
             report.line("antennas", f"{slots} transmitting, {len(radar.receivers)} receiving"),
+            *_describe_array(ep.virtual_array(radar)),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
             report.line("range", f"to {max_range:.2f} m, resolution {cell:.3f} m"),
             report.line("velocity", f"+-{wavelength / (4.0 * slots * waveform.chirp_interval):.2f} m/s, resolution "
                         f"{wavelength / (2.0 * slots * waveform.chirp_interval * waveform.num_chirps):.3f} m/s")]
+
+
+def _describe_array(array) -> list[str]:
+    """The elements of a virtual array and the grid they are on; nothing for a single channel."""
+    num_elements = len(array.elements)
+    if num_elements == 1:
+        return []
+    if array.grid_shape is None:
+        return [report.line("virtual array", f"{num_elements} elements, no grid")]
+    (rows, columns), (up, across) = array.grid_shape, np.array(array.grid_spacing) / array.wavelength
+    steps = [f"{step:.3g} wavelengths {way}" for step, way in ((across, "across"), (up, "up")) if step > 0.0]
+    grid = f"{num_elements} elements, {columns} across x {rows} up, {' and '.join(steps)}"
+    return [report.line("virtual array", grid),
+            report.line("overlaps, gaps", f"{array.num_overlaps}, {len(array.gaps)}")]
 
 
 def _describe_frame(path: Path) -> list[str]:

@@ -40,11 +40,15 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
         settings["batches"] = batches
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
-                    **scene_file.spectrum_settings(), progress=progress)
+                    **scene_file.spectrum_settings(), angles=scene_file.angle_settings(), progress=progress)
 
 
 def write_outputs(frame: Frame, folder, partitions) -> Written:
-    """Writes frame.h5, scene.png, map.png, a PNG for each of `partitions` and overview.png (map and first partition); adds its stages to those of the frame."""
+    """Writes frame.h5 and its pictures; adds its stages to those of the frame.
+
+    The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
+    the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above).
+    """
     folder = Path(folder)
     clock = StageClock()
     with clock("frame file"):
@@ -81,7 +85,16 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
         write(partition, plots.plot_partition(spectra, title=words, vmin=vmin, vmax=vmax))
         if index == 0:
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title, parts_title=words, vmin=vmin, vmax=vmax))
+    if frame.range_azimuth is not None:
+        maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
+        write("range_azimuth", plots.plot_range_azimuth(maps, title=title + ", from above"))
     return written
+
+
+def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:
+    """Range-azimuth maps of the whole and of the parts of a partition (None: no parts) that a picture shows."""
+    spectra = shown_parts(frame.part_spectra[partition], vmin) if partition is not None else {}
+    return {"whole": frame.range_azimuth} | {name: frame.range_azimuth_of(one) for name, one in spectra.items()}
 
 
 def shown_parts(spectra: dict, vmin: float) -> dict:

@@ -55,6 +55,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
         missing, is_kept = _write_record(file, frame.paths, min_power, frame.path_power)
         _write_signal(file, frame)
         _write_spectra(file, frame)
+        _write_range_azimuth(file, frame)
         _write_partitions(file, frame, is_kept)
     return missing
 
@@ -148,6 +149,17 @@ def _write_spectra(file, frame: Frame) -> None:
     write_array(group, "values", frame.spectrum.values, unit="sqrt(W)")
 
 
+def _write_range_azimuth(file, frame: Frame) -> None:
+    if frame.range_azimuth is None:
+        return
+    group = file.create_group("range_azimuth")
+    group.attrs["settings"] = json.dumps(frame.angle_settings, default=np.ndarray.tolist)
+    for name in ("azimuth", "elevation"):
+        write_array(group, name, getattr(frame.range_azimuth, name), unit="rad")
+    write_array(group, "range", frame.range_azimuth.range, unit="m")
+    write_array(group, "power", frame.range_azimuth.power, unit="W")
+
+
 def _write_partitions(file, frame: Frame, is_kept) -> None:
     """One group per partition: names, expressions, cubes, spectra and the part of each path that was written."""
     folder = file.create_group("partitions")
@@ -167,9 +179,16 @@ def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
-    settings = json.loads(read_attribute(read_group(file, "spectra"), "settings", str))
-    window = settings["window"]
-    frame.spectrum_settings = settings | {"window": tuple(window) if isinstance(window, list) else window}
+    frame.spectrum_settings = _read_settings(read_group(file, "spectra"))
+    if "range_azimuth" in file:
+        frame.angle_settings = _read_settings(read_group(file, "range_azimuth"))
+
+
+def _read_settings(group) -> dict:
+    """Keywords of a map."""
+    settings = json.loads(read_attribute(group, "settings", str))
+    window = settings.get("window")
+    return settings | {"window": tuple(window)} if isinstance(window, list) else settings
 
 
 def _read_partitions(file, frame: Frame) -> None:

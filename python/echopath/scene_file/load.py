@@ -9,22 +9,24 @@ import typing
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 from pydantic import create_model
 
 import echopath as ep
 
+from ..azimuth_map import checked_settings
 from ..simulate import as_partitions
 from .errors import validated
-from .schema import ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
+from .schema import AngleTable, ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
 
 
 @dataclasses.dataclass(frozen=True)
 class SceneFile:
     """What a scene file says.
 
-    path: of the file; title: one line; scene, radar: ready to trace; trace, spectrum: settings, as keywords by
-    `trace_settings()` and `spectrum_settings()`; parts: {name: expression} (one partition), {name: {name: expression}}
-    (several) or {}; noise_seed: of the thermal noise.
+    path: of the file; title: one line; scene, radar: ready to trace; trace, spectrum, angle: settings, as keywords by
+    `trace_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one partition),
+    {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise.
     """
 
     path: Path
@@ -33,6 +35,7 @@ class SceneFile:
     radar: object
     trace: TraceTable
     spectrum: SpectrumTable
+    angle: AngleTable
     parts: dict
     noise_seed: int
 
@@ -45,12 +48,25 @@ class SceneFile:
 
     def spectrum_settings(self) -> dict:
         """Keywords of `ep.range_doppler`: window, zero_pad."""
-        window = self.spectrum.window
-        return {"window": tuple(window) if isinstance(window, list) else window, "zero_pad": self.spectrum.zero_pad}
+        return {"window": _window(self.spectrum.window), "zero_pad": self.spectrum.zero_pad}
+
+    def angle_settings(self) -> dict:
+        """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
+        settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
+        settings["window"] = _window(self.angle.window)
+        settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
+        if self.angle.azimuth_deg is not None:
+            first, last, step = self.angle.azimuth_deg
+            settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
+        return settings
 
     def partitions(self) -> dict:
         """`parts` as {partition: {name: expression}}."""
         return as_partitions(self.parts)
+
+
+def _window(value):
+    return tuple(value) if isinstance(value, list) else value
 
 
 def load_scene(path) -> SceneFile:
@@ -64,9 +80,13 @@ def load_scene(path) -> SceneFile:
     table = _parse(path)
     try:
         settings = validated(SceneTable, table)
-        return SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
-                         radar=_build_radar(settings.radar, path.parent), trace=settings.trace, spectrum=settings.spectrum,
-                         parts=dict(settings.parts), noise_seed=settings.noise.seed)
+        scene_file = SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
+                               radar=_build_radar(settings.radar, path.parent), trace=settings.trace,
+                               spectrum=settings.spectrum, angle=settings.angle, parts=dict(settings.parts),
+                               noise_seed=settings.noise.seed)
+        with _blame("angle"):
+            checked_settings(scene_file.radar, scene_file.angle_settings())
+        return scene_file
     except ValueError as error:
         raise ValueError("\n".join(f"{path}: {line}" for line in str(error).splitlines())) from None
 

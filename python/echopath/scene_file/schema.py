@@ -230,6 +230,42 @@ class SpectrumTable(Table):
     zero_pad: int = Field(1, ge=1, description="length of the transforms over that of the data")
 
 
+def _azimuths(value):
+    if not (isinstance(value, list) and len(value) == 3 and all(map(_is_number, value)) and value[2] > 0
+            and -180 <= value[0] <= value[1] <= 180):
+        raise ValueError("must be [first, last, step] in degrees, -180 <= first <= last <= 180 and step > 0")
+    return value
+
+
+def _elevations(value):
+    elevations = value if isinstance(value, list) else [value]
+    if not (elevations and all(map(_is_number, elevations)) and elevations == sorted(set(elevations))
+            and -90 <= elevations[0] and elevations[-1] <= 90):
+        raise ValueError("must be a number or an ascending list of numbers in [-90, 90] degrees")
+    return value
+
+
+class AngleTable(Table):
+    method: Literal["bartlett", "capon"] = Field("bartlett", description="how beams are formed")
+    azimuth_deg: Optional[Annotated[Any, AfterValidator(_azimuths)]] = Field(
+        None, description="[first, last, step] in degrees, to the left; none: what the array tells apart")
+    elevation_deg: Annotated[Any, AfterValidator(_elevations)] = Field(
+        0.0, description="degrees, or a list: the largest power over them")
+    velocity: Optional[Number] = Field(None, description="m/s, of the cells shown; none: all")
+    combine: Literal["sum", "peak"] = Field("peak", description="of all velocities: the largest, or their sum")
+    window: Window = Field("rect", description="over the array, of bartlett; others than rect for grids of equal steps")
+    diagonal_loading: Annotated[float, Field(ge=1e-9, le=1e3)] = Field(
+        0.01, description="of capon, relative to the mean power of the elements")
+    range_neighbours: int = Field(2, ge=0, le=64, description="of capon, cells on each side in the covariance")
+    forward_backward: bool = Field(False, description="of capon, for arrays symmetric about their centre")
+
+    @model_validator(mode="after")
+    def _one_taper(self):
+        if self.method == "capon" and self.window != "rect":
+            raise broken_rule("window", "must be \"rect\" for capon, which finds its own weights", self.window)
+        return self
+
+
 class NoiseTable(Table):
     seed: int = Field(1, ge=0, description="of the thermal noise")
 
@@ -245,6 +281,7 @@ class SceneTable(Table):
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
     trace: TraceTable = TraceTable()
     spectrum: SpectrumTable = SpectrumTable()
+    angle: AngleTable = AngleTable()
     noise: NoiseTable = NoiseTable()
     parts: dict[str, PartsValue] = Field(
         {}, description="name = path expression: one partition; tables of these: several")

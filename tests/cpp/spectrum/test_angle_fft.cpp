@@ -52,7 +52,8 @@ Complex slow(const RangeDoppler& map, const Radar& radar, const VirtualArray& ar
   for (const VirtualElement& element : array.elements) {
     Complex mean;
     for (const int channel : element.channels) {
-      const double slot = 2.0 * k * map.velocity[velocity] * (channel / array.num_receivers) * radar.waveform.chirp_interval;
+      const double delay = channel / array.num_receivers * radar.waveform.chirp_interval;
+      const double slot = 2.0 * k * map.velocity[velocity] * delay;
       mean += map.values[(channel * map.velocity.size() + velocity) * map.range.size() + range] * std::polar(1.0, -slot);
     }
     mean /= static_cast<double>(element.channels.size());

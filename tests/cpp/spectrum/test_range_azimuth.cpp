@@ -39,22 +39,30 @@ TEST(RangeAzimuth, APointGivesItsPowerWhateverWindowAndPadding) {
       const RangeDoppler map = range_doppler(cube, radar, {kind, 60.0}, pad);
       const RangeAzimuth all = range_azimuth(map, radar, kGrid);
       EXPECT_NEAR(all.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
-      const RangeAzimuth one = range_azimuth(map, radar, kGrid, map.velocity[(kChirps / 2 + 2) * pad]);
+      const RangeAzimuth one = range_azimuth(map, radar, kGrid, {map.velocity[(kChirps / 2 + 2) * pad]});
       EXPECT_NEAR(one.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      const RangeAzimuth peak = range_azimuth(map, radar, kGrid, {{}, Combine::kPeak});
+      EXPECT_NEAR(peak.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
       EXPECT_FALSE(all.velocity.has_value());
       EXPECT_EQ(*one.velocity, map.velocity[(kChirps / 2 + 2) * pad]);
     }
   }
 }
 
-TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowers) {
+TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowersOrGiveTheLargest) {
   const Radar radar = testing::line_radar(6, kChirps, kSamples);
   std::vector<Complex> cube(6 * kChirps * kSamples);
   add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
   add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
   const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
   EXPECT_NEAR(range_azimuth(map, radar, kGrid).power[2 * kSamples + 7], 10.0, 1e-10);
-  EXPECT_NEAR(range_azimuth(map, radar, kGrid, map.velocity[3]).power[2 * kSamples + 7], 1.0, 1e-10);
+  BeamformOptions capon;
+  capon.method = BeamMethod::kCapon;
+  for (const BeamformOptions& options : {BeamformOptions{}, capon}) {
+    const RangeAzimuth peak = range_azimuth(map, radar, kGrid, {{}, Combine::kPeak}, options);
+    EXPECT_NEAR(peak.power[2 * kSamples + 7], 9.0, 1e-10);
+  }
+  EXPECT_NEAR(range_azimuth(map, radar, kGrid, {map.velocity[3]}).power[2 * kSamples + 7], 1.0, 1e-10);
 }
 
 TEST(RangeAzimuth, BothMethodsGiveTheMeanOverChirps) {
@@ -86,8 +94,8 @@ TEST(RangeAzimuth, OfSeveralElevationsTheLargestIsTaken) {
   RangeDoppler map = testing::empty_map(radar);
   testing::add_wave(map, radar, direction(0.3, 0.4), 1.0, 4, 1);
   const double v = map.velocity[4];
-  const RangeAzimuth level = range_azimuth(map, radar, {{0.3}, {0.0}}, v);
-  const RangeAzimuth all = range_azimuth(map, radar, {{0.3}, {0.0, 0.4}}, v);
+  const RangeAzimuth level = range_azimuth(map, radar, {{0.3}, {0.0}}, {v});
+  const RangeAzimuth all = range_azimuth(map, radar, {{0.3}, {0.0, 0.4}}, {v});
   EXPECT_NEAR(all.power[1], 1.0, kRounding);
   EXPECT_LT(level.power[1], 0.8);
 }
@@ -135,9 +143,9 @@ TEST(RangeAzimuth, BadInputIsAnError) {
   const RangeDoppler map = testing::empty_map(radar);
   EXPECT_THROW(range_azimuth(map, radar, {{}, {0.0}}), std::invalid_argument);
   const double step = map.velocity[1] - map.velocity[0];
-  EXPECT_THROW(range_azimuth(map, radar, kGrid, map.velocity.back() + 0.6 * step), std::invalid_argument);
-  EXPECT_THROW(range_azimuth(map, radar, kGrid, std::nan("")), std::invalid_argument);
-  EXPECT_NO_THROW(range_azimuth(map, radar, kGrid, map.velocity.front() - 0.5 * step));
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, {map.velocity.back() + 0.6 * step}), std::invalid_argument);
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, {std::nan("")}), std::invalid_argument);
+  EXPECT_NO_THROW(range_azimuth(map, radar, kGrid, {map.velocity.front() - 0.5 * step}));
   Job job;
   job.cancel();
   EXPECT_THROW(range_azimuth(map, radar, kGrid, {}, {}, &job), Cancelled);

@@ -130,7 +130,8 @@ TEST(VirtualArray, ArraysWithoutEqualStepsHaveNoGrid) {
   EXPECT_FALSE(virtual_array(testing::circle_radar()).grid);
   const double h = kHalf;
   EXPECT_FALSE(virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {h, 0, 0}, {0, h, 0}, {0, 0, h}})).grid);
-  EXPECT_FALSE(virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {0, h, 0}, {0, 1.618034 * h, 0}, {0, 100 * h, 0}})).grid);
+  const std::vector<Vec3> golden = {{0, 0, 0}, {0, h, 0}, {0, 1.618034 * h, 0}, {0, 100 * h, 0}};
+  EXPECT_FALSE(virtual_array(radar_with({Vec3::Zero()}, golden)).grid);
 }
 
 TEST(VirtualArray, OneChannelIsAGridOfOnePoint) {

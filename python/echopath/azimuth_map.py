@@ -1,0 +1,34 @@
+"""Settings of the range-azimuth map of a frame."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
+
+
+def sees_azimuth(radar) -> bool:
+    """Whether the antennas of a radar tell azimuths apart."""
+    azimuth, _ = ep.virtual_array(radar).default_angles()
+    return len(azimuth) > 1
+
+
+def checked_settings(radar, settings) -> dict:
+    """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace."""
+    settings = dict(DEFAULTS if settings is None else settings)
+    velocity, limit = settings.get("velocity"), radar.waveform.max_velocity(len(radar.transmitters))
+    if velocity is not None and abs(velocity) > limit:
+        raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
+    small = _with_one_sample(radar)
+    cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
+    ep.range_azimuth(ep.range_doppler(cube, small), small, **settings | {"velocity": None})
+    return settings
+
+
+def _with_one_sample(radar):
+    """A radar of the same antennas whose maps have one cell."""
+    given = radar.waveform
+    waveform = ep.ChirpSequence(start_frequency=given.start_frequency, bandwidth=given.bandwidth, num_samples=1,
+                                sampling_rate=given.sampling_rate, num_chirps=1, chirp_interval=given.chirp_interval)
+    return ep.Radar(waveform, transmitters=radar.transmitters, receivers=radar.receivers)

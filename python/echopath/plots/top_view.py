@@ -1,0 +1,130 @@
+"""Range-azimuth maps as seen from above: the radar below, ahead is up, left is left."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB, SMALLEST_POWER
+from .style import MAP_COLOURS, new_figure
+
+FARTHER = 1.1                  # of the farthest signal: what is shown
+LEAST_RANGES = 8               # cells shown at least
+RINGS = 5                      # about so many
+LARGE, SMALL = 4.6, 3.2         # inches, height of a sector alone and of one of several
+WIDE = 1.4                     # width over height, from which three sectors do not stand in a row
+SPOKE_STEP = math.pi / 6.0     # rad
+MARGIN = 0.1                   # of the reach, around the sector: room for the angles
+GRID_LOOK = {"color": "white", "linewidth": 0.5, "alpha": 0.35}
+LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
+
+
+def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vmax=None):
+    """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
+
+    maps: of `range_azimuth`, one or {name: map}; of several the first sets the scale
+    vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
+    Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame.
+    """
+    maps = maps if isinstance(maps, dict) else {"": maps}
+    first = next(iter(maps.values()))
+    lowest, highest = _colour_limits(first)
+    vmin, vmax = (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+    reach = max(_reach(one, vmin) for one in maps.values())
+    aspect = _aspect(first)
+    columns = min(len(maps), 3 if len(maps) % 2 and aspect < WIDE else 2)
+    rows = -(-len(maps) // columns)
+    height = LARGE if len(maps) == 1 else SMALL
+    with new_figure(columns * height * aspect + 1.6, rows * (height + 0.2) + 0.6) as figure:
+        panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
+        for axes, (name, one) in zip(panels, maps.items()):
+            image = _draw(axes, one, reach, vmin, vmax)
+            axes.set_title(name)
+        for axes in panels[len(maps) - columns:len(maps)]:
+            axes.tick_params(labelbottom=True)  # the lowest of its column, perhaps above an empty place
+        for axes in panels[len(maps):]:
+            axes.remove()
+        figure.supxlabel("To the left in m (right: -)", fontsize=9)
+        figure.supylabel("Ahead in m", fontsize=9)
+        figure.suptitle(title, fontsize=11)
+        figure.colorbar(image, ax=panels[:len(maps)], label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+    return figure
+
+
+def _in_dbm(power):
+    return 10.0 * np.log10(np.maximum(power, SMALLEST_POWER) * 1e3)
+
+
+def _colour_limits(one) -> tuple[float, float]:
+    """(lowest, highest) level in dBm, multiples of 5."""
+    level = _in_dbm(one.power)
+    highest = 5.0 * math.ceil(level.max() / 5.0)
+    above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
+    return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
+
+
+def _reach(one, floor: float) -> float:
+    """Range in m up to which the map is worth showing."""
+    level = _in_dbm(one.power.max(axis=0))
+    has_signal = np.flatnonzero(level > max(floor + 3.0, np.median(_in_dbm(one.power)) + NOISE_PEAK_DB))
+    last = max(has_signal.max(initial=0), LEAST_RANGES)
+    return float(min(FARTHER * one.range[min(last, len(one.range) - 1)], one.range[-1])) or 1.0
+
+
+def _aspect(one) -> float:
+    """Width over height of what a sector covers, within reason."""
+    left, right, back, front = _box(one, 1.0)
+    return min(max((left - right) / (front - back), 0.35), 2.5)
+
+
+def _box(one, reach: float) -> tuple[float, float, float, float]:
+    """(leftmost, rightmost, hindmost, foremost) coordinate in m of a sector up to `reach`."""
+    azimuth = np.clip(np.linspace(one.azimuth[0], one.azimuth[-1], 181), -np.pi, np.pi)
+    across, ahead = np.append(np.sin(azimuth), 0.0), np.append(np.cos(azimuth), 0.0)
+    margin = MARGIN * reach
+    return (reach * across.max() + margin, reach * across.min() - margin, reach * ahead.min() - margin,
+            reach * ahead.max() + margin)
+
+
+def _draw(axes, one, reach: float, vmin: float, vmax: float):
+    """One sector; returns the image."""
+    shown = max(2, int(np.count_nonzero(one.range <= reach)))
+    edge_azimuth, edge_range = _edges(one.azimuth), np.maximum(_edges(one.range[:shown]), 0.0)
+    across = np.sin(edge_azimuth)[:, None] * edge_range
+    ahead = np.cos(edge_azimuth)[:, None] * edge_range
+    image = axes.pcolormesh(across, ahead, _in_dbm(one.power[:, :shown]), cmap=MAP_COLOURS, vmin=vmin, vmax=vmax,
+                            rasterized=True)
+    _draw_grid(axes, one, reach)
+    left, right, back, front = _box(one, reach)
+    axes.set_xlim(left, right)
+    axes.set_ylim(back, front)
+    axes.set_aspect("equal")
+    return image
+
+
+def _edges(axis):
+    """Edges [N + 1] of the cells about the values of an axis [N]."""
+    axis = np.asarray(axis)
+    if len(axis) == 1:
+        return axis[0] + np.array([-0.5, 0.5])
+    middle = 0.5 * (axis[1:] + axis[:-1])
+    return np.concatenate([[2.0 * axis[0] - middle[0]], middle, [2.0 * axis[-1] - middle[-1]]])
+
+
+def _draw_grid(axes, one, reach: float) -> None:
+    """Arcs of equal range and rays of equal azimuth with their angles in degrees."""
+    azimuth = np.linspace(one.azimuth[0], one.azimuth[-1], 181)
+    step = _round_step(reach / RINGS)
+    for ring in np.arange(step, reach, step):
+        axes.plot(ring * np.sin(azimuth), ring * np.cos(azimuth), **GRID_LOOK)
+    first, last = math.ceil(one.azimuth[0] / SPOKE_STEP), math.floor(one.azimuth[-1] / SPOKE_STEP)
+    for spoke in SPOKE_STEP * np.arange(first, last + 1):
+        axes.plot([0.0, reach * np.sin(spoke)], [0.0, reach * np.cos(spoke)], **GRID_LOOK)
+        rim = (1.0 + 0.55 * MARGIN) * reach
+        axes.text(rim * np.sin(spoke), rim * np.cos(spoke), f"{np.degrees(spoke):.0f}\N{DEGREE SIGN}", **LABEL_LOOK)
+
+
+def _round_step(step: float) -> float:
+    """The nearest of 1, 2, 5, 10, ... times a power of ten that is no smaller."""
+    unit = 10.0 ** math.floor(math.log10(step))
+    return next(unit * factor for factor in (1.0, 2.0, 5.0, 10.0) if unit * factor >= step * (1.0 - 1e-9))

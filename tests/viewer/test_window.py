@@ -13,6 +13,7 @@ import echopath as ep
 from echopath.stages import peak_memory
 from echopath_viewer.model import WHOLE, from_frame
 from echopath_viewer.window import MainWindow
+from echopath_viewer.window.filter_box import around_caret
 from echopath_viewer.window.keys import KEYS
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 
@@ -39,6 +40,7 @@ def window(qtbot, shared_window, frame):
     window = shared_window
     window.show_input(from_frame(frame, title="frame"))
     window.map_area.show_one(False)
+    window.map_area.set_view(window.map_area.whole_view)
     window.filter_box.hits_check.setChecked(False)
     window.filter_box.name_edit.clear()
     window.filter_box.show_name_error("")
@@ -236,6 +238,13 @@ def test_a_wrong_expression_is_marked_where_it_was_typed(qtbot, window):
     qtbot.waitUntil(lambda: not label.isVisible(), timeout=PATIENCE_MS)
 
 
+def test_the_caret_of_a_long_expression_is_in_sight():
+    line, caret = "  " + "T ." * 30, " " * 61 + "^"
+    shown, below = around_caret(line, caret)
+    assert len(shown) <= 40 and shown[below.index("^")] == line[61] and shown in line
+    assert around_caret("  T x R", "    ^") == ("  T x R", "    ^")
+
+
 def test_bounces_and_power_filter(qtbot, window):
     window.filter_box.from_box.setValue(2)
     window.filter_box.power_box.setValue(-140)
@@ -309,7 +318,12 @@ def test_the_wheel_zooms_about_the_cursor_and_a_double_click_resets(qtbot, windo
     QtWidgets.QApplication.sendEvent(panel, turn)
     assert window.map_area.view.width() < before.width() and panel.to_value(at) == pytest.approx(value)
     qtbot.mouseDClick(panel, LEFT, pos=at.toPoint())
-    assert window.map_area.view == before
+    moving = QtCore.QRectF(window.map_area.view)
+    qtbot.mouseDClick(panel, LEFT, pos=at.toPoint())
+    assert window.map_area.view == before and moving.width() < before.width()
+    time = window.session.paths.frame.trace_time
+    walker = window.session.scene.world_vertices(0, time).mean(axis=0)
+    assert moving.left() < np.linalg.norm(walker) < moving.right()
 
 
 # --- time ---

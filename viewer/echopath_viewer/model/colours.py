@@ -69,12 +69,12 @@ def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None,
     values = _values(mode, columns)[segments.rays]
     clim = _limits(mode, values) if clim is None else clim
     legend = Legend(title=title, clim=clim, cmap=cmap or usual_cmap)
-    return Colouring(scale_colours(values, clim, legend.cmap)[segments.ray], legend)
+    return Colouring(np.take(scale_colours(values, clim, legend.cmap), segments.ray, axis=0), legend)
 
 
 def scale_colours(values, clim, cmap: str):
     """Colours u8 [N, 3] of values on a scale; what lies beyond its ends takes theirs."""
-    return colour_table(cmap)[levels_of(values, clim)]
+    return np.take(colour_table(cmap), levels_of(values, clim), axis=0)
 
 
 def levels_of(values, clim):
@@ -110,12 +110,11 @@ def _limits(mode: str, values) -> tuple:
 
 def _by_bounces(columns, segments) -> Colouring:
     table = np.array([rgb_of(text) for text in BOUNCE_COLOURS], np.uint8)
-    counts = columns.num_bounces[segments.rays].astype(np.int64)
-    row = np.clip(counts, 1, len(table)) - 1
-    present = np.unique(row)
+    row = np.clip(columns.num_bounces[segments.rays], 1, len(table)) - 1
+    present = np.flatnonzero(np.bincount(row, minlength=len(table)))
     labels = [f"{row + 1}{' or more' if row == len(table) - 1 else ''}" for row in present]
     rows = tuple((label, tuple(map(int, table[row]))) for label, row in zip(labels, present))
-    return Colouring(table[row][segments.ray], Legend("Bounces", rows=rows))
+    return Colouring(np.take(table, row[segments.ray], axis=0), Legend("Bounces", rows=rows))
 
 
 def _by_mesh(segments, palette, mesh_names) -> Colouring:
@@ -123,4 +122,4 @@ def _by_mesh(segments, palette, mesh_names) -> Colouring:
     present, counts = np.unique(segments.mesh_id, return_counts=True)
     commonest = present[np.argsort(-counts, kind="stable")][:MAX_LEGEND_ROWS]
     rows = tuple((mesh_names[mesh] if mesh >= 0 else "none", tuple(map(int, table[mesh]))) for mesh in sorted(commonest))
-    return Colouring(table[segments.mesh_id], Legend("Mesh that the ray goes to", rows=rows))
+    return Colouring(np.take(table, segments.mesh_id, axis=0), Legend("Mesh that the ray goes to", rows=rows))

@@ -7,6 +7,8 @@ import numpy as np
 
 from echopath.path_subset import subset
 
+NO_MESH = -1
+
 
 @dataclasses.dataclass(frozen=True)
 class Segments:
@@ -14,7 +16,7 @@ class Segments:
 
     rays: [N] index of the path of each ray; points: [V, 3] f32 m; ends: [S, 2] the two points of each segment
     ray: [S] row in `rays`; bounce: [S] 0 for the leg that leaves the transmitter
-    mesh_id: [S] mesh of the hit that the segment leads to; the last leg has that of its last hit
+    mesh_id: [S] mesh of the hit that the segment leads to; the last leg has that of its last hit; -1: no hit
     hits: [K] which of the points are hits; hit_mesh: [K] their meshes; hit_ray: [K] rows in `rays`
     """
 
@@ -44,34 +46,28 @@ def ray_segments(paths, chosen, time: float, transmitter, receiver) -> Segments:
     transmitter, receiver: [3] m in the world at that time.
     """
     chosen = np.asarray(chosen, np.int64)
-    kept = subset(paths, chosen)
-    row = np.empty(len(chosen), np.int64)  # of each ray among the kept paths, which are in the order of the record
-    row[np.argsort(chosen, kind="stable")] = np.arange(len(chosen))
+    is_chosen = np.zeros(paths.num_paths, bool)
+    is_chosen[chosen] = True
+    kept = subset(paths, is_chosen)
+    row = (np.cumsum(is_chosen) - 1)[chosen]  # of each ray among the kept paths, which are in the order of the record
     num_hits = np.asarray(kept.num_bounces).astype(np.int64)[row]
-    first_point = np.concatenate([[0], np.cumsum(num_hits + 2)])
-    ray_of_hit = np.repeat(np.arange(len(chosen)), num_hits)
-    order = np.arange(len(ray_of_hit)) - np.repeat(np.cumsum(num_hits) - num_hits, num_hits)
-    hit = np.asarray(kept.offsets)[row][ray_of_hit] + order
-    hits = first_point[ray_of_hit] + 1 + order
-
-    points = np.empty((first_point[-1], 3), np.float32)
-    points[first_point[:-1]] = transmitter
-    points[first_point[1:] - 1] = receiver
-    points[hits] = np.asarray(kept.points(time)).reshape(-1, 3)[hit]
-
-    ray = np.repeat(np.arange(len(chosen)), num_hits + 1)
-    bounce = np.arange(len(ray)) - np.repeat(np.cumsum(num_hits + 1) - (num_hits + 1), num_hits + 1)
-    begin = first_point[ray] + bounce
+    last = np.cumsum(num_hits + 2) - 1  # point of each ray: the receiver
+    first = last - num_hits - 1         # the transmitter
+    num_points = int(last[-1]) + 1 if len(last) else 0
+    ray_of_point = np.repeat(np.arange(len(chosen), dtype=np.int32), num_hits + 2)
+    order = np.arange(num_points, dtype=np.int32) - first.astype(np.int32)[ray_of_point]
+    leads_on, is_hit = np.ones(num_points, bool), np.ones(num_points, bool)
+    leads_on[last] = is_hit[last] = is_hit[first] = False
+    begin, hits = np.flatnonzero(leads_on), np.flatnonzero(is_hit)
+    hit = (np.asarray(kept.offsets)[row] - 1)[ray_of_point[hits]] + order[hits]
     hit_mesh = np.asarray(kept.mesh_id)[hit]
-    return Segments(rays=chosen, points=points, ends=np.stack([begin, begin + 1], axis=1), ray=ray, bounce=bounce,
-                    mesh_id=_mesh_of_segments(hit_mesh, num_hits, ray, bounce), hits=hits, hit_mesh=hit_mesh,
-                    hit_ray=ray_of_hit)
 
-
-def _mesh_of_segments(hit_mesh, num_hits, ray, bounce):
-    """[S] i64, -1 for a path without hits."""
-    if not len(hit_mesh):
-        return np.full(len(ray), -1)
-    first_hit = np.cumsum(num_hits) - num_hits
-    leads_to = first_hit[ray] + np.minimum(bounce, np.maximum(num_hits[ray] - 1, 0))
-    return np.where(num_hits[ray] > 0, hit_mesh[np.minimum(leads_to, len(hit_mesh) - 1)].astype(np.int64), -1)
+    points = np.empty((num_points, 3), np.float32)
+    points[first], points[last] = transmitter, receiver
+    replayed = np.asarray(kept.points(time), np.float32).reshape(-1, 3)
+    points[hits] = np.take(replayed, hit, axis=0)  # four times as fast as [hit]
+    mesh = np.full(num_points, NO_MESH, np.int32)
+    mesh[hits] = hit_mesh
+    mesh[last] = mesh[last - 1]
+    return Segments(rays=chosen, points=points, ends=np.stack([begin, begin + 1], axis=1), ray=ray_of_point[begin],
+                    bounce=order[begin], mesh_id=mesh[begin + 1], hits=hits, hit_mesh=hit_mesh, hit_ray=ray_of_point[hits])

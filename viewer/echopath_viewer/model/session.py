@@ -7,7 +7,6 @@ from collections import OrderedDict
 import numpy as np
 
 import echopath as ep
-from echopath.path_subset import strongest
 
 from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays, mesh_palette
@@ -76,6 +75,8 @@ class Session:
         self.columns = read_columns(self.paths, self.parts.whole.spectrum, tx, rx)
         spectrum, cells = self.parts.whole.spectrum, self.columns.cells
         self.index = CellIndex(cells.range_index, cells.velocity_index, len(spectrum.range), len(spectrum.velocity))
+        order = np.argsort(-self.columns.power, kind="stable")
+        self._strongest_first = order[:np.count_nonzero(self.columns.power)]  # never paths of no power
 
     def set_chirp(self, chirp: int) -> None:
         """Moves scene and rays to the middle of a chirp; kept within the frame."""
@@ -134,7 +135,12 @@ class Session:
 
     def _set_visible(self, mask) -> None:
         self.visible = mask if self.part.mask is None else mask & self.part.mask
-        self._lit = None
+        self._lit = self._lit_rays = None
+        self._visible_rays = self._strongest(self.visible)
+
+    def _strongest(self, mask):
+        """Paths where `mask` [P] is true, strongest first: indices [N]."""
+        return self._strongest_first[mask[self._strongest_first]]
 
     @property
     def lit(self):
@@ -147,13 +153,15 @@ class Session:
 
     def shown_rays(self, limit: int | None = None):
         """The strongest visible paths, strongest first: indices [N]."""
-        return strongest(self.columns.power, self.max_rays if limit is None else limit, among=self.visible)
+        return self._visible_rays[:self.max_rays if limit is None else limit]
 
     def lit_rays(self, limit: int | None = None):
         """The strongest paths in the selected cells, strongest first: indices [N]."""
-        lit = self.lit
-        return strongest(self.columns.power, self.max_rays if limit is None else limit,
-                         among=np.zeros_like(self.visible) if lit is None else lit)
+        if self.lit is None:
+            return np.zeros(0, np.int64)
+        if self._lit_rays is None:
+            self._lit_rays = self._strongest(self.lit)
+        return self._lit_rays[:self.max_rays if limit is None else limit]
 
     def listed_rays(self):
         """The rows of the table: the rays of the selected cells, or where none are selected those that are drawn."""
@@ -198,7 +206,7 @@ class Session:
         """Selects the rays in a rectangle of cells; None selects none."""
         spectrum = self.parts.whole.spectrum
         self.box = None if box is None else box.within(len(spectrum.range), len(spectrum.velocity))
-        self._lit, self.ray = None, None
+        self._lit = self._lit_rays = self.ray = None
         self._tell("selection")
 
     def select_ray(self, path: int | None) -> None:

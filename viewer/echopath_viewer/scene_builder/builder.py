@@ -5,7 +5,7 @@ import numpy as np
 
 from .antenna_layer import AntennaLayer, world_from_antenna
 from .camera import look
-from .legend import show_legend
+from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .ray_layer import RayLayer
 
@@ -14,7 +14,7 @@ RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
 RAY_OPACITY = 0.5
 UNLIT_COLOUR, CHOSEN_COLOUR, CHOSEN_HIT_COLOUR = (208, 208, 208), (20, 20, 20), (230, 159, 0)
 MAX_RAYS_MOVING = 300
-ANTENNA_SIZE = 0.025  # length of the axes, of the size of the picture
+ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 
 
 class SceneBuilder:
@@ -23,14 +23,14 @@ class SceneBuilder:
     def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, cmap=None, clim=None):
         """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown."""
         self.plotter, self.session = plotter, session
-        self.show_hits, self._shows_legend = show_hits, show_legend
-        self._legend = None
+        self.show_hits = show_hits
         self._scale = {"cmap": cmap, "clim": clim}
         plotter.set_background(BACKGROUND)
         self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
+        self.legend = LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
         corners = self.corners()
@@ -116,12 +116,11 @@ class SceneBuilder:
                                           text_color="black", shape_color="white", shape_opacity=0.8, show_points=False,
                                           always_visible=True, reset_camera=False, render=False)
 
-    def redraw_legend(self) -> None:
-        """In its usual size, after the picture has got another one."""
-        if self._shows_legend and self._legend is not None:
-            show_legend(self.plotter, self._legend)
+    def resized(self) -> None:
+        """The picture has got another size."""
+        if self.legend is not None:
+            self.legend.place()
 
     def _draw_legend(self, legend) -> None:
-        if legend != self._legend:
-            self._legend = legend
-            self.redraw_legend()
+        if self.legend is not None:
+            self.legend.show(legend)

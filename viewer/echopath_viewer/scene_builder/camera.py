@@ -7,7 +7,7 @@ VIEWS = ("radar", "top", "side", "fit")
 OBLIQUE = np.array([-0.62, -0.60, 0.50])  # from behind, right and above the radar, which looks along +x
 MARGIN, NUM_CENTRINGS = 1.06, 4
 USUAL_ANGLE, WIDE_ANGLE = 30.0, 50.0      # degrees, of view
-BACK, ABOVE = 0.03, 0.008                 # of the scene's size behind and above the antenna, which is then in the picture
+BACK, ABOVE = 0.06, 0.014                 # of the scene's size behind and above the antenna, which is then in the picture
 
 
 def look(plotter, view: str, corners, world_from_antenna) -> None:

@@ -7,6 +7,7 @@ from .qt import QtCore, QtGui, QtWidgets, Signal
 
 TYPING_PAUSE_MS = 350
 COUNT_LINES = 3
+ERROR_WIDTH = 34  # letters
 EXAMPLE = "T .* 'wall*' .* R"
 EXPRESSION_HELP = """Path expression: T and R are the radar, between them each hit is . (any), a quoted mesh 'pedestrian/*',
 S or D (specular, diffuse); operators * + ? | ( ) {m,n}; expressions are joined by & | ~.
@@ -29,7 +30,7 @@ class FilterBox(QtWidgets.QWidget):
         self.mesh_box = QtWidgets.QComboBox(editable=True)
         self.expression_edit = QtWidgets.QLineEdit(placeholderText=EXAMPLE, clearButtonEnabled=True)
         self.expression_edit.setToolTip(EXPRESSION_HELP)
-        self.mesh_error, self.expression_error, self.name_error = _error_label(), _error_label(), _error_label()
+        self.mesh_error, self.expression_error, self.name_error = ErrorLabel(), ErrorLabel(), ErrorLabel()
         self.name_edit = QtWidgets.QLineEdit(placeholderText="name what is shown", clearButtonEnabled=True)
         self.name_edit.setToolTip("The rays that are shown now become a part with a map of its own.")
         self.add_button, self.reset_button = QtWidgets.QPushButton("Add"), QtWidgets.QPushButton("Show all")
@@ -127,7 +128,6 @@ class FilterBox(QtWidgets.QWidget):
 
     def show_name_error(self, text: str) -> None:
         self.name_error.setText(text)
-        self.name_error.setVisible(bool(text))
 
     def show_counts(self) -> None:
         """How many rays pass, and how many are drawn."""
@@ -152,7 +152,6 @@ class FilterBox(QtWidgets.QWidget):
         for field, label, edit in fields:
             text = errors.get(field, "")
             label.setText(text)
-            label.setVisible(bool(text))
             edit.setStyleSheet("border: 1px solid #c0392b" if text else "")
 
 
@@ -165,10 +164,33 @@ def _row(*widgets) -> QtWidgets.QWidget:
     return row
 
 
-def _error_label() -> QtWidgets.QLabel:
-    """In a fixed pitch: carets stand below the fault."""
-    label = QtWidgets.QLabel(visible=False)
-    label.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
-    label.setStyleSheet("color: #c0392b")
-    label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
-    return label
+class ErrorLabel(QtWidgets.QWidget):
+    """What is wrong with a text, and in a fixed pitch the place with a caret below it; hidden where nothing is wrong."""
+
+    def __init__(self):
+        super().__init__(visible=False)
+        self._what, self._where = QtWidgets.QLabel(wordWrap=True), QtWidgets.QLabel()
+        self._where.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
+        self.setStyleSheet("color: #c0392b")
+        column = QtWidgets.QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self._what)
+        column.addWidget(self._where)
+
+    def text(self) -> str:
+        return f"{self._what.text()}\n{self._where.text()}".strip("\n")
+
+    def setText(self, text: str) -> None:  # noqa: N802
+        """text: a message; where it has a line with a caret below, the part around the caret is shown."""
+        what, *where = text.split("\n")
+        self._what.setText(what.removeprefix("path expression: "))
+        self._where.setText("\n".join(around_caret(*where[-2:])) if len(where) >= 2 else "")
+        self._where.setVisible(len(where) >= 2)
+        self.setVisible(bool(text))
+
+
+def around_caret(line: str, caret: str, width: int = ERROR_WIDTH) -> tuple:
+    """The part of a line, `width` letters at most, that the caret in the next line stands under, and that line."""
+    begin = max(0, min(caret.find("^") - width // 2, len(line) - width))
+    return line[begin:begin + width], caret[begin:begin + width]

@@ -12,7 +12,7 @@ from .qt import Qt, QtCore, QtGui, QtWidgets
 from .ticks import nice_ticks, tick_text
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
-HINT = "Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: reset."
+HINT = "Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what moves or everything."
 
 
 class MapArea(QtWidgets.QWidget):
@@ -22,7 +22,7 @@ class MapArea(QtWidgets.QWidget):
         super().__init__(parent)
         self.session = None
         self.panels: dict[tuple, MapPanel] = {}
-        self.view, self._full_view = QtCore.QRectF(), QtCore.QRectF()
+        self.view, self.near_view, self.whole_view = (QtCore.QRectF() for _ in range(3))
         self.layout_box, self.part_box, self.partition_box = (QtWidgets.QComboBox() for _ in range(3))
         self.layout_box.addItems(["all parts", "one map"])
         self.channel_box = QtWidgets.QComboBox()
@@ -77,8 +77,8 @@ class MapArea(QtWidgets.QWidget):
             for rx in range(len(radar.receivers)):
                 self.channel_box.addItem(f"TX {tx}, RX {rx}", (tx, rx))
         self.reach_box.setValue(int(session.spectrum_settings.get("zero_pad", 1)) // 2)
-        self._full_view = self._extent()
-        self.view = QtCore.QRectF(self._full_view)
+        self._find_views()
+        self.view = QtCore.QRectF(self.near_view)
         self.rebuild()
 
     def update_topics(self, topics: set) -> None:
@@ -92,10 +92,13 @@ class MapArea(QtWidgets.QWidget):
         self.layout_box.setCurrentIndex(int(is_one))
 
     def shown_parts(self) -> list:
-        """The parts whose maps are on display."""
+        """The parts whose maps are on display; "other" only where some of it reaches the colour scale."""
         if self.layout_box.currentIndex() == 1:
             return [self.session.part]
-        return self.session.parts.shown_beside(self.session.partition)
+        session = self.session
+        floor = session.map_limits()[0]
+        return [part for part in session.parts.shown_beside(session.partition)
+                if part.name != "other" or part is session.part or part.level(*session.channel).max() > floor]
 
     def rebuild(self) -> None:
         """Panels, lists and colours anew."""
@@ -131,6 +134,7 @@ class MapArea(QtWidgets.QWidget):
     def _place_panels(self, parts) -> None:
         for panel in self.panels.values():
             self.grid.removeWidget(panel)
+            panel.hide()
             panel.deleteLater()
         self.panels = {part.key: self._new_panel(part.key) for part in parts}
         columns = 1 if len(parts) == 1 else 2 if len(parts) <= 6 else 3
@@ -144,7 +148,7 @@ class MapArea(QtWidgets.QWidget):
         panel.hovered.connect(lambda *at: self._read(key, *at))
         panel.left.connect(lambda: self.read_out.setText(HINT))
         panel.view_changed.connect(self.set_view)
-        panel.view_reset.connect(lambda: self.set_view(self._full_view))
+        panel.view_reset.connect(self.next_view)
         return panel
 
     def _pick(self, key: tuple, box: CellBox) -> None:
@@ -172,16 +176,27 @@ class MapArea(QtWidgets.QWidget):
         if self.session is not None:
             self.session.set_dynamic_range(decibels)
 
-    def _extent(self) -> QtCore.QRectF:
+    def _extent(self, spectra, is_moving_meant: bool) -> QtCore.QRectF:
         """Where there is signal, or the whole map where there is none."""
         spectrum = self.session.parts.whole.spectrum
         half_range, half_velocity = 0.5 * step_of(spectrum.range), 0.5 * step_of(spectrum.velocity)
         left, right = spectrum.range[0] - half_range, spectrum.range[-1] + half_range
         low, high = spectrum.velocity[0] - half_velocity, spectrum.velocity[-1] + half_velocity
-        near = signal_extent([spectrum], self.session.map_limits()[0])
+        near = signal_extent(spectra, self.session.map_limits()[0], is_moving_meant)
         if near is not None:
             left, right, low, high = max(left, near[0]), min(right, near[1]), max(low, near[2]), min(high, near[3])
         return QtCore.QRectF(left, low, right - left, high - low)
+
+    def _find_views(self) -> None:
+        """All that is received, and as far as something moves, its surroundings."""
+        whole = self.session.parts.whole.spectrum
+        parts = [part.spectrum for part in self.session.parts.shown_beside(self.session.partition)[1:]]
+        self.whole_view = self._extent([whole], False)
+        self.near_view = self._extent(parts or [whole], True)
+
+    def next_view(self) -> None:
+        """From any view to what moves, and from there to all that is received."""
+        self.set_view(self.whole_view if self.view == self.near_view else self.near_view)
 
 
 class ColourBar(QtWidgets.QWidget):

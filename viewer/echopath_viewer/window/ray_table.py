@@ -7,6 +7,7 @@ from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 COLUMNS = ("Bounces", "Range in m", "Speed in m/s", "Power in dBm", "Hits")
 DECIMALS = {1: "{:.3f}", 2: "{:+.3f}", 3: "{:.1f}"}
+STRONGEST_FIRST = (3, Qt.SortOrder.DescendingOrder)
 WIDTHS = (70, 88, 100, 104)  # pixels; the last column has the rest
 HITS = len(COLUMNS) - 1
 
@@ -17,15 +18,14 @@ class RayTableModel(QtCore.QAbstractTableModel):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.session = None
-        self.rays = np.zeros(0, np.int64)
-        self._order = None
+        self.rays = self._strongest_first = np.zeros(0, np.int64)
+        self._order = STRONGEST_FIRST
 
     def show_rays(self, session, rays) -> None:
-        """rays: indices of paths, sorted as they were before."""
+        """rays: indices of paths, strongest first, shown in the order that was asked for."""
         self.beginResetModel()
-        self.session, self.rays = session, np.asarray(rays)
-        if self._order is not None:
-            self._sort(*self._order)
+        self.session, self._strongest_first = session, np.asarray(rays)
+        self._sort(*self._order)
         self.endResetModel()
 
     def rowCount(self, parent=QtCore.QModelIndex()):  # noqa: N802, B008
@@ -67,7 +67,8 @@ class RayTableModel(QtCore.QAbstractTableModel):
         self.layoutChanged.emit()
 
     def _sort(self, column: int, order) -> None:
-        if column < 0 or not len(self.rays):
+        self.rays = self._strongest_first
+        if column < 0 or not len(self.rays) or (column, order) == STRONGEST_FIRST:
             return
         if column == HITS:
             keys = np.array([self.text(row, HITS) for row in range(len(self.rays))])
@@ -87,7 +88,7 @@ class RayTable(QtWidgets.QWidget):
         self.model, self.view = RayTableModel(self), QtWidgets.QTableView()
         self.view.setModel(self.model)
         self.view.setSortingEnabled(True)
-        self.view.sortByColumn(3, Qt.SortOrder.DescendingOrder)
+        self.view.sortByColumn(*STRONGEST_FIRST)
         self.view.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
         self.view.setAlternatingRowColors(True)
         self.view.verticalHeader().setDefaultSectionSize(20)

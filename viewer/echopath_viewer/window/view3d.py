@@ -120,7 +120,7 @@ class View3D(QtInteractor):
     def resizeEvent(self, event):  # noqa: N802
         super().resizeEvent(event)
         if self.builder is not None:
-            self.builder.redraw_legend()
+            self.builder.resized()
             self.render_soon()
 
     def mousePressEvent(self, event):  # noqa: N802

@@ -1,0 +1,161 @@
+"""Time that the viewer computes for after a filter, a colouring, a pick or a step in time, and until its window is up.
+
+    xvfb-run -a -s "-screen 0 1600x1000x24" python tests/bench/bench_viewer.py [--paths 200000]
+
+The street demo with as many paths. Computing is all from the change to data ready to be drawn, lists and tables included;
+drawing, which depends on the graphics card, stands beside it once. Least of several changes. Verdicts go by processor time
+of all threads, which other programs do not disturb and which on two cores is no less than the time a person waits; the
+latter stands beside it.
+"""
+from __future__ import annotations
+
+import argparse
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import echopath as ep
+from echopath.path_subset import strongest, subset
+from echopath_viewer.model import CellBox, Filters, from_file
+from echopath_viewer.window import MainWindow
+from echopath_viewer.window.demo import simulate_demo
+from echopath_viewer.window.qt import QtWidgets
+
+NUM_REPETITIONS = 7
+MAX_COMPUTING, MAX_START = 0.050, 6.0  # s, promised for 200 thousand paths on two cores
+START = """
+import sys
+from echopath_viewer.window import view
+from echopath_viewer.window.qt import QtWidgets
+window = view(sys.argv[1], block=False)
+while window.isHidden() or window.view3d._is_fresh:
+    QtWidgets.QApplication.processEvents()
+window.view3d.render()
+print('up')
+"""
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--paths", type=int, default=200_000)
+    num_paths = options.parse_args().paths
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "frame.h5"
+        save_street(path, num_paths)
+        print(f"street demo, {num_paths:,} paths, {path.stat().st_size / 2**20:.0f} MiB")
+        bench_start(path)
+        bench_changes(path)
+
+
+def save_street(path: Path, num_paths: int) -> None:
+    """The strongest paths of the demo, with its whole signal and one partition."""
+    frame = simulate_demo(None)
+    assert frame.paths.num_paths >= num_paths, "the demo has too few paths"
+    keep = np.zeros(frame.paths.num_paths, bool)
+    keep[strongest(frame.path_power, num_paths)] = True
+    frame.paths = subset(frame.paths, keep)
+    frame.part_of_path = {name: labels[keep] for name, labels in frame.part_of_path.items()}
+    del frame.path_power
+    ep.save_frame(frame, path)
+
+
+def bench_start(path: Path) -> None:
+    """From the start of Python to the first picture, in a process of its own; the second time, with files in the cache."""
+    for _ in range(2):
+        watch, before = Stopwatch(), children_seconds()
+        subprocess.run([sys.executable, "-c", START, str(path)], check=True, stdout=subprocess.DEVNULL)
+        wall, seconds = watch.wall(), children_seconds() - before
+    verdict(f"window up, from the command line {seconds:6.2f} s (waited {wall:.2f} s)", seconds, MAX_START)
+
+
+def children_seconds() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+class Stopwatch:
+    """Time passed and processor time of all threads, in s."""
+
+    def __init__(self):
+        self._wall, self._processor = time.perf_counter(), time.process_time()
+
+    def wall(self) -> float:
+        return time.perf_counter() - self._wall
+
+    def processor(self) -> float:
+        return time.process_time() - self._processor
+
+
+def bench_changes(path: Path) -> None:
+    application = QtWidgets.QApplication([])
+    window = MainWindow()
+    window.show_input(from_file(path))
+    window.show()
+    application.processEvents()
+    for max_rays in (2000, window.session.paths.num_paths):
+        window.session.set_max_rays(max_rays)
+        settle(window)
+        print(f"at most {max_rays:,} rays drawn")
+        for name, change in changes(window.session).items():
+            bench_change(window, name, change)
+        bench_drawing(window)
+    window.close()
+
+
+def changes(session) -> dict:
+    """{name: callable (n)}: a change that is another one for each n."""
+    modes = ("mesh", "power", "range", "speed", "bounces")
+    cells = [session.cell_of(int(path)) for path in session.shown_rays(50)[::7]]
+    return {
+        "filter by bounces": lambda n: session.set_filters(Filters(max_bounces=3 + n % 2)),
+        "filter by power": lambda n: session.set_filters(Filters(min_power_dbm=-250.0 - n)),
+        "filter by path expression": lambda n: session.set_filters(Filters(expression=f"T .{{1,{3 + n}}} R")),
+        "part": lambda n: session.set_part([("route", "side wall"), ("route", "floor")][n % 2]),
+        "whole": lambda n: session.set_part(("whole", "whole")),
+        "colour": lambda n: session.set_color_by(modes[n % len(modes)]),
+        "step in time": lambda n: session.set_chirp(100 + n),
+        "cell": lambda n: session.select_cells(CellBox.around(*cells[n % len(cells)], 1)),
+        "no cell": lambda n: session.select_cells(None),
+    }
+
+
+def bench_change(window, name: str, change) -> None:
+    times = []
+    for number in range(NUM_REPETITIONS):
+        watch = Stopwatch()
+        change(number)
+        window._refresh_lists()
+        times.append((watch.processor(), watch.wall()))
+        settle(window)
+    seconds, wall = min(times)
+    is_promised = name.startswith(("filter", "colour"))
+    text = f"  {name:28} {1e3 * seconds:7.1f} ms (waited {1e3 * wall:.1f} ms)"
+    verdict(text, seconds, MAX_COMPUTING if is_promised else None)
+
+
+def bench_drawing(window) -> None:
+    window.session.select_cells(None)
+    watch = Stopwatch()
+    window.view3d.render()
+    text = f"  {'drawing once':28} {1e3 * watch.processor():7.1f} ms (waited {1e3 * watch.wall():.1f} ms)"
+    verdict(text, watch.processor(), None)
+
+
+def settle(window) -> None:
+    """Forgets what waits for the next turn of the event loop: it has been done, or is drawing."""
+    window._listing.stop()
+    window.view3d._render_timer.stop()
+
+
+def verdict(text: str, seconds: float, limit: float | None) -> None:
+    held = "" if limit is None else f"   {'holds' if seconds < limit else 'MISSES'} {limit:g} s"
+    print(text + held, flush=True)
+
+
+if __name__ == "__main__":
+    main()

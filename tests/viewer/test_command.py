@@ -1,0 +1,61 @@
+"""`echopath view` from a shell: what it says where it cannot open a window, and that Ctrl-C closes one."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+import echopath as ep
+
+PATIENCE = 60  # s
+VIEW = [sys.executable, "-m", "echopath", "view"]
+HAS_SCREEN = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
+ANNOUNCED = """
+import sys
+from echopath.cli import main
+from echopath_viewer.window.qt import QtCore
+from echopath_viewer.window import MainWindow
+shown = MainWindow.showEvent
+MainWindow.showEvent = lambda self, event: (shown(self, event), QtCore.QTimer.singleShot(0, lambda: print("up", flush=True)))
+sys.exit(main(["view", sys.argv[1]]))
+"""
+
+
+def run(command, **environment) -> subprocess.CompletedProcess:
+    names = os.environ | environment
+    return subprocess.run(command, env={name: value for name, value in names.items() if value}, capture_output=True,
+                          text=True, timeout=PATIENCE)
+
+
+def test_a_file_that_is_none_of_ours_is_refused_before_a_window_opens(tmp_path):
+    (tmp_path / "frame.h5").write_text("not HDF5")
+    done = run([*VIEW, str(tmp_path / "frame.h5")])
+    assert done.returncode == 2 and done.stderr.startswith("echopath: ") and "frame.h5" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have a screen")
+def test_without_a_screen_it_says_so():
+    done = run(VIEW, DISPLAY="", WAYLAND_DISPLAY="", QT_QPA_PLATFORM="")
+    assert done.returncode == 2 and "needs a screen" in done.stderr and "off_screen" in done.stderr
+
+
+def test_without_the_extra_it_says_what_to_install():
+    script = "import sys; sys.modules['pyvistaqt'] = None; from echopath.cli import main; sys.exit(main(['view']))"
+    done = run([sys.executable, "-c", script])
+    assert done.returncode == 2 and "pip install 'echopath[viewer]'" in done.stderr
+
+
+@pytest.mark.skipif(not HAS_SCREEN, reason="needs a screen")
+def test_ctrl_c_closes_the_window(frame, tmp_path):
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    command = [sys.executable, "-c", ANNOUNCED, str(tmp_path / "frame.h5")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as viewer:
+        assert viewer.stdout.readline() == "up\n"
+        viewer.send_signal(signal.SIGINT)
+        _, errors = viewer.communicate(timeout=PATIENCE)
+    assert viewer.returncode == 130 and "Traceback" not in errors

@@ -91,6 +91,18 @@ def test_a_rectangle_holds_what_a_loop_finds():
     assert mask.any() and not mask.all()
 
 
+def test_what_the_anti_alias_filter_removes_does_not_come_back_in_front():
+    """Just beyond the last cell, where the next would be the first."""
+    waveform = radar_of(False, 1).waveform
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material="clothing", position=(waveform.max_range + 0.03, 0.0, 0.0))
+    paths = ep.trace(scene, radar, num_rays=30, max_bounces=1)
+    cube = ep.synthesize(paths)
+    assert not cube.any() and paths.num_paths > 0
+    assert np.all(ep.path_cells(paths, ep.range_doppler(cube, radar)).range_index == -1)
+
+
 def test_no_paths_give_no_cells():
     paths = traced(radar_of(False, 1)).select("T .{3} R")
     cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))

@@ -1,15 +1,18 @@
 """Paths in both directions: what one order cannot carry comes as the reversal of the other."""
 import numpy as np
+import pytest
 
 import echopath as ep
 
 RECIPROCITY = 1e-6  # relative, of the power of a path when the antennas change places
+POLARIZED_RECIPROCITY = 1e-4  # likewise: matrices are kept in single precision, and some receivers are nearly crossed
 
 
-def make_radar(transmitter, receiver):
+def make_radar(transmitter, receiver, sent=(0, 0, 1), received=(0, 0, 1)):
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=1,
                                 chirp_interval=30e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter)], receivers=[ep.Antenna(receiver)])
+    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter, polarization=sent)],
+                    receivers=[ep.Antenna(receiver, polarization=received)])
 
 
 def corner_scene():
@@ -58,3 +61,117 @@ def test_a_small_plate_is_no_mirror():
     paths = ep.trace(scene, make_radar((0, 0, 0), (0, 0, 0)), num_rays=50000, max_bounces=2)
     assert paths.frame.statistics.num_small_mirrors > 0
     assert ("plate", "ball") not in sequences(paths)
+
+
+HERE, THERE = (0.0, 0.0, 0.0), (0.0, 0.3, 0.2)
+FLAT = ep.Material(reflectivity=0.5, scattering=1.0)     # the same at all angles: its lobe is reciprocal
+
+
+def rectangle(corner, edge_a, edge_b):
+    corner, a, b = (np.asarray(value, float) for value in (corner, edge_a, edge_b))
+    return ep.Mesh([corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]])
+
+
+def chains(paths):
+    """Per path: its material points, each as (mesh, triangle, u, v), and its mirrors as (mesh,), in travel order."""
+    mirrors = [mesh.material.mirror for mesh in paths.scene.meshes]
+    columns = (paths.mesh_id, paths.triangle_id, paths.u, paths.v)
+    hits = list(zip(*(np.asarray(column).tolist() for column in columns)))
+
+    def point(hit, is_diffuse):
+        return hit if is_diffuse or not mirrors[hit[0]] else hit[:1]
+
+    return [tuple(point(hits[start + k], int(bits) >> k & 1) for k in range(count))
+            for start, count, bits in zip(paths.offsets, paths.num_bounces, paths.diffuse)]
+
+
+def with_exchanged_antennas(paths):
+    """The same record for a radar whose antennas have changed places."""
+    names = ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
+    (transmitter,), (receiver,) = paths.radar.transmitters, paths.radar.receivers
+    radar = make_radar(receiver.position, transmitter.position, receiver.polarization, transmitter.polarization)
+    jones = paths.jones if paths.jones.size else None
+    return ep.Paths.from_arrays(**{name: getattr(paths, name) for name in names}, jones=jones, scene=paths.scene,
+                                frame=paths.frame, radar=radar)
+
+
+def exchange_error(paths):
+    """Largest relative change of power as the antennas change places, of all paths whose opposite is there; their number."""
+    forward, swapped = (np.abs(record.amplitude)**2 for record in (paths, with_exchanged_antennas(paths)))
+    by_chain = {chain: path for path, chain in enumerate(chains(paths))}
+    pairs = [(path, by_chain[chain[::-1]]) for chain, path in by_chain.items() if chain[::-1] in by_chain]
+    some, opposite = np.array(pairs).T
+    return np.max(np.abs(swapped[opposite] / forward[some] - 1)), len(pairs)
+
+
+def diffuse_scene(wall, rough=FLAT):
+    """Two rough balls beside a mirror: single hits, hits over the mirror and chains of several hits, over it or not."""
+    scene = ep.Scene()
+    scene.add(rectangle((-1, 2, -5), (12, 0, 0), (0, 0, 10)), name="wall", material=wall)
+    scene.add(ep.actors.sphere(0.5), name="ball", material=rough, position=(5, 0, 0))
+    scene.add(ep.actors.sphere(0.7), name="other", material=rough, position=(5.5, -1.4, 0.2))
+    return scene
+
+
+def test_exchanged_antennas_receive_the_same_over_diffuse_hits_and_mirrors():
+    scene = diffuse_scene(ep.Material.metal(mirror=True))
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=40000, max_bounces=5)
+    for events in ("D", "S D", "S D S", "D D", "S D D", "S D D S", "D D D", "D S D", "D S D S"):
+        error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
+        assert count >= 20 and error < RECIPROCITY, events
+
+
+def test_exchanged_antennas_and_polarisations_receive_the_same():
+    """At one place: matrices are those of the directions in which the antennas were traced."""
+    turning = FLAT.replace(cross_polarization=.3)
+    scene = diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True), turning)
+    slanted = [np.array(vector) / np.linalg.norm(vector) for vector in ((0, .3, 1), (0, 1, .2))]
+    paths = ep.trace(scene, make_radar(HERE, HERE, *slanted), num_rays=40000, max_bounces=4, polarization="jones")
+    for events in ("D", "S D", "D D", "S D D", "D S D"):
+        error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
+        assert count >= 20 and error < POLARIZED_RECIPROCITY, events
+
+
+def test_exchanged_antennas_receive_the_same_over_a_dielectric_mirror():
+    """At one place: coefficients of the mirror are those of the places where the antennas were traced."""
+    paths = ep.trace(diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True)), make_radar(HERE, HERE), num_rays=10000)
+    error, count = exchange_error(paths.select("T S? D S? R"))
+    assert count > 1000 and error < RECIPROCITY
+
+
+def test_exchanged_antennas_receive_the_same_over_mirrors_alone():
+    scene = ep.Scene()
+    for name, corner, edge, permittivity in (("left", (-9, 2, -2), (0, 0, 8), 5 - .3j),
+                                             ("right", (-9, -3, -2), (0, 0, 8), 7 - 1j),
+                                             ("floor", (-9, -3, -1), (0, 5, 0), 4 - .2j)):
+        material = ep.Material(permittivity=permittivity, mirror=True)
+        scene.add(rectangle(corner, (20, 0, 0), edge), name=name, material=material)
+    records = []
+    for ends in ((HERE, THERE), (THERE, HERE)):
+        paths = ep.trace(scene, make_radar(*ends), num_rays=100, max_bounces=4)
+        records.append(dict(zip(chains(paths), zip(np.abs(paths.amplitude)**2, paths.lengths([0.0])[0]))))
+    assert len(records[0]) > 10 and set(records[1]) == {chain[::-1] for chain in records[0]}
+    for chain, (power, length) in records[0].items():
+        opposite = records[1][chain[::-1]]
+        assert abs(opposite[0] / power - 1) < RECIPROCITY and abs(opposite[1] - length) < 1e-9
+
+
+@pytest.mark.parametrize("here, there", [((0, 0, 0), (0, 0, 0)), ((0, 1000, 0), (0, -1000, 0))])
+def test_exchanged_antennas_receive_the_same_from_a_plate(here, there):
+    """Physical optics is reciprocal in backscatter and in the specular direction, where all of a small plate lies."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.002, 0.002), name="plate", material="metal", position=(4000, 0, 0))
+    paths = ep.trace(scene, make_radar(here, there), num_rays=2000, max_bounces=1)
+    error, count = exchange_error(paths)
+    assert count > 1000 and error < RECIPROCITY
+
+
+def test_what_a_transmit_leg_finds_comes_back_behind_several_diffuse_hits():
+    """A plate that is not flagged is a mirror for the transmit leg alone: the opposite order is the reversal."""
+    scene = corner_scene()
+    scene.add(ep.actors.sphere(0.8), name="other", material=FLAT, position=(6, -1.2, 0))
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=100000, max_bounces=3)
+    chain, opposite = paths.select("T S'plate' D D R"), paths.select("T D D S'plate' R")
+    assert chain.num_paths > 20 and not chain.flags.any() and opposite.flags.all()
+    error, count = exchange_error(paths.select("T (S'plate' D D | D D S'plate') R"))
+    assert count == 2 * chain.num_paths == 2 * opposite.num_paths and error < RECIPROCITY

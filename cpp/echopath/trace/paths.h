@@ -39,7 +39,7 @@ struct Stratum {
 inline constexpr uint8_t kNoBatch = 255;
 
 // Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
-// it was traced with the antennas exchanged.
+// it was traced with the antennas exchanged. A chain of several diffuse hits has the coefficients of its travel order.
 inline constexpr uint32_t kReversedPath = 1;
 
 struct TraceStatistics {

@@ -9,8 +9,7 @@
 namespace echopath {
 namespace {
 
-constexpr int kRouletteBounce = 3;  // rays leave this bounce and later ones by Russian roulette
-static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs knows of no roulette");
+static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs knows of no roulette on mirrors");
 // Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 
@@ -69,9 +68,9 @@ void RayShooter::shoot(int64_t index, PathBlock& block) const {
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   thread_local Scratch scratch;
   Surface surface;
-  while (ray.depth < settings_.max_bounces && advance(ray, surface, block)) {
+  while (advance(ray, surface, block)) {
     connect(ray, surface, scratch, block);
-    if (!bounce(ray, surface)) break;
+    if (ray.depth == settings_.max_bounces || !bounce(ray, surface, scratch, block)) break;
   }
   block.end_ray(ray.hits.data());
 }
@@ -121,19 +120,23 @@ void RayShooter::follow_tube(Ray& ray, Surface& surface) const {
   ray.rays.transfer(ray.direction, distance, surface.point.normal);
 }
 
-RayShooter::Odds RayShooter::odds_of(const Surface& surface) const {
-  const SurfaceResponse& response = surface.response;
+double RayShooter::survival_of(const SurfaceResponse& response, int num_bounces) {
+  return num_bounces < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
+}
+
+RayShooter::Odds RayShooter::odds_of(const Material& material, const SurfaceResponse& response) const {
   const Odds shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
   const bool is_asked = settings_.specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
   // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
-  if (!is_asked || surface.material->mirror) return shares;
+  if (!is_asked || material.mirror) return shares;
   return {settings_.specular_probability, 1.0 - settings_.specular_probability};
 }
 
-bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
+bool RayShooter::bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   const SurfaceResponse& response = surface.response;
-  const Odds odds = odds_of(surface);
-  const double survival = ray.depth < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
+  const Odds odds = odds_of(*surface.material, response);
+  const int num_bounces = ray.coherent ? ray.depth : ray.depth - scratch.chain.first;
+  const double survival = survival_of(response, num_bounces);
   const auto dimension = static_cast<uint32_t>(2 * ray.depth);
   const bool is_open = odds.specular > 0 && odds.diffuse > 0;
   bool specular = odds.diffuse == 0;
@@ -143,19 +146,20 @@ bool RayShooter::bounce(Ray& ray, const Surface& surface) const {
     if (is_open) specular = coin[0] < odds.specular;
   }
   ray.from = geometry_.lifted(surface.point.position, surface.point.normal);
-  if (specular) bounce_specular(ray, surface, odds.specular * survival);
-  else bounce_diffuse(ray, surface, odds.diffuse * survival);
+  if (specular) bounce_specular(ray, surface, odds.specular * survival, scratch.chain);
+  else bounce_diffuse(ray, surface, odds.diffuse * survival, scratch, block);
   if (specular) ray.chain_share *= odds.specular;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }
 
 // `probability`: with which the ray goes on this way.
-void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probability) const {
+void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const {
   const SurfaceResponse& response = surface.response;
   const RayHit& point = surface.point;
   ray.field_factor /= probability;
   if (ray.coherent && has_smooth_) reflect_tube(ray, surface);
-  if (settings_.is_polarized) reflect_polarized(ray, surface);
+  if (settings_.is_polarized) reflect_polarized(ray, surface, ray.polarized);
+  if (settings_.is_polarized && !ray.coherent && chain.back) reflect_polarized(ray, surface, chain.fields);
   const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
   ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
   ray.coefficient *= response.gamma * response.coherent;
@@ -165,6 +169,7 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probab
   ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
   ray.last_was_mirror = mirror < 0;
   if (mirror < 0) ray.mirror = bounced;
+  if (!ray.coherent) leave_specular(ray, surface, probability, chain);
 }
 
 // The tube of a coherent ray, before its direction changes.
@@ -175,8 +180,10 @@ void RayShooter::reflect_tube(Ray& ray, const Surface& surface) const {
   ray.is_curved = ray.is_curved || point.is_smooth;
 }
 
-void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability) const {
+void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch,
+                                PathBlock& block) const {
   const Vec3& normal = surface.point.normal;
+  if (ray.coherent) begin_chain(ray, surface, probability, scratch, block);
   ray.coefficient *= std::abs(surface.response.gamma) * surface.response.diffuse;
   ray.area *= surface.area;
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
@@ -187,6 +194,7 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
   const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
   const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
   const Vec3 out = cosine_lobe(normal, random);
+  leave_diffuse(ray, surface, out, probability, scratch.chain);
   if (settings_.is_polarized) scatter_polarized(ray, surface, out);
   ray.direction = out;
   ray.leg_length = 0.0;

@@ -5,7 +5,9 @@
 // receive leg. Regime D (diffuse): the ray carries power with one random phase per diffuse hit. A diffuse hit that the ray
 // reached directly or over at most kMaxLegMirrors flagged mirrors is paired with all its visible transmit and receive legs,
 // under the balance weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only, by one
-// in eight of the rays that aim at objects and all others; paths over mirrors alone come from mirror_paths.h.
+// in eight of the rays that aim at objects and all others; paths over mirrors alone come from mirror_paths.h. A chain of
+// diffuse hits gives both of its orders, with one phase, under the balance weight over the rays that meet it from either end
+// (sbr_diffuse.cpp).
 // A specular bounce off an unflagged surface smaller than its Fresnel zone is no mirror: the ray ends behind it. What it would
 // have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
 // the opposite order would have to use such a mirror.
@@ -39,6 +41,7 @@ class RayShooter {
   struct Surface;  // where it is
   struct Scratch;
   struct Odds;     // of going on
+  struct Chain;    // of diffuse hits
 
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
@@ -57,18 +60,33 @@ class RayShooter {
   double counted_share(const Surface& surface) const;
   bool is_counted(const Ray& ray, const Surface& surface) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
-  bool bounce(Ray& ray, const Surface& surface) const;
-  void bounce_specular(Ray& ray, const Surface& surface, double probability) const;
+  bool bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
-  void bounce_diffuse(Ray& ray, const Surface& surface, double probability) const;
-  Odds odds_of(const Surface& surface) const;
+  void bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
+  Odds odds_of(const Material& material, const SurfaceResponse& response) const;
+  static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
+  SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;
+  // sbr_diffuse.cpp: chains of several diffuse hits.
+  void begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
+  void leave_diffuse(const Ray& ray, const Surface& surface, const Vec3& out, double probability, Chain& chain) const;
+  void leave_specular(const Ray& ray, const Surface& surface, double probability, Chain& chain) const;
+  void find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch,
+                          PathBlock& block) const;
+  void connect_chain(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  double share_of_order(const Surface& surface, const SurfaceResponse& response, const Leg& leg, const Chain& chain) const;
+  void record_reversed(const Ray& ray, const Chain& chain, const Leg& leg, uint64_t bits, std::complex<double> weight,
+                       PathBlock& block) const;
   // sbr_polarization.cpp: only where polarised.
-  void reflect_polarized(Ray& ray, const Surface& surface) const;
+  void reflect_polarized(const Ray& ray, const Surface& surface, FieldPair& fields) const;
   JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   JonesMatrix pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const;
   void scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const;
   FieldPair scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
+  FieldPair scattered_back(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+                           const Vec3& out) const;
+  JonesMatrix opposite_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const Chain& chain) const;
   FieldPair incident_over(const Leg& leg) const;
   JonesMatrix received_over(const Leg& leg, FieldPair fields) const;
   std::complex<double> phase_factor(const Ray& ray) const;

@@ -36,6 +36,7 @@ bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& directi
 
 void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   const Vec3& point = surface.point.position;
+  scratch.receive.clear();
   if ((point - settings_.receiver).norm() < kNearAntenna || (point - settings_.transmitter).norm() < kNearAntenna) {
     ++block.statistics.num_near_antenna;
     return;
@@ -48,14 +49,12 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   if (in_pairs && !is_counted(ray, surface)) return;
   legs_.find(point, surface.point.normal, receiver_, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther,
              scratch.receive, block.statistics.num_queries);
-  if (scratch.receive.empty()) return;
+  if (scratch.receive.empty() && ray.coherent) return;
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
   if (!radiates_power) return;
-  if (in_pairs) {
-    connect_all_pairs(ray, surface, scratch, block);
-  } else {
-    connect_diffuse(ray, surface, scratch, block);
-  }
+  if (!ray.coherent) connect_chain(ray, surface, scratch, block);
+  else if (in_pairs) connect_all_pairs(ray, surface, scratch, block);
+  else connect_diffuse(ray, surface, scratch, block);
 }
 
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
@@ -120,10 +119,9 @@ std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surfac
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   const std::complex<double> scalar =
       settings_.is_polarized ? 1.0 : ray.coefficient * std::abs(surface.response.gamma) * surface.response.diffuse;
-  const std::complex<double> weight = scalar * std::sqrt(ray.area * surface.area) * phase_factor(ray);
-  const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
-  // Behind a diffuse hit the opposite order is sampled by itself.
-  const bool with_reversal = ray.coherent && ray.mirror.mesh >= 0;
+  const std::complex<double> weight = scalar * std::sqrt(surface.area) * phase_factor(ray);
+  const uint64_t bits = uint64_t{1} << (ray.depth - 1);
+  const bool with_reversal = ray.mirror.mesh >= 0;
   for (const Leg& leg : scratch.receive) {
     record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
   }
@@ -166,18 +164,13 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 }
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
-  legs_.find(surface.point.position, surface.point.normal, transmitter_, settings_.max_bounces - 1, ray.sequence,
-             scratch.transmit, block.statistics.num_queries);
-  std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
+  find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch, block);
   scratch.transmit.push_back(own_leg(ray));
   const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
   const std::complex<double> phase = phase_factor(ray);
 
   for (const Leg& in : scratch.transmit) {
-    const Vec3 arrival = -in.to_antenna;
-    const SurfaceResponse response =
-        respond(*surface.material, settings_.frequency, surface.point.normal.dot(in.to_antenna),
-                polarization_mode(settings_.polarization, arrival, surface.point.normal));
+    const SurfaceResponse response = response_toward(surface, in.to_antenna);
     const std::complex<double> scalar =
         settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
     const std::complex<double> weight = root_area * scalar * phase;

@@ -26,9 +26,9 @@ void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, c
 }  // namespace
 
 // Before the ray's direction changes.
-void RayShooter::reflect_polarized(Ray& ray, const Surface& surface) const {
+void RayShooter::reflect_polarized(const Ray& ray, const Surface& surface, FieldPair& fields) const {
   const double coherent = surface.response.coherent;
-  reflect_all(ray.polarized, ray.direction, surface.point.normal, *surface.material, settings_.frequency, coherent * coherent);
+  reflect_all(fields, ray.direction, surface.point.normal, *surface.material, settings_.frequency, coherent * coherent);
 }
 
 void RayShooter::scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const {
@@ -49,6 +49,20 @@ FieldPair RayShooter::scattered(const Ray& ray, const Surface& surface, const Fi
   FieldPair out_fields;
   for (size_t launch = 0; launch < 2; ++launch) {
     out_fields[launch] = diffuse * scattered_field(fields[launch], in, surface.point.normal, out, modes, turn);
+  }
+  return out_fields;
+}
+
+// The transpose of what the hit makes of fields that come along -`out` and leave along -`in`: a chain of such hits, read
+// from its other end.
+FieldPair RayShooter::scattered_back(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+                                     const Vec3& out) const {
+  const FieldPair axes = launched_fields(out);
+  const FieldPair back = scattered(ray, surface, axes, -out, -in);
+  FieldPair out_fields;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    const std::complex<double> along[] = {back[0].transpose() * fields[launch], back[1].transpose() * fields[launch]};
+    out_fields[launch] = along[0] * axes[0] + along[1] * axes[1];
   }
   return out_fields;
 }
@@ -89,6 +103,11 @@ JonesMatrix RayShooter::coherent_matrix(const Ray& ray, const Surface& surface, 
 
 JonesMatrix RayShooter::diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
   return received_over(leg, scattered(ray, surface, ray.polarized, ray.direction, leg.to_antenna));
+}
+
+// From the receiver along the ray's way to the transmitter at the end of `leg`, for the opposite order of its chain.
+JonesMatrix RayShooter::opposite_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const Chain& chain) const {
+  return received_over(leg, scattered_back(ray, surface, chain.fields, ray.direction, leg.to_antenna));
 }
 
 // The ray's own way to the hit is one of the legs `in`.

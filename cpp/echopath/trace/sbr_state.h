@@ -1,6 +1,7 @@
 #pragma once
 // What sbr.cpp and sbr_connect.cpp share: the state of a ray. Internal to the module.
 #include <array>
+#include <optional>
 
 #include "echopath/em/jones.h"
 #include "echopath/trace/ray_differential.h"
@@ -9,6 +10,9 @@
 namespace echopath {
 
 inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
+// Rays leave this bounce and later ones by Russian roulette. Of a chain of diffuse hits its own bounces count, so that the
+// odds of its orders do not depend on how they were reached.
+inline constexpr int kRouletteBounce = 3;
 inline constexpr MirrorSequence kOther = -1;  // the transmitter was left over something else than a sequence of a leg
 
 // A specular bounce off an unflagged surface.
@@ -55,8 +59,21 @@ struct RayShooter::Odds {
   double specular = 0.0, diffuse = 0.0;
 };
 
+// The hits of a ray from its first diffuse one on, which other rays meet in the opposite order (sbr_diffuse.cpp).
+struct RayShooter::Chain {
+  int first = 0;             // index of its first hit: number of hits of the transmit leg
+  std::optional<Leg> back;   // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
+  double density = 0.0;      // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
+  // Odds of a ray that comes the opposite way to go on between both ends, over those of this ray. 0: none comes.
+  double odds = 1.0;
+  double held = 1.0;         // survival in the opposite order at the hit that was left last: it joins `odds` one hit later
+  std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
+  FieldPair fields;          // likewise, where polarised: of launches at the receiver that run the ray's way
+};
+
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
+  Chain chain;  // of rays that have left a diffuse hit
 };
 
 // Curvature of a hit in the plane of incidence, 1/m; 0 on facets.

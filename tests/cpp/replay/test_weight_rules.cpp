@@ -1,6 +1,10 @@
 // How rays go on must not show in the echo: Russian roulette and the choice between specular and diffuse.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
 #include "echopath/replay/received_power.h"
 #include "support/scenes.h"
 
@@ -12,6 +16,8 @@ using namespace testing;
 constexpr double kSphereTolerance = 0.005;   // relative
 constexpr double kDihedralTolerance = 0.2;   // dB, of the mean of 32 seeds
 constexpr int kSeeds = 32;
+constexpr double kHemisphereTolerance = 0.01;  // relative: two standard errors
+constexpr double kThreeSigma = 3.0;
 
 // Integrating sphere of radius 3 m with Lambert walls: lambda^2 rho / (4 pi^2 R^2 (1 - rho)) of the transmitted power
 // arrives at any point inside. Most of it after the bounce from which rays go on by roulette.
@@ -28,9 +34,47 @@ TEST(WeightRules, IntegratingSphere) {
     const ReceivedPower power = received_power(paths);
     EXPECT_NEAR(power.power / truth, 1.0, kSphereTolerance) << reflectivity;
     EXPECT_LT(power.standard_error / truth, kSphereTolerance) << reflectivity;
-    EXPECT_LT(paths.num_paths(), static_cast<int64_t>(100000 * (3.2 + 1.0 / (1.0 - reflectivity)))) << reflectivity;
+    // Reversals aside, one path a bounce: three, and as many as the roulette lets happen.
+    const auto num_bounces = std::count(paths.flags.begin(), paths.flags.end(), 0u);
+    EXPECT_LT(num_bounces, static_cast<int64_t>(100000 * (3.2 + 1.0 / (1.0 - reflectivity)))) << reflectivity;
   }
 }
+
+// Metal mirrors through the middle make two or four sources of one: as many times lambda^2 rho^n / (4 pi^2 R^2) arrive after
+// n >= 2 diffuse bounces, wherever the antennas are before them, over all legs of the antennas and between the bounces
+// together. Between antennas at one place both orders of every chain add as fields.
+void expect_powers_of_chains(int num_mirrors) {
+  constexpr double kReflectivity = 0.7, kRadius = 3.0;
+  Scene scene;
+  Surface wall = ellipsoid(Vec3::Zero(), Vec3::Constant(kRadius), 4);
+  add_mesh(scene, "wall", std::move(wall.vertices), std::move(wall.triangles), lambert(kReflectivity));
+  add_rectangle(scene, "floor", {-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, share(Material::metal(true)));
+  if (num_mirrors > 1) add_rectangle(scene, "side", {0, -4, -4}, {0, 8, 0}, {0, 0, 8}, share(Material::metal(true)));
+  TraceSettings settings;
+  settings.num_rays = 40000;
+  settings.max_bounces = 20;
+  settings.batches = 16;
+  const Paths paths = trace(scene, plain_radar({0.5, 0.3, 0.8}, {0.5, 0.3, 0.8}), settings);
+  const Replayed replay = replayed(paths);
+  std::array<double, 6> powers{};
+  for (size_t i = 0; i < paths.offsets.size(); ++i) {
+    const int count = std::popcount(paths.diffuse[i]);
+    if (count < 6) powers[static_cast<size_t>(count)] += std::norm(replay.amplitudes[i]);
+  }
+  const double source = std::ldexp(1.0, num_mirrors) * std::pow(kSpeedOfLight / 77e9 / (kTwoPi * kRadius), 2);
+  for (int count = 2; count < 6; ++count) {
+    const double truth = source * std::pow(kReflectivity, count);
+    std::vector<uint8_t> keep;
+    for (const uint64_t bits : paths.diffuse) keep.push_back(std::popcount(bits) == count);
+    const ReceivedPower power = received_power(paths.select(keep));
+    EXPECT_NEAR(powers[static_cast<size_t>(count)] / truth, 1.0, kHemisphereTolerance) << count;
+    EXPECT_NEAR(power.power / truth, 2.0, kThreeSigma * power.standard_error / truth) << count;
+  }
+}
+
+TEST(WeightRules, IntegratingHemisphereOverAMirror) { expect_powers_of_chains(1); }
+
+TEST(WeightRules, QuarterOfAnIntegratingSphereInACornerOfMirrors) { expect_powers_of_chains(2); }
 
 // Two faces of 0.1 m at a right angle, seen along the bisector.
 Scene dihedral(double scattering) {

@@ -32,7 +32,7 @@ InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
   int previous = path.first_material;
   for (int k = previous + 1; k <= path.last_material; ++k) {
     if (path.is_image(k)) continue;
-    const InnerLeg leg = inner_leg(hits, previous, k);
+    const UnfoldedLeg leg = inner_leg(hits, previous, k);
     inner.length += leg.length;
     since_diffuse += leg.length;
     if (path.is_diffuse(previous)) {

@@ -25,11 +25,6 @@ Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last)
   return direction;
 }
 
-Vec3 direction_behind(Vec3 direction, const PosedHit* hits, int first, int last) {
-  for (int k = first; k < last; ++k) direction = reflect(direction, hits[k]);
-  return direction;
-}
-
 // Moves a posed hit from its facet to the curved surface.
 void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
   const Vec3 corner = posed.point - hit.u * posed.edge_u - hit.v * posed.edge_v;
@@ -98,7 +93,7 @@ AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedA
   AntennaLeg leg;
   leg.length = line.norm();
   leg.travel = line / leg.length;
-  leg.at_antenna = direction_behind(leg.travel, hits, first, path.count);
+  leg.at_antenna = reflected_behind(leg.travel, hits, first, path.count);
   leg.gain = antenna.toward(-leg.at_antenna);
   return leg;
 }
@@ -111,13 +106,20 @@ MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const
   return {length, transmitter.toward(departure), receiver.toward(-arrival), departure, arrival};
 }
 
-InnerLeg inner_leg(const PosedHit* hits, int from, int to) {
-  const Vec3 line = hits[to].point - forward_image(hits[from].point, hits, from + 1, to);
-  InnerLeg leg;
-  leg.length = line.norm();
-  leg.arrival = line / leg.length;
-  leg.departure = direction_before(leg.arrival, hits, from + 1, to);
-  return leg;
+UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to) {
+  const Vec3 line = to - forward_image(from, hits, first, last);
+  const double length = line.norm();
+  const Vec3 arrival = line / length;
+  return {length, direction_before(arrival, hits, first, last), arrival};
+}
+
+Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last) {
+  for (int k = first; k < last; ++k) vector = reflect(vector, hits[k]);
+  return vector;
+}
+
+UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to) {
+  return unfolded_leg(hits, hits[from].point, from + 1, to, hits[to].point);
 }
 
 }  // namespace echopath

@@ -43,19 +43,30 @@ struct LocalPath {
   bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
   uint64_t diffuse = 0;
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
+  uint64_t sliding = 0;            // bit per hit: specular otherwise; the point of reflection slides over its surface
   std::complex<double> weight;
   LaunchCell cell;                 // coherent paths only
   const JonesMatrix* jones = nullptr;  // null where the trace was scalar
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
+  bool is_sliding(int hit) const { return sliding >> hit & 1; }
   // The launch cell lies on the triangle of this hit.
   bool has_cell_at(int hit) const { return diffuse == 0 && hit == last_material; }
-  // First and last hit that are material points; -1 where the path has mirrors only.
+  // First and last hit that are not images; -1 where the path has mirrors only. The last one is a material point.
   int first_material = -1, last_material = -1;
 };
 
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
+
+// From one point to another over the mirrors `first` to `last` - 1 of a path, unfolded.
+struct UnfoldedLeg {
+  double length;            // m
+  Vec3 departure, arrival;  // unit directions of travel at both ends
+};
+UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to);
+// A vector as it stands behind these mirrors.
+Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last);
 
 // A leg between a material point and an antenna, unfolded over the mirrors between.
 struct AntennaLeg {
@@ -78,11 +89,7 @@ struct MirrorOnlyLeg {
 MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
                               const PosedAntenna& receiver);
 
-// Between neighbouring material points `from` < `to` of a path, over the mirrors between.
-struct InnerLeg {
-  double length;
-  Vec3 departure, arrival;  // unit directions of travel at `from` and at `to`
-};
-InnerLeg inner_leg(const PosedHit* hits, int from, int to);
+// Between the hits `from` < `to` of a path, which are not images, over the mirrors between.
+UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);
 
 }  // namespace echopath

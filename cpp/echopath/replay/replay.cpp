@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/scene/smooth.h"
 
 namespace echopath {
 namespace {
@@ -45,22 +43,8 @@ struct Replayer::NodeValues {
   std::vector<std::complex<double>> amplitudes;   // sqrt(W)
 };
 
-struct Replayer::Block {
-  std::vector<LocalHit> hits;
-  std::deque<std::array<Vec3, 3>> normals;  // addresses stay
-  std::vector<LocalPath> paths;
-  int longest = 0;
-
-  // Null where the crease guard refuses the facet.
-  const std::array<Vec3, 3>* smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices) {
-    const std::array<Vec3, 3> corners = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
-    if (!is_smooth_facet(hit.edge_u.cross(hit.edge_v).normalized(), corners)) return nullptr;
-    return &normals.emplace_back(corners);
-  }
-};
-
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
-    : paths_(paths), radar_(radar), settings_(settings), levels_(kExactLevel + 1) {
+    : paths_(paths), radar_(radar), settings_(settings), localise_(paths), levels_(kExactLevel + 1) {
   radar.validate();
   require(settings.phase_tolerance > 0, "phase_tolerance", "must be positive", settings.phase_tolerance);
   paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
@@ -69,13 +53,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   radio_.wavenumber = kTwoPi / radio_.wavelength;
   radio_.footprint = paths.frame.footprint;
   radio_.spread = footprint_spread(paths.frame.sampler);
-  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    mesh_moves_.push_back(paths.scene->is_moving(id));
-    const Node& node = paths.scene->node_of(id);
-    mesh_is_mirror_.push_back(node.material->mirror);
-    smooth_normals_.push_back(node.smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>());
-  }
-  trace_instant_ = std::make_unique<Instant>(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time);
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) mesh_moves_.push_back(paths.scene->is_moving(id));
   set_mesh_levels();
 }
 
@@ -119,98 +97,7 @@ const Replayer::Level& Replayer::level(int index) const {
   return *slot;
 }
 
-Replayer::Block Replayer::localise(std::span<const int64_t> indices) const {
-  Block block;
-  size_t num_hits = 0;
-  for (const int64_t index : indices) num_hits += paths_.num_bounces[static_cast<size_t>(index)];
-  block.hits.reserve(num_hits);  // paths point into it
-  block.paths.reserve(indices.size());
-  for (const int64_t index : indices) {
-    const auto p = static_cast<size_t>(index);
-    LocalPath& path = block.paths.emplace_back();
-    path.hits = block.hits.data() + block.hits.size();
-    path.count = paths_.num_bounces[p];
-    path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
-    if (!paths_.jones.empty()) path.jones = &paths_.jones[p];
-    path.weight = std::complex<double>(paths_.weight[p]);
-    block.longest = std::max(block.longest, path.count);
-    for (int k = 0; k < path.count; ++k) {
-      const int recorded = path.is_reversed ? path.count - 1 - k : k;
-      const Hit& hit = paths_.hits_of(index)[recorded];
-      path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
-      const Node& node = paths_.scene->node_of(hit.mesh_id);
-      LocalHit& local = block.hits.emplace_back();
-      local.mesh_id = hit.mesh_id;
-      local.deformed = node.sequence != nullptr;
-      local.triangle = node.mesh->triangles()[hit.triangle_id];
-      local.u = hit.u;
-      local.v = hit.v;
-      const std::vector<Vec3>& vertices = node.mesh->vertices();
-      local.corner = vertices[local.triangle[0]];
-      local.edge_u = vertices[local.triangle[1]] - local.corner;
-      local.edge_v = vertices[local.triangle[2]] - local.corner;
-      local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
-      local.normal = local.edge_u.cross(local.edge_v).normalized();
-      if (node.smooth) local.normals = block.smooth_normals(local, smooth_normals_[hit.mesh_id]);
-      if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
-        path.image |= uint64_t{1} << k;
-      } else {
-        if (path.first_material < 0) path.first_material = k;
-        path.last_material = k;
-      }
-    }
-  }
-  EvaluationScratch scratch;
-  scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
-  for (size_t i = 0; i < indices.size(); ++i) add_cell(block.paths[i], indices[i], scratch);
-  return block;
-}
-
-// The launch cell of the path's own stratum on the triangle of the physical-optics hit.
-void Replayer::add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const {
-  const auto p = static_cast<size_t>(index);
-  const size_t stratum = paths_.stratum[p];
-  if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
-  LaunchCell& cell = path.cell;
-  cell.ray_density = paths_.frame.lattice_density(stratum);
-  if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
-    const std::array<float, 7>& record = paths_.curved_cell[p];
-    cell.is_curved = cell.is_known = true;
-    for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[2 * a], record[2 * a + 1]};
-    std::copy(record.begin() + 4, record.end(), cell.turn);
-    return;
-  }
-  if (paths_.frame.footprint != Footprint::kNone) set_flat_cell(path, scratch);
-}
-
-void Replayer::set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const {
-  PosedHit* hits = scratch.hits.data();
-  pose_hits(path, *trace_instant_, hits);
-  static const AntennaPattern isotropic;
-  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ(), &isotropic};
-  const AntennaLeg in = transmit_leg(path, hits, centre);
-  double length = in.length;
-  Vec3 arrival = in.travel;
-  int previous = path.first_material;
-  for (int k = previous + 1; k <= path.last_material; ++k) {
-    if (path.is_image(k)) continue;
-    const InnerLeg leg = inner_leg(hits, previous, k);
-    length += leg.length;
-    arrival = leg.arrival;
-    previous = k;
-  }
-  const PosedHit& hit = hits[path.last_material];
-  const double cos_in = std::abs(hit.normal.dot(arrival));
-  const double side = length / std::sqrt(path.cell.ray_density);  // of the tube, m
-  Vec3 along = arrival - hit.normal.dot(arrival) * hit.normal;
-  along = along.norm() > 1e-9 ? along.normalized() : hit.normal.unitOrthogonal();
-  const Vec3 across = hit.normal.cross(along);
-  path.cell.tangent[0] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, along * (side / std::max(cos_in, 1e-3)));
-  path.cell.tangent[1] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, across * side);
-  path.cell.is_known = path.cell.tangent[0].allFinite() && path.cell.tangent[1].allFinite();
-}
-
-Replayer::NodeValues Replayer::evaluate_level(const Block& block, const Level& level) const {
+Replayer::NodeValues Replayer::evaluate_level(const LocalPaths& block, const Level& level) const {
   const size_t num_paths = block.paths.size(), channels = static_cast<size_t>(num_channels());
   const size_t num_nodes = level.instants.size(), node_stride = channels * num_paths;
   NodeValues values{std::vector<double>(num_nodes * node_stride), std::vector<std::complex<double>>(num_nodes * node_stride)};
@@ -228,17 +115,17 @@ Replayer::NodeValues Replayer::evaluate_level(const Block& block, const Level& l
 
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
   const Level& once = level(kStaticLevel);
-  return by_channel(once, indices.size(), evaluate_level(localise(indices), once));
+  return by_channel(once, indices.size(), evaluate_level(localise_(indices), once));
 }
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices) const {
   const Level& every_chirp = level(kExactLevel);
-  return by_channel(every_chirp, indices.size(), evaluate_level(localise(indices), every_chirp));
+  return by_channel(every_chirp, indices.size(), evaluate_level(localise_(indices), every_chirp));
 }
 
 std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index, std::vector<int64_t>& failed) const {
   const Level& polynomial = level(index);
-  NodeValues values = evaluate_level(localise(indices), polynomial);
+  NodeValues values = evaluate_level(localise_(indices), polynomial);
   const size_t num_paths = indices.size();
   for (size_t p = 0; p < num_paths; ++p) {
     if (follows(polynomial.nodes, values, num_paths, p)) continue;
@@ -338,7 +225,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
   amplitudes.resize(channels * indices.size());
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
-    const NodeValues values = evaluate_level(localise(indices.subspan(begin, size)), single);
+    const NodeValues values = evaluate_level(localise_(indices.subspan(begin, size)), single);
     for (size_t channel = 0; channel < channels; ++channel) {
       const auto from = static_cast<ptrdiff_t>(channel * size), to = static_cast<ptrdiff_t>(channel * indices.size() + begin);
       std::copy_n(values.lengths.begin() + from, size, lengths.begin() + to);

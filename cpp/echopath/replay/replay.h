@@ -9,6 +9,7 @@
 
 #include "echopath/replay/amplitude.h"
 #include "echopath/replay/frame_nodes.h"
+#include "echopath/replay/local_paths.h"
 
 namespace echopath {
 
@@ -49,15 +50,11 @@ class Replayer {
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
-  struct Block;
   struct Level;
   int exact_order() const;
   const Level& level(int index) const;
-  Block localise(std::span<const int64_t> paths) const;
-  void add_cell(LocalPath& path, int64_t index, EvaluationScratch& scratch) const;
-  void set_flat_cell(LocalPath& path, EvaluationScratch& scratch) const;
   struct NodeValues;
-  NodeValues evaluate_level(const Block& block, const Level& level) const;
+  NodeValues evaluate_level(const LocalPaths& block, const Level& level) const;
   std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const NodeValues& values) const;
   bool follows(const FrameNodes& nodes, const NodeValues& values, size_t num_paths, size_t p) const;
   int count_levels() const;
@@ -69,9 +66,7 @@ class Replayer {
   ReplaySettings settings_;
   RadioConstants radio_;
   std::vector<uint8_t> mesh_moves_;       // by mesh ID
-  std::vector<uint8_t> mesh_is_mirror_;   // by mesh ID
-  std::vector<std::vector<Vec3>> smooth_normals_;  // by mesh ID, at rest; empty where facets are meant
-  std::unique_ptr<const Instant> trace_instant_;
+  Localiser localise_;
   std::vector<int> mesh_level_;           // by mesh ID: the first that follows its motion
   int num_levels_ = 0;
   mutable std::mutex levels_mutex_;

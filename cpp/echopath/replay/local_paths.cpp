@@ -1,0 +1,139 @@
+#include "echopath/replay/local_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/scene/smooth.h"
+
+namespace echopath {
+namespace {
+
+// Null where the crease guard refuses the facet.
+const std::array<Vec3, 3>* facet_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, LocalPaths& block) {
+  const std::array<Vec3, 3> corners = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
+  if (!is_smooth_facet(hit.edge_u.cross(hit.edge_v).normalized(), corners)) return nullptr;
+  return &block.normals.emplace_back(corners);
+}
+
+// Specular hits between others that are not replayed by images.
+uint64_t sliding_hits(const LocalPath& path) {
+  uint64_t sliding = 0;
+  for (int k = 0; k < path.last_material; ++k) {
+    if (!path.is_image(k) && !path.is_diffuse(k)) sliding |= uint64_t{1} << k;
+  }
+  return sliding;
+}
+
+}  // namespace
+
+Localiser::Localiser(const Paths& paths)
+    : paths_(paths), trace_instant_(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time) {
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    const Node& node = paths.scene->node_of(id);
+    mesh_is_mirror_.push_back(node.material->mirror);
+    smooth_normals_.push_back(node.smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>());
+  }
+}
+
+LocalPaths Localiser::operator()(std::span<const int64_t> indices) const {
+  LocalPaths block;
+  size_t num_hits = 0;
+  for (const int64_t index : indices) num_hits += paths_.num_bounces[static_cast<size_t>(index)];
+  block.hits.reserve(num_hits);  // paths point into it
+  block.paths.reserve(indices.size());
+  for (const int64_t index : indices) {
+    block.paths.push_back(local_path(index, block));
+    block.longest = std::max(block.longest, block.paths.back().count);
+  }
+  std::vector<PosedHit> scratch(static_cast<size_t>(std::max(block.longest, 1)));
+  for (size_t i = 0; i < indices.size(); ++i) add_cell(block.paths[i], indices[i], scratch);
+  return block;
+}
+
+LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
+  const auto p = static_cast<size_t>(index);
+  LocalPath path;
+  path.hits = block.hits.data() + block.hits.size();
+  path.count = paths_.num_bounces[p];
+  path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
+  if (!paths_.jones.empty()) path.jones = &paths_.jones[p];
+  path.weight = std::complex<double>(paths_.weight[p]);
+  for (int k = 0; k < path.count; ++k) {
+    const int recorded = path.is_reversed ? path.count - 1 - k : k;
+    const Hit& hit = paths_.hits_of(index)[recorded];
+    path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
+    block.hits.push_back(local_hit(hit, block));
+    if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
+      path.image |= uint64_t{1} << k;
+    } else {
+      if (path.first_material < 0) path.first_material = k;
+      path.last_material = k;
+    }
+  }
+  path.sliding = sliding_hits(path);
+  return path;
+}
+
+LocalHit Localiser::local_hit(const Hit& hit, LocalPaths& block) const {
+  const Node& node = paths_.scene->node_of(hit.mesh_id);
+  LocalHit local;
+  local.mesh_id = hit.mesh_id;
+  local.deformed = node.sequence != nullptr;
+  local.triangle = node.mesh->triangles()[hit.triangle_id];
+  local.u = hit.u;
+  local.v = hit.v;
+  const std::vector<Vec3>& vertices = node.mesh->vertices();
+  local.corner = vertices[local.triangle[0]];
+  local.edge_u = vertices[local.triangle[1]] - local.corner;
+  local.edge_v = vertices[local.triangle[2]] - local.corner;
+  local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
+  local.normal = local.edge_u.cross(local.edge_v).normalized();
+  if (node.smooth) local.normals = facet_normals(local, smooth_normals_[hit.mesh_id], block);
+  return local;
+}
+
+// The launch cell of the path's own stratum on the triangle of the physical-optics hit.
+void Localiser::add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const {
+  const auto p = static_cast<size_t>(index);
+  const size_t stratum = paths_.stratum[p];
+  if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
+  LaunchCell& cell = path.cell;
+  cell.ray_density = paths_.frame.lattice_density(stratum);
+  if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
+    const std::array<float, 7>& record = paths_.curved_cell[p];
+    cell.is_curved = cell.is_known = true;
+    for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[2 * a], record[2 * a + 1]};
+    std::copy(record.begin() + 4, record.end(), cell.turn);
+    return;
+  }
+  if (paths_.frame.footprint != Footprint::kNone) set_flat_cell(path, scratch);
+}
+
+void Localiser::set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const {
+  PosedHit* hits = scratch.data();
+  pose_hits(path, trace_instant_, hits);
+  static const AntennaPattern isotropic;
+  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ(), &isotropic};
+  const AntennaLeg in = transmit_leg(path, hits, centre);
+  double length = in.length;
+  Vec3 arrival = in.travel;
+  int previous = path.first_material;
+  for (int k = previous + 1; k <= path.last_material; ++k) {
+    if (path.is_image(k)) continue;
+    const UnfoldedLeg leg = inner_leg(hits, previous, k);
+    length += leg.length;
+    arrival = leg.arrival;
+    previous = k;
+  }
+  const PosedHit& hit = hits[path.last_material];
+  const double cos_in = std::abs(hit.normal.dot(arrival));
+  const double side = length / std::sqrt(path.cell.ray_density);  // of the tube, m
+  Vec3 along = arrival - hit.normal.dot(arrival) * hit.normal;
+  along = along.norm() > 1e-9 ? along.normalized() : hit.normal.unitOrthogonal();
+  const Vec3 across = hit.normal.cross(along);
+  path.cell.tangent[0] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, along * (side / std::max(cos_in, 1e-3)));
+  path.cell.tangent[1] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, across * side);
+  path.cell.is_known = path.cell.tangent[0].allFinite() && path.cell.tangent[1].allFinite();
+}
+
+}  // namespace echopath

@@ -119,6 +119,16 @@ void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const In
 
 }  // namespace
 
+RadioConstants radio_constants(const Paths& paths, const Radar& radar) {
+  RadioConstants radio;
+  radio.transmit_power = radar.transmit_power;
+  radio.wavelength = kSpeedOfLight / radar.waveform.start_frequency;
+  radio.wavenumber = kTwoPi / radio.wavelength;
+  radio.footprint = paths.frame.footprint;
+  radio.spread = footprint_spread(paths.frame.sampler);
+  return radio;
+}
+
 void evaluate_path(const LocalPath& path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch,
                    const ChannelValues& out) {
   PosedHit* hits = scratch.hits.data();

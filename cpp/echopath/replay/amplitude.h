@@ -25,6 +25,9 @@ struct RadioConstants {
   double spread = 0.65;  // of a launch cell (trace/sampler.h)
 };
 
+// Those of a record played back with `radar`.
+RadioConstants radio_constants(const Paths& paths, const Radar& radar);
+
 // Work space of one thread.
 struct EvaluationScratch {
   std::vector<PosedHit> hits;        // at least as many as the path's hits

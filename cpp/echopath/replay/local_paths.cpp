@@ -8,13 +8,6 @@
 namespace echopath {
 namespace {
 
-// Null where the crease guard refuses the facet.
-const std::array<Vec3, 3>* facet_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, LocalPaths& block) {
-  const std::array<Vec3, 3> corners = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
-  if (!is_smooth_facet(hit.edge_u.cross(hit.edge_v).normalized(), corners)) return nullptr;
-  return &block.normals.emplace_back(corners);
-}
-
 // Specular hits between others that are not replayed by images.
 uint64_t sliding_hits(const LocalPath& path) {
   uint64_t sliding = 0;
@@ -25,6 +18,30 @@ uint64_t sliding_hits(const LocalPath& path) {
 }
 
 }  // namespace
+
+LocalHit local_hit(const Scene& scene, const Hit& hit) {
+  const Node& node = scene.node_of(hit.mesh_id);
+  LocalHit local;
+  local.mesh_id = hit.mesh_id;
+  local.triangle_id = hit.triangle_id;
+  local.deformed = node.sequence != nullptr;
+  local.triangle = node.mesh->triangles()[hit.triangle_id];
+  local.u = hit.u;
+  local.v = hit.v;
+  const std::vector<Vec3>& vertices = node.mesh->vertices();
+  local.corner = vertices[local.triangle[0]];
+  local.edge_u = vertices[local.triangle[1]] - local.corner;
+  local.edge_v = vertices[local.triangle[2]] - local.corner;
+  local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
+  local.normal = local.edge_u.cross(local.edge_v).normalized();
+  return local;
+}
+
+bool find_smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, std::array<Vec3, 3>& out) {
+  if (of_vertices.empty()) return false;
+  out = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
+  return is_smooth_facet(hit.normal, out);
+}
 
 Localiser::Localiser(const Paths& paths)
     : paths_(paths), trace_instant_(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time) {
@@ -62,7 +79,9 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
-    block.hits.push_back(local_hit(hit, block));
+    LocalHit& local = block.hits.emplace_back(local_hit(*paths_.scene, hit));
+    std::array<Vec3, 3> normals;
+    if (find_smooth_normals(local, smooth_normals_[hit.mesh_id], normals)) local.normals = &block.normals.emplace_back(normals);
     if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;
     } else {
@@ -72,24 +91,6 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
   }
   path.sliding = sliding_hits(path);
   return path;
-}
-
-LocalHit Localiser::local_hit(const Hit& hit, LocalPaths& block) const {
-  const Node& node = paths_.scene->node_of(hit.mesh_id);
-  LocalHit local;
-  local.mesh_id = hit.mesh_id;
-  local.deformed = node.sequence != nullptr;
-  local.triangle = node.mesh->triangles()[hit.triangle_id];
-  local.u = hit.u;
-  local.v = hit.v;
-  const std::vector<Vec3>& vertices = node.mesh->vertices();
-  local.corner = vertices[local.triangle[0]];
-  local.edge_u = vertices[local.triangle[1]] - local.corner;
-  local.edge_v = vertices[local.triangle[2]] - local.corner;
-  local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
-  local.normal = local.edge_u.cross(local.edge_v).normalized();
-  if (node.smooth) local.normals = facet_normals(local, smooth_normals_[hit.mesh_id], block);
-  return local;
 }
 
 // The launch cell of the path's own stratum on the triangle of the physical-optics hit.

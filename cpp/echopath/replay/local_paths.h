@@ -19,6 +19,11 @@ struct LocalPaths {
   std::deque<std::array<Vec3, 3>> normals;
 };
 
+// A hit in the frame of its mesh, without its normals.
+LocalHit local_hit(const Scene& scene, const Hit& hit);
+// Normals of its corners from those of its mesh's vertices, at rest; false where the crease guard refuses the facet.
+bool find_smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, std::array<Vec3, 3>& out);
+
 // Thread-safe.
 class Localiser {
  public:
@@ -31,7 +36,6 @@ class Localiser {
 
  private:
   LocalPath local_path(int64_t index, LocalPaths& block) const;
-  LocalHit local_hit(const Hit& hit, LocalPaths& block) const;
   void add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const;
   void set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const;
 

@@ -54,6 +54,7 @@ void pose_triangle(const LocalHit& hit, const Instant& instant, PosedHit& posed)
   posed.point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * posed.edge_u + hit.v * posed.edge_v;
   posed.normal = posed.edge_u.cross(posed.edge_v).normalized();
   posed.is_smooth = hit.normals != nullptr;
+  posed.facet = posed.point;
   if (posed.is_smooth) curve(hit, instant, posed);
 }
 
@@ -66,12 +67,13 @@ void pose_point(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
 
 }  // namespace
 
+void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out) {
+  if (with_triangle || hit.deformed || hit.normals) pose_triangle(hit, instant, out);
+  else pose_point(hit, instant, out);
+}
+
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
-  for (int k = 0; k < path.count; ++k) {
-    const LocalHit& hit = path.hits[k];
-    if (hit.deformed || hit.normals || path.has_cell_at(k)) pose_triangle(hit, instant, out[k]);
-    else pose_point(hit, instant, out[k]);
-  }
+  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], instant, path.has_cell_at(k), out[k]);
 }
 
 AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna) {

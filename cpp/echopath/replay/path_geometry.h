@@ -8,7 +8,7 @@ namespace echopath {
 
 // A hit in the frame of its mesh.
 struct LocalHit {
-  uint32_t mesh_id = 0;
+  uint32_t mesh_id = 0, triangle_id = 0;
   bool deformed = false;        // the corners are those of the instant
   Triangle triangle{};
   double u = 0.0, v = 0.0;
@@ -21,6 +21,7 @@ struct LocalHit {
 struct PosedHit {
   Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
   Vec3 edge_u, edge_v;   // only where the path asks for them (LocalPath::has_cell_at) or the triangle bends
+  Vec3 facet;            // the point on the flat triangle; only where is_smooth
   Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
   bool is_smooth = false;
 };
@@ -57,6 +58,8 @@ struct LocalPath {
   int first_material = -1, last_material = -1;
 };
 
+// with_triangle: the edges are needed too.
+void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out);
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
 
 // From one point to another over the mirrors `first` to `last` - 1 of a path, unfolded.

@@ -48,11 +48,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   radar.validate();
   require(settings.phase_tolerance > 0, "phase_tolerance", "must be positive", settings.phase_tolerance);
   paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
-  radio_.transmit_power = radar.transmit_power;
-  radio_.wavelength = kSpeedOfLight / radar.waveform.start_frequency;
-  radio_.wavenumber = kTwoPi / radio_.wavelength;
-  radio_.footprint = paths.frame.footprint;
-  radio_.spread = footprint_spread(paths.frame.sampler);
+  radio_ = radio_constants(paths, radar);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) mesh_moves_.push_back(paths.scene->is_moving(id));
   set_mesh_levels();
 }

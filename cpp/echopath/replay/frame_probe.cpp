@@ -1,0 +1,172 @@
+#include "echopath/replay/frame_probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/replay/array_corners.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kConfirmed = 0.03;   // rad: a step beyond the triangles around a hit counts where it leaves no more
+constexpr double kTurned = 2.0;       // factor
+constexpr double kOnePlace = 1e-9;    // m
+
+// In the order of the record.
+uint64_t recorded_order(const LocalPath& path, uint64_t bits) {
+  if (!path.is_reversed) return bits;
+  uint64_t out = 0;
+  for (int k = 0; k < path.count; ++k) out |= (bits >> k & 1) << (path.count - 1 - k);
+  return out;
+}
+
+// The same leg arrives at the other of its ends.
+void store_shadows(const LocalPath& path, const LegShadows& shadows, PathState& state) {
+  state.left |= recorded_order(path, shadows.off_mirror);
+  if (!path.is_reversed) {
+    state.blocked = shadows.blocked;
+    state.is_receiver_blocked = shadows.is_end_blocked;
+    return;
+  }
+  state.is_receiver_blocked = shadows.blocked & 1;
+  state.blocked = recorded_order(path, shadows.blocked >> 1 | uint64_t{shadows.is_end_blocked} << (path.count - 1));
+}
+
+std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Antenna>& antennas) {
+  std::vector<Antenna> out = {antennas[0]};
+  out[0].position = carried;
+  if (antennas.size() == 1 && (antennas[0].position - carried).norm() > kOnePlace) out.push_back(antennas[0]);
+  for (const int corner : array_corners(antennas)) out.push_back(antennas[static_cast<size_t>(corner)]);
+  return out;
+}
+
+// Signed cosines of incidence and departure [2 * hits]; images keep theirs.
+void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end, std::vector<double>& out) {
+  int previous = path.first_material;
+  const auto arrive = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
+  const auto depart = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel); };
+  arrive(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
+  for (int k = previous + 1; k <= path.last_material; ++k) {
+    if (path.is_image(k)) continue;
+    const UnfoldedLeg leg = inner_leg(hits, previous, k);
+    depart(previous, leg.departure);
+    arrive(k, leg.arrival);
+    previous = k;
+  }
+  depart(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
+}
+
+}  // namespace
+
+Radar probe_radar(const Paths& paths, const Radar& radar) {
+  const Transform radar_from_world = paths.radar.world_from_radar(paths.frame.trace_time).inverse();
+  Radar probe = radar;
+  probe.transmitters = carried_and_rim(radar_from_world * paths.frame.transmitter, radar.transmitters);
+  probe.receivers = carried_and_rim(radar_from_world * paths.frame.receiver, radar.receivers);
+  return probe;
+}
+
+PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch) const {
+  PathState state;
+  pose_hits(path, instant_, scratch.hits.data());
+  if (path.sliding != 0) check_slides(path, scratch, state);
+  check_shadows(path, scratch.hits.data(), state);
+  check_cosines(path, scratch, state);
+  return state;
+}
+
+// What one antenna sees of the points of reflection.
+struct FrameProbe::Slides {
+  uint64_t left = 0;  // bits in the order of the trace
+  double excess = 0.0, stepped = 0.0;  // m
+};
+
+FrameProbe::Slides FrameProbe::slides_from(const LocalPath& path, const Vec3& start, ProbeScratch& scratch) const {
+  Slides found;
+  if (!scratch.slide.solve(path, scratch.hits.data(), start)) {
+    found.left = path.sliding;
+    return found;
+  }
+  const double frozen_length = scratch.slide.length();
+  std::copy_n(scratch.hits.begin(), path.count, scratch.moved.begin());
+  uint64_t far = 0;
+  for (size_t i = 0; i < scratch.slide.size(); ++i) {
+    const auto k = static_cast<size_t>(scratch.slide.hit(i));
+    bool is_near = true;
+    const Vec3 point = surface_point(scratch.hits[k], scratch.slide.step(i));
+    if (!move_hit(path.hits[k], point, scratch.moved[k], is_near)) found.left |= uint64_t{1} << k;
+    if (!is_near) far |= uint64_t{1} << k;
+  }
+  if (found.left) return found;
+  const bool is_solved = scratch.slide.solve(path, scratch.moved.data(), start);
+  found.stepped = std::abs(scratch.slide.excess());
+  found.excess = std::abs(frozen_length - scratch.slide.length() + scratch.slide.excess());
+  if (!is_solved || wavenumber_ * found.stepped > kConfirmed) found.left = is_solved ? far : path.sliding;
+  return found;
+}
+
+// Poses the point of the hit's mesh over which `point` lies; false where the way there leaves the surface.
+bool FrameProbe::move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const {
+  const Vec3 in_mesh = instant_.rotation(hit.mesh_id).inverse() * (point - instant_.translation(hit.mesh_id));
+  const auto spot = walk_.find(hit.mesh_id, hit.triangle_id, instant_.local_vertices(hit.mesh_id), in_mesh);
+  if (!spot) return false;
+  is_near = spot->is_near;
+  LocalHit moved = local_hit(scene_, spot->hit);
+  std::array<Vec3, 3> normals;
+  if (hit.normals && find_smooth_normals(moved, walk_.smooth_normals(hit.mesh_id), normals)) moved.normals = &normals;
+  pose_hit(moved, instant_, false, out);
+  return true;
+}
+
+void FrameProbe::check_slides(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
+  uint64_t left = 0;
+  for (const PosedAntenna& start : starts(path)) {
+    const Slides found = slides_from(path, start.position, scratch);
+    left |= found.left;
+    if (found.left) continue;
+    if (&start == &starts(path).front()) state.excess = found.excess;
+    state.largest_excess = std::max(state.largest_excess, found.excess);
+    state.stepped_excess = std::max(state.stepped_excess, found.stepped);
+  }
+  state.left = recorded_order(path, left);
+}
+
+void FrameProbe::check_shadows(const LocalPath& path, const PosedHit* hits, PathState& state) const {
+  LegTester tester(geometry_, path, hits);
+  if (path.first_material < 0) {
+    for (const PosedAntenna& start : starts(path)) {
+      for (const PosedAntenna& end : ends(path)) tester.test_images(start.position, end.position);
+    }
+  } else {
+    for (const PosedAntenna& start : starts(path)) tester.test_start(start.position);
+    tester.test_inner();
+    for (const PosedAntenna& end : ends(path)) tester.test_end(end.position);
+  }
+  store_shadows(path, tester.shadows(), state);
+}
+
+void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const {
+  out.assign(static_cast<size_t>(2 * path.count), 0.0);
+  if (path.first_material < 0) return;
+  pose_hits(path, instant_, scratch.hits.data());
+  fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
+}
+
+// Antennas at both rims by turns: an end changes with its own antenna only.
+void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
+  if (path.first_material < 0) return;
+  scratch.cosines.assign(static_cast<size_t>(2 * path.count), 0.0);
+  const size_t num_pairs = std::max(starts(path).size(), ends(path).size());
+  for (size_t i = 0; i < num_pairs; ++i) {
+    const Vec3& start = starts(path)[std::min(i, starts(path).size() - 1)].position;
+    const Vec3& end = ends(path)[std::min(i, ends(path).size() - 1)].position;
+    fill_cosines(path, scratch.hits.data(), start, end, scratch.cosines);
+    for (size_t k = 0; k < scratch.cosines.size(); ++k) {
+      const double before = scratch.reference[k], now = scratch.cosines[k];
+      state.cosine_change = std::max(state.cosine_change, std::abs(now - before));
+      if (before != 0 && !(now / before > 1.0 / kTurned && now / before < kTurned)) state.is_turned = true;
+    }
+  }
+}
+
+}  // namespace echopath

@@ -1,0 +1,69 @@
+#pragma once
+// What has become of recorded paths at one instant of a frame: how far their frozen points of reflection are off, which legs
+// something blocks, how the surfaces have turned.
+#include <memory>
+
+#include "echopath/replay/leg_shadows.h"
+#include "echopath/replay/local_paths.h"
+#include "echopath/replay/specular_slide.h"
+#include "echopath/replay/surface_walk.h"
+
+namespace echopath {
+
+// Hits are counted in the order of the record, TX -> RX.
+struct PathState {
+  // m: how far the length over the frozen points of reflection is off, by one Newton step and what e (specular_slide.h)
+  // estimates of the rest; for the trace's own antennas, carried along by the radar's motion, and largest over them and the
+  // rim of the array.
+  double excess = 0.0, largest_excess = 0.0;
+  double stepped_excess = 0.0;  // m, what a Newton step to the moved point of reflection leaves, largest
+  uint64_t left = 0;            // bit per hit: its point of reflection leaves the surface around it, for some antenna
+  uint64_t blocked = 0;         // bit per hit: something blocks the leg that arrives there, for some antenna
+  bool is_receiver_blocked = false;
+  bool is_turned = false;       // some cosine changes by more than a factor of two, or its sign
+  double cosine_change = 0.0;   // largest change of a cosine of incidence or departure
+};
+
+// `radar` with the trace's antennas, carried along by its motion (first), and the rim of its array.
+Radar probe_radar(const Paths& paths, const Radar& radar);
+
+struct ProbeScratch {
+  std::vector<PosedHit> hits, moved;  // at least as many as the path's hits
+  std::vector<double> reference;      // [2 * hits] cosines at the trace time
+  std::vector<double> cosines;
+  SpecularSlide slide;
+};
+
+class FrameProbe {
+ public:
+  // rim: with the antennas of probe_radar, relative to the origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
+  FrameProbe(const Scene& scene, const Instant& rim, const EmbreeScene& geometry, const SurfaceWalk& walk, double wavenumber)
+      : scene_(scene), instant_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
+
+  // Signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
+  void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
+  // scratch.reference: the cosines at the trace time. Thread-safe.
+  PathState check(const LocalPath& path, ProbeScratch& scratch) const;
+
+ private:
+  struct Slides;
+  void check_slides(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
+  Slides slides_from(const LocalPath& path, const Vec3& start, ProbeScratch& scratch) const;
+  bool move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const;
+  void check_shadows(const LocalPath& path, const PosedHit* hits, PathState& state) const;
+  void check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
+  const std::vector<PosedAntenna>& starts(const LocalPath& path) const {
+    return path.is_reversed ? instant_.receivers : instant_.transmitters;
+  }
+  const std::vector<PosedAntenna>& ends(const LocalPath& path) const {
+    return path.is_reversed ? instant_.transmitters : instant_.receivers;
+  }
+
+  const Scene& scene_;
+  const Instant& instant_;
+  const EmbreeScene& geometry_;
+  const SurfaceWalk& walk_;
+  double wavenumber_;
+};
+
+}  // namespace echopath

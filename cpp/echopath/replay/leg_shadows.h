@@ -1,0 +1,52 @@
+#pragma once
+// Which legs of a path something stands in the way of, at one instant.
+#include <cstdint>
+
+#include "echopath/replay/path_geometry.h"
+#include "echopath/trace/embree_scene.h"
+
+namespace echopath {
+
+// In the order of the path's hits.
+struct LegShadows {
+  uint64_t blocked = 0;        // bit per hit: the leg that arrives there is blocked
+  bool is_end_blocked = false;  // the leg from the last hit
+  uint64_t off_mirror = 0;     // bit per hit: the image's point of reflection is not on its mirror
+};
+
+// Tests of one path against the triangles of `geometry`, whose origin is that of the posed hits. Legs over flagged mirrors are
+// tested where the image puts them at this instant; a leg once found blocked is not tested again.
+class LegTester {
+ public:
+  LegTester(const EmbreeScene& geometry, const LocalPath& path, const PosedHit* hits)
+      : geometry_(geometry), path_(path), hits_(hits) {}
+
+  // Legs from an antenna to the first hit that is no image, between such hits, and from the last of them to an antenna.
+  void test_start(const Vec3& antenna);
+  void test_inner();
+  void test_end(const Vec3& antenna);
+  // Of a path over images alone.
+  void test_images(const Vec3& start, const Vec3& end);
+  const LegShadows& shadows() const { return shadows_; }
+
+ private:
+  struct End;
+  static End facet_of(const PosedHit& hit);
+  static End surface_of(const PosedHit& hit);
+  void test_arrival(const End& from, int first, int last);
+  void test(const End& from, int first, int last, const End& to);
+  bool place_images(const Vec3& from, int first, int last, const Vec3& to);
+  Vec3 lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const;
+  Vec3 lifted_image(int image, int first, int last, const Vec3& toward) const;
+  bool is_blocked(const Vec3& from, const Vec3& to, int image);
+  bool is_known_blocked(int first, int last) const;
+  void block(int leg);
+
+  const EmbreeScene& geometry_;
+  const LocalPath& path_;
+  const PosedHit* hits_;
+  LegShadows shadows_;
+  Vec3 image_points_[64];
+};
+
+}  // namespace echopath

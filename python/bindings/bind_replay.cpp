@@ -1,0 +1,134 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "array.h"
+#include "echopath/replay/validity.h"
+#include "keywords.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+using ValidityPtr = std::shared_ptr<Validity>;
+
+ValidityPtr check_validity(const Paths& paths, const Radar* radar, const py::object& times, bool arrays,
+                           const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "validity", {"times", "arrays", "progress"});
+  ValiditySettings settings;
+  if (!times.is_none()) settings.times = as_vector<double>(times, "times");
+  settings.arrays = arrays;
+  return run_job("validity", progress, [&](Job& job) {
+    return std::make_shared<Validity>(validity(paths, radar ? *radar : paths.radar, settings, &job));
+  });
+}
+
+template <class T>
+auto array_column(std::vector<T> ValidityArrays::* field) {
+  return [field](const py::object& self) { return numpy_view(self.cast<const Validity&>().arrays.*field, self); };
+}
+
+auto share(double ValidityShares::* field) {
+  return [field](const Validity& self) { return self.shares.*field; };
+}
+
+std::string repr_of(const Validity& self) {
+  std::ostringstream text;
+  text << "Validity(" << (self.warnings().empty() ? "one trace serves" : std::to_string(self.warnings().size()) + " warnings")
+       << ", " << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
+  return text.str();
+}
+
+void bind_shares(py::module_& m) {
+  py::class_<ValidityShares>(m, "ValidityShares", "What one trace does not serve, as shares of the power of some paths.")
+      .def_readonly("power", &ValidityShares::power, "W, what the shares are of")
+      .def_readonly("slid", &ValidityShares::slid, "share: phase error of frozen points of reflection above 0.3 rad")
+      .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
+      .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
+      .def_readonly("turned", &ValidityShares::turned,
+                    "share: a cosine of incidence or departure changes its sign or by more than a factor of two")
+      .def_readonly("new_surface", &ValidityShares::new_surface,
+                    "share of single echoes of all that is seen: of what was hidden from the trace")
+      .def("__repr__", [](const ValidityShares& self) {
+        std::ostringstream text;
+        text << "ValidityShares(slid=" << self.slid << ", left=" << self.left << ", blocked=" << self.blocked
+             << ", turned=" << self.turned << ", new_surface=" << self.new_surface << ")";
+        return text.str();
+      });
+}
+
+void bind_report(py::module_& m) {
+  py::class_<Validity, ValidityPtr>(m, "Validity", R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
+
+Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
+the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band.)")
+      .def_readonly("num_paths", &Validity::num_paths, "P, their number")
+      .def_readonly("times", &Validity::times, "[T] s, of the check")
+      .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
+      .def_property_readonly("phase_error_share", share(&ValidityShares::slid),
+                             "share of the power whose frozen points of reflection make an error above 0.3 rad")
+      .def_property_readonly("occluded_share", share(&ValidityShares::blocked), "share of the power that something blocks")
+      .def_property_readonly("left_share", share(&ValidityShares::left),
+                             "share of the power whose points of reflection leave the surface around their hit")
+      .def_property_readonly("turned_share", share(&ValidityShares::turned),
+                             "share of the power of surfaces that turn to or away from the rays")
+      .def_property_readonly("new_surface_share", share(&ValidityShares::new_surface),
+                             "share of single echoes of all that is seen: of what was hidden from the trace")
+      .def_readonly("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power")
+      .def_readonly("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas")
+      .def_readonly("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas")
+      .def_readonly("stepped_phase_error", &Validity::stepped_phase_error,
+                    "rad, largest that a Newton step to the moved points of reflection leaves")
+      .def_readonly("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear")
+      .def_property_readonly("keyframes", &Validity::keyframes,
+                             "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
+      .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
+      .def_property_readonly("ok", [](const Validity& self) { return self.warnings().empty(); }, "no warnings")
+      .def_property_readonly("objects", [](const Validity& self) {
+        py::dict out;
+        for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object.shares;
+        return out;
+      }, "{name: ValidityShares} by the object that a path scattered on last (mirrors by images apart), by strength")
+      .def_property_readonly("power", array_column(&ValidityArrays::power), "[P] W")
+      .def_property_readonly("phase_error", array_column(&ValidityArrays::phase_error),
+                             "[P] rad, largest where no point of reflection has left its surface")
+      .def_property_readonly("path_stepped_phase_error", array_column(&ValidityArrays::stepped_phase_error),
+                             "[P] rad, what a Newton step leaves")
+      .def_property_readonly("left", array_column(&ValidityArrays::left),
+                             "[P] bit k: the point of reflection of hit k leaves the surface around it")
+      .def_property_readonly("blocked", array_column(&ValidityArrays::blocked),
+                             "[P] bit k: something comes in the way of the leg that arrives at hit k")
+      .def_property_readonly("receiver_blocked", array_column(&ValidityArrays::receiver_blocked),
+                             "[P] 1: something comes in the way of the leg to the receiver")
+      .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
+      .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change), "[P] largest of a cosine, linear")
+      .def("__str__", &Validity::text)
+      .def("__repr__", &repr_of);
+}
+
+}  // namespace
+
+void bind_replay(py::module_& m) {
+  bind_shares(m);
+  bind_report(m);
+  m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
+        py::arg("times") = py::none(), py::arg("arrays") = false, py::arg("progress") = py::none(),
+        R"(Whether one trace serves the whole frame and the whole array: a report with warnings.
+
+Checks all paths at the ends of the frame, for the antennas of the trace and those at the rim of the array: phase errors of
+frozen points of reflection, whether these still lie on their surface, shadow rays of all legs, cosines; and looks for
+surface that was hidden from the trace with rays of its own. Exact parts of the replay (single bounces, images in mirrors)
+have no phase error.
+
+paths: of a trace, all or a selection of them, which asks about these alone
+radar: another waveform, array or motion than that of the trace, or None
+times: [T] s, of the check, or None: the centres of the first and the last chirp
+arrays: keep what is found of each path, [P] each
+progress: callable(stage, fraction) or None
+Returns a Validity. Raises ValueError for motions that do not cover the times, KeyboardInterrupt on Ctrl-C.)");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,362 @@
+"""The certificate of a replay: phase errors against searches of the true point of reflection, and a warning for each way to fail."""
+from importlib.resources import as_file
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+import echopath as ep
+from echopath.materials import data_folder
+from support import shapes
+
+WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
+TRANSMITTER, TARGET = np.zeros(3), np.array([20.0, 0.0, 0.0])
+MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of transmitter and target, 3 m aside
+NOTE_TOLERANCE = 0.012       # relative: the formulas of the note are second order in the slide and have two or three digits
+EXCESS_TOLERANCE = 0.01      # relative, up to 1 rad: e = g H^-1 g / 2 is second order in the slide
+ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
+
+
+class Ball:
+    """Part of a sphere around `top`, where the unit vector `normal` stands on it; radius in m, negative: hollow."""
+
+    def __init__(self, top, normal, radius):
+        self.top, self.normal, self.radius = np.asarray(top, float), np.asarray(normal, float), radius
+        first = np.cross(self.normal, [0.0, 0.6, 0.8])
+        self.axes = np.stack([first / np.linalg.norm(first), np.cross(self.normal, first / np.linalg.norm(first))])
+
+    def at(self, offsets):
+        """Points of the surface over tangential offsets [..., 2] in m."""
+        centre = self.top - self.radius * self.normal
+        outward = np.asarray(offsets) @ self.axes + self.radius * self.normal
+        return centre + abs(self.radius) * outward / np.linalg.norm(outward, axis=-1, keepdims=True)
+
+    def mesh(self, cells=40):
+        width = 0.8 * min(abs(self.radius), 1.0)
+        steps = np.linspace(-width / 2, width / 2, cells + 1)
+        vertices = self.at(np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2))
+        first = np.arange(cells * (cells + 1)).reshape(cells, cells + 1)[:, :-1].ravel()
+        return ep.Mesh(vertices, np.concatenate([np.stack([first, first + 1, first + cells + 2], axis=1),
+                                                 np.stack([first, first + cells + 2, first + cells + 1], axis=1)]))
+
+
+class Plane(Ball):
+    def __init__(self, top, normal):
+        super().__init__(top, normal, np.inf)
+
+    def at(self, offsets):
+        return self.top + np.asarray(offsets) @ self.axes
+
+    def mesh(self):
+        return ep.Mesh(self.at([[-9, -9], [9, -9], [9, 9], [-9, 9]]), [[0, 1, 2], [0, 2, 3]])
+
+
+def hit_near(mesh, point):
+    """(triangle, u, v) of the point of the mesh next to `point`, which lies over one of its triangles or near an edge."""
+    corners = mesh.vertices[mesh.triangles]
+    edge_u, edge_v, along = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], point - corners[:, 0]
+    cross = np.cross(edge_u, edge_v)
+    area = np.sum(cross**2, axis=1)
+    u, v = np.sum(cross * np.cross(along, edge_v), axis=1) / area, np.sum(cross * np.cross(edge_u, along), axis=1) / area
+    size = np.sqrt(np.sqrt(area))
+    is_close = np.linalg.norm(corners.mean(axis=1) - point, axis=1) < 2 * size
+    triangle = int(np.argmax(np.where(is_close, np.min([u, v, 1 - u - v], axis=0), -np.inf)))
+    return triangle, max(u[triangle], 0.0), max(v[triangle], 0.0)
+
+
+def one_path(scene, radar, points, flags=0):
+    """A record of one path over the meshes of the scene in their order, diffuse at the last of `points` [N, 3]."""
+    hits = np.zeros(len(points), dtype=[("mesh_id", "u4"), ("triangle_id", "u4"), ("u", "f4"), ("v", "f4")])
+    for k, (mesh, point) in enumerate(zip(scene.meshes, points)):
+        hits[k] = (mesh.id, *hit_near(mesh.mesh, np.asarray(point, float)))
+    mean = [np.mean([antenna.position for antenna in antennas], axis=0) for antennas in (radar.transmitters, radar.receivers)]
+    stratum = ep.Stratum(axis=[1, 0, 0], versine=2.0, num_rays=1, ray_density=1.0, name="all")
+    middle = 0.5 * (radar.waveform.num_chirps * radar.waveform.chirp_interval)
+    frame = ep.TraceFrame(start_time=0.0, trace_time=middle, transmitter=mean[0], receiver=mean[1], strata=[stratum], seed=1,
+                          max_bounces=4, polarization="scalar", footprint="none", statistics=ep.TraceStatistics())
+    last = 1 << (len(points) - 1)
+    return ep.Paths.from_arrays(hits=hits, offsets=np.array([0]), num_bounces=np.array([len(points)], np.uint8), diffuse=np.array([last], np.uint64),
+                                weight=np.array([1], np.complex64), stratum=np.zeros(1, np.uint8), batch=np.zeros(1, np.uint8),
+                                flags=np.array([flags], np.uint32), scene=scene, radar=radar, frame=frame)
+
+
+def scene_with(mirrors, at=TARGET):
+    """Smooth metal mirrors, and a small rough plate `at`."""
+    objects = {f"mirror{k}": (mirror.mesh(), shapes.METAL, True) for k, mirror in enumerate(mirrors)}
+    return shapes.scene_of(**objects, target=(shapes.plate(at, (-1.0, 0.3, 0.0), 0.02), ROUGH))
+
+
+def frozen(mirrors, slides, at=TARGET, **keywords):
+    """The path over points of the mirrors that lie tangential `slides` [N, 2] in m off their tops."""
+    points = [mirror.at(slide) for mirror, slide in zip(mirrors, slides)]
+    return one_path(scene_with(mirrors, at), shapes.make_radar(TRANSMITTER), [*points, at], **keywords)
+
+
+def phase_error(paths):
+    return float(ep.validity(paths, arrays=True).phase_error[0])
+
+
+WALL = (0.0, -1.0, 0.0)
+
+
+@pytest.mark.parametrize("slide, expected", [(0.05, 0.032), (0.1, 0.128), (0.3, 1.149), (0.6, 4.59)])
+def test_a_point_on_a_wall_has_the_phase_error_of_the_note(slide, expected):
+    mirror = Plane(MIRROR, WALL)
+    along = mirror.axes @ [slide, 0.0, 0.0]
+    assert phase_error(frozen([mirror], [along])) == pytest.approx(expected, rel=NOTE_TOLERANCE)
+
+
+@pytest.mark.parametrize("radius, slide, expected", [(0.1, 0.005, 0.116), (0.1, 0.02, 1.85), (2.0, 0.02, 0.098), (2.0, 0.05, 0.61)])
+def test_a_point_on_a_column_has_the_phase_error_of_the_note(radius, slide, expected):
+    mirror = Ball(MIRROR, WALL, radius)
+    along = mirror.axes @ [slide, 0.0, 0.0]
+    next_order = (slide / radius) ** 2  # of the note's formula
+    assert phase_error(frozen([mirror], [along])) == pytest.approx(expected, rel=max(NOTE_TOLERANCE, next_order))
+
+
+def length_over(points):
+    return np.sum(np.linalg.norm(np.diff(points, axis=0), axis=1))
+
+
+def excess_by_search(mirrors, slides, at):
+    """How much longer the path over the slid points is than the one over the points where the length is stationary, m."""
+    def length(offsets):
+        return length_over([TRANSMITTER, *(m.at(o) for m, o in zip(mirrors, offsets.reshape(-1, 2))), at])
+
+    def gradient(offsets, step=1e-5):
+        return np.array([length(offsets + e) - length(offsets - e) for e in step * np.eye(len(offsets))]) / (2 * step)
+
+    found = root(gradient, np.zeros(2 * len(mirrors)), tol=1e-12).x
+    return length(np.ravel(slides)) - length(found)
+
+
+def bisector(point, before, behind):
+    both = (before - point) / np.linalg.norm(before - point) + (behind - point) / np.linalg.norm(behind - point)
+    return both / np.linalg.norm(both)
+
+
+DIRECTIONS = {"in": (1.0, 0.0), "across": (0.0, 1.0), "oblique": (0.6, -0.8)}
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.parametrize("radius", [np.inf, 0.5, 3.0, -60.0, -2.0])
+def test_phase_error_of_one_slide_is_that_of_a_search(radius, direction):
+    """Plane, convex, weakly and strongly hollow (the length is largest at the true point); seen at an angle."""
+    at, top = np.array([16.0, 1.0, 2.5]), np.array([9.0, 3.0, 0.5])
+    normal = bisector(top, TRANSMITTER, at)
+    mirror = Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
+    incidence = mirror.axes @ (at - TRANSMITTER)
+    turn = np.array([[incidence[0], -incidence[1]], [incidence[1], incidence[0]]]) / np.linalg.norm(incidence)
+    probe = 0.01 * turn @ DIRECTIONS[direction]
+    slides = [probe * np.sqrt(0.5 / abs(WAVENUMBER * excess_by_search([mirror], [probe], at)))]  # to about half a radian
+    expected = WAVENUMBER * abs(excess_by_search([mirror], slides, at))
+    assert 0.4 < expected < 0.6
+    assert phase_error(frozen([mirror], slides, at)) == pytest.approx(expected, rel=EXCESS_TOLERANCE)
+
+
+@pytest.mark.parametrize("radii", [(np.inf, np.inf), (2.0, np.inf), (0.7, 1.5), (5.0, -40.0)])
+def test_phase_error_of_two_slides_is_that_of_a_search(radii):
+    """Both points move each other: the sum over the single slides would be wrong."""
+    at, tops = np.array([17.0, 2.0, 1.0]), [np.array([7.0, 3.0, 0.5]), np.array([12.0, -2.0, 0.0])]
+    chain = [TRANSMITTER, *tops, at]
+    normals = [bisector(chain[k], chain[k - 1], chain[k + 1]) for k in (1, 2)]
+    mirrors = [Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
+               for top, normal, radius in zip(tops, normals, radii)]
+    slides = [0.02 * np.array([0.8, 0.6]), 0.015 * np.array([-0.3, 0.9])]
+    expected = WAVENUMBER * abs(excess_by_search(mirrors, slides, at))
+    assert 0.001 < expected < 1.0
+    assert phase_error(frozen(mirrors, slides, at)) == pytest.approx(expected, rel=EXCESS_TOLERANCE)
+
+
+# --- a warning for each way in which one trace fails ---
+
+def radar_of(num_chirps=128, chirp_interval=40e-6, transmitters=((0, 0, 1),), receivers=((0, 0, 1),), motion=None):
+    waveform = ep.ChirpSequence(start_frequency=shapes.FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=chirp_interval)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in transmitters],
+                    receivers=[ep.Antenna(p) for p in receivers], motion=motion)
+
+
+def scene_of(**objects):
+    """Scene of name=(mesh, material, position, motion)."""
+    scene = ep.Scene()
+    for name, (mesh, material, position, motion) in objects.items():
+        scene.add(mesh, name=name, material=material, position=position, motion=motion)
+    return scene
+
+
+def moving(velocity=(0, 0, 0), turning=(0, 0, 0)):
+    return ep.LinearMotion(velocity=velocity, angular_velocity=turning)
+
+
+def report_of(scene, radar, select=".+", num_rays=20000, **keywords):
+    paths = ep.trace(scene, radar, num_rays=num_rays, **keywords)
+    return ep.validity(paths.select(f"T {select} R"), radar)
+
+
+def only_warning(report):
+    assert len(report.warnings) == 1, str(report)
+    assert not report.ok and "does not serve" in str(report)
+    return report.warnings[0]
+
+
+BALL = ep.actors.sphere(0.5)
+
+
+def test_one_trace_serves_what_stands_still():
+    scene = scene_of(ball=(BALL, ROUGH, (6, 0, 1), None), wall=(shapes.plate((0, 0, 0), (-1, 0, 0), 2), shapes.METAL, (8, 0, 1), None))
+    report = report_of(scene, radar_of())
+    assert report.ok and "One trace serves this frame." in str(report)
+    assert report.shares.power > 0 and report.keyframes == 1
+    for share in ("slid", "left", "blocked", "turned", "new_surface"):
+        assert getattr(report.shares, share) == 0, share
+
+
+def test_one_trace_serves_the_street():
+    with as_file(data_folder("scenes") / "street.toml") as path:
+        street = ep.load_scene(path)
+    paths = ep.trace(street.scene, street.radar, **street.trace_settings() | {"num_rays": 20000})
+    report = ep.validity(paths, street.radar)
+    assert report.ok, str(report)
+    assert 0 < report.objects["pedestrian"].blocked < 0.05  # the limbs of a walker do come in each other's way
+
+
+def test_something_that_comes_in_the_way_is_a_warning():
+    scene = scene_of(ball=(BALL, ROUGH, (10, 0, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 0.6), ROUGH, (5, 0.42, 1), moving(velocity=(0, -40, 0))))
+    report = report_of(scene, radar_of(), "'ball'")
+    assert report.occluded_share > 0.01 and any("in the way" in text for text in report.warnings)
+
+
+def test_surface_behind_a_leaving_screen_is_a_warning():
+    scene = scene_of(ball=(shapes.sphere((0, 0, 0), 1.0, 4), ROUGH, (10, 0, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 0.6), ROUGH, (5, 0, 1), moving(velocity=(0, -40, 0))))
+    report = report_of(scene, radar_of())
+    assert report.new_surface_share > 0.01 and any("hidden from the trace" in text for text in report.warnings)
+
+
+def test_a_turning_side_that_comes_into_view_is_a_warning():
+    """A box turns by +-14 degrees: at mid-frame the radar sees its front alone."""
+    box = ep.Mesh([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
+                  [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+                   [1, 5, 7], [1, 7, 3]])
+    start = ep.KeyframeMotion(times=[0, 0.1], rotations=[[np.cos(a / 2), 0, 0, np.sin(a / 2)] for a in (-0.25, 0.25)])
+    scene = scene_of(car=(box, ROUGH, (30, 0, 1), start))
+    report = report_of(scene, radar_of(num_chirps=100, chirp_interval=1e-3))
+    assert any("hidden from the trace" in text for text in report.warnings), str(report)
+
+
+def test_a_surface_that_turns_edge_on_is_a_warning():
+    turn = ep.KeyframeMotion(times=[0, 0.1], rotations=[[np.cos(a / 2), 0, 0, np.sin(a / 2)] for a in (1.2, 1.55)])
+    scene = scene_of(plate=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.0), ROUGH, (10, 0, 1), turn))
+    assert "turn" in only_warning(report_of(scene, radar_of(num_chirps=100, chirp_interval=1e-3)))
+
+
+def test_a_point_of_reflection_that_leaves_its_mirror_is_a_warning():
+    """The point moves along the mirror at half the target's speed and reaches its end."""
+    mirror = shapes.rectangle((9, 3, -1), (2, 0, 0), (0, 0, 2))
+    scene = scene_of(mirror=(mirror, shapes.METAL, (0, 0, 1), None), ball=(BALL, ROUGH, (21.8, 0, 1), moving(velocity=(30, 0, 0))))
+    report = report_of(scene, radar_of(num_chirps=100, chirp_interval=1e-3), "'mirror' 'ball'")
+    assert report.left_share > 0.01 and any("leave the surface" in text for text in report.warnings)
+
+
+def test_a_point_of_reflection_that_crosses_a_crease_is_a_warning():
+    """A column of flat facets: the point goes over their edges."""
+    turn = np.linspace(0, 2 * np.pi, 37)[:-1]
+    rim = 0.5 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    vertices = np.concatenate([rim + [0, 0, -2], rim + [0, 0, 2]])
+    k = np.arange(36)
+    faces = np.concatenate([np.stack([k, (k + 1) % 36, k + 36], axis=1), np.stack([(k + 1) % 36, (k + 1) % 36 + 36, k + 36], axis=1)])
+    scene = scene_of(column=(ep.Mesh(vertices, faces), shapes.METAL, (8, 2, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 3.0), ROUGH, (12, -2, 1), moving(velocity=(0, 30, 0))))
+    report = report_of(scene, radar_of(num_chirps=100, chirp_interval=1e-3), "'column' 'screen'", num_rays=60000)
+    assert any("leave the surface" in text for text in report.warnings), str(report)
+
+
+def near_mirror():
+    return scene_of(bumper=(shapes.plate((0, 0, 0), (-1, 1, 0), 1.0), shapes.METAL, (0.8, 0, 1), None),
+                    ball=(BALL, ROUGH, (0.8, 12, 1), None))
+
+
+def test_a_near_mirror_and_a_wide_array_are_a_warning():
+    """A mirror 0.8 m away: an aperture of 4 mm is harmless, 20 cm are not."""
+    wide, narrow = (radar_of(transmitters=[(0, -a, 1), (0, a, 1)]) for a in (0.1, 0.002))
+    report = report_of(near_mirror(), wide, "'bumper' 'ball'")
+    assert "array is too wide" in only_warning(report)
+    assert report.motion_phase_error < 0.01 < 0.3 < report.largest_phase_error and report.keyframes == 1
+    assert report_of(near_mirror(), narrow, "'bumper' 'ball'").ok
+
+
+def test_a_long_frame_at_speed_along_a_wall_is_a_warning():
+    """30 m/s past a wall 3 m aside: 60 ms are too long for one trace, 4 ms are not. As many parts as it asks for will do."""
+    wall = shapes.rectangle((-10, 3, -3), (80, 0, 0), (0, 0, 8))
+    scene = scene_of(wall=(wall, shapes.METAL, (0, 0, 0), None), ball=(BALL, ROUGH, (20, 0, 1), None))
+    def report(chirps, start_time=0.0):
+        radar = radar_of(num_chirps=chirps, chirp_interval=60e-6, motion=moving(velocity=(30, 0, 0)))
+        paths = ep.trace(scene, radar, num_rays=20000, start_time=start_time)
+        return ep.validity(paths.select("T 'wall' 'ball' R"), radar)
+    long = report(1000)
+    assert "points of reflection slide" in only_warning(long) and long.keyframes > 1
+    assert report(1000 // long.keyframes).largest_phase_error < 0.3
+    assert report(64).ok
+
+
+# --- the report ---
+
+def test_phase_error_share_and_mean_are_those_of_the_arrays():
+    wall = shapes.rectangle((-10, 3, -3), (80, 0, 0), (0, 0, 8))
+    scene = scene_of(wall=(wall, shapes.METAL, (0, 0, 0), None), ball=(BALL, ROUGH, (20, 0, 1), None))
+    radar = radar_of(num_chirps=1000, chirp_interval=60e-6, motion=moving(velocity=(30, 0, 0)))
+    paths = ep.trace(scene, radar, num_rays=20000).select("T 'wall' 'ball' R")
+    report = ep.validity(paths, radar, arrays=True)
+    power, phase = report.power, report.phase_error.astype(float)
+    assert report.shares.power == pytest.approx(power.sum())
+    assert report.phase_error_share == pytest.approx(power[phase > 0.3].sum() / power.sum())
+    assert report.rms_phase_error == pytest.approx(np.sqrt(np.sum(power * phase**2) / power.sum()), rel=1e-6)
+    assert report.largest_phase_error == pytest.approx(phase.max(), rel=1e-6)
+
+
+def test_nothing_is_wrong_at_the_trace_time():
+    """Each leg that the trace recorded is free, each point of reflection in its place, between co-located antennas."""
+    rough = ep.Material(permittivity=5 - 0.3j, scattering=0.5)
+    scene = shapes.scene_of(ball=(shapes.sphere((5, 0, 1), 0.5, 4), rough, True), plate=(shapes.plate((4.5, 1.5, 1), (-1, -0.3, 0), 1.0), rough),
+                            floor=(shapes.rectangle((0, -4, 0), (9, 0, 0), (0, 8, 0)), rough.replace(mirror=True)),
+                            wall=(shapes.rectangle((0, 4, 0), (9, 0, 0), (0, 0, 5)), rough.replace(mirror=True)))
+    paths = ep.trace(scene, radar_of(), num_rays=20000)
+    report = ep.validity(paths, times=[paths.frame.trace_time])
+    assert paths.num_bounces.max() == 4
+    for share in ("slid", "left", "blocked", "turned", "new_surface"):
+        assert getattr(report.shares, share) == 0, share
+    assert report.rms_phase_error < 1e-5
+
+
+def test_report_has_the_same_bits_for_any_number_of_threads():
+    with as_file(data_folder("scenes") / "street.toml") as path:
+        street = ep.load_scene(path)
+    paths = ep.trace(street.scene, street.radar, **street.trace_settings() | {"num_rays": 2000})
+    texts = []
+    try:
+        for threads in (1, 2, 5):
+            ep.set_num_threads(threads)
+            report = ep.validity(paths, street.radar, arrays=True)
+            texts.append((str(report), report.shares.power, report.shares.blocked, report.power.tobytes(), report.blocked.tobytes()))
+    finally:
+        ep.set_num_threads(0)
+    assert texts[0] == texts[1] == texts[2]
+
+
+def test_no_paths_make_an_empty_report():
+    scene = scene_of(ball=(BALL, ROUGH, (6, 0, 1), None))
+    paths = ep.trace(scene, radar_of(), num_rays=1000).select("T 'ball' 'ball' R")
+    report = ep.validity(paths, arrays=True)
+    assert report.ok and report.num_paths == 0 and report.power.shape == (0,)
+
+
+@pytest.mark.parametrize("keywords, error, text", [
+    ({"times": [np.nan]}, ValueError, "times"),
+    ({"time": [0.0]}, TypeError, "times"),
+])
+def test_bad_arguments_are_named(keywords, error, text):
+    paths = ep.trace(scene_of(ball=(BALL, ROUGH, (6, 0, 1), None)), radar_of(), num_rays=100)
+    with pytest.raises(error, match=text):
+        ep.validity(paths, **keywords)

@@ -61,7 +61,8 @@ void bind_shares(py::module_& m) {
 }
 
 void bind_report(py::module_& m) {
-  py::class_<Validity, ValidityPtr>(m, "Validity", R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
+  py::class_<Validity, ValidityPtr>(m, "Validity",
+                                    R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
 
 Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
 the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band.)")

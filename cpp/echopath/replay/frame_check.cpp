@@ -62,8 +62,8 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, std::vector<doubl
   const auto traced = std::make_shared<const EmbreeScene>(*paths.scene, pose, origin_, job);
   trace_view_ = std::make_unique<const View>(*this, traced, paths.frame.trace_time);
   for (const double time : times) {
-    const auto posed = is_geometry_still_ ? traced
-                                          : std::make_shared<const EmbreeScene>(*paths.scene, Pose(*paths.scene, time), origin_, job);
+    auto posed = traced;
+    if (!is_geometry_still_) posed = std::make_shared<const EmbreeScene>(*paths.scene, Pose(*paths.scene, time), origin_, job);
     views_.push_back(std::make_unique<const View>(*this, posed, time));
   }
 }

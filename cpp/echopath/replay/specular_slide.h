@@ -2,12 +2,13 @@
 // How far the points of reflection of a path have slid from the recorded hits, and what that does to its length.
 //
 // A recorded specular hit moves with its triangle, while the point of reflection slides over the surface (Fermat). For
-// tangential slides x of all sliding hits of a path, whose ends stay,
+// tangential slides x of all sliding hits of a path,
 //   L(x) = L + g.x + x.Hx/2,   g_k = (a_k - d_k) along the surface,
 //   H_kk = P[(I - a a^T)/r_in + (I - d d^T)/r_out]P + n.(d - a) II,   H_kl = -P (R^T (I - a a^T)/r) P
 // with a, d the directions of arrival and departure, II the curvature about n (positive where convex), P the projector on the
-// tangent plane and R the flagged mirrors between two sliding hits in a row, k and l. Fermat's points lie at x = -H^-1 g, where
-// the path is shorter by e = g.H^-1 g/2, to second order in the slide. H is block-tridiagonal; hits with a material point between do not know each other.
+// tangent plane and R the flagged mirrors between two sliding hits in a row, k and l. Fermat's points lie at x = -H^-1 g,
+// where the path is shorter by e = g.H^-1 g/2, to second order in the slide. H is block-tridiagonal; hits with a material
+// point between do not know each other.
 #include <vector>
 
 #include "echopath/replay/path_geometry.h"

@@ -203,7 +203,8 @@ class Certificate {
     report_.shares.new_surface = share(seen.hidden, seen.power);
     for (size_t i = 0; i < of_object_.size(); ++i) {
       of_object_[i].new_surface = share(seen.hidden_of[i], seen.power_of[i]);
-      if (of_object_[i].power > 0 || seen.power_of[i] > 0) report_.objects.push_back({paths_.scene->nodes()[i].name, of_object_[i]});
+      if (of_object_[i].power <= 0 && seen.power_of[i] <= 0) continue;
+      report_.objects.push_back({paths_.scene->nodes()[i].name, of_object_[i]});
     }
     std::stable_sort(report_.objects.begin(), report_.objects.end(),
                      [](const auto& a, const auto& b) { return a.shares.power > b.shares.power; });

@@ -7,7 +7,8 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kMaxObjects = 3;  // in the text
+constexpr size_t kMaxObjects = 3;    // in the text
+constexpr size_t kValueColumn = 37;  // of the text
 
 std::string percent(double share) {
   std::ostringstream text;
@@ -38,17 +39,36 @@ std::string slide_warning(const Validity& report) {
   return text;
 }
 
+// What of an object is affected by more than the limit.
+std::string concerns(const ValidityShares& shares) {
+  std::string text;
+  const auto add = [&](const char* name, double share) {
+    if (share > kValidityLimit) text += (text.empty() ? "" : ", ") + std::string(name) + " " + percent(share);
+  };
+  add("slid", shares.slid);
+  add("left", shares.left);
+  add("blocked", shares.blocked);
+  add("turned", shares.turned);
+  add("new surface", shares.new_surface);
+  return text;
+}
+
+std::string line(const std::string& label, const std::string& value) {
+  std::string text = "\n  " + label;
+  text.resize(std::max(text.size() + 1, kValueColumn), ' ');
+  return text + value;
+}
+
 // Objects of which more than the limit is affected although the whole may hold.
-void add_objects(const Validity& report, std::ostringstream& text) {
+std::string object_lines(const Validity& report) {
+  std::string text;
   size_t count = 0;
   for (const ObjectValidity& object : report.objects) {
-    const ValidityShares& s = object.shares;
-    if (std::max({s.slid, s.left, s.blocked, s.turned, s.new_surface}) <= kValidityLimit) continue;
-    if (++count > kMaxObjects) continue;
-    text << "\n  of '" << object.name << "': slid " << percent(s.slid) << ", left " << percent(s.left) << ", blocked "
-         << percent(s.blocked) << ", turned " << percent(s.turned) << ", new surface " << percent(s.new_surface);
+    const std::string found = concerns(object.shares);
+    if (!found.empty() && ++count <= kMaxObjects) text += line("of '" + object.name + "' alone", found);
   }
-  if (count > kMaxObjects) text << "\n  and " << count - kMaxObjects << " more objects";
+  if (count > kMaxObjects) text += line("and of", std::to_string(count - kMaxObjects) + " more objects");
+  return text;
 }
 
 }  // namespace
@@ -78,18 +98,17 @@ std::vector<std::string> Validity::warnings() const {
 }
 
 std::string Validity::text() const {
-  std::ostringstream text;
   const std::vector<std::string> found = warnings();
-  const char* what = has_array ? "this frame and this array" : "this frame";
-  text << (found.empty() ? "One trace serves " : "One trace does not serve ") << what << ".";
-  for (const std::string& warning : found) text << "\n* " << warning;
-  text << "\nphase error of frozen points of reflection: " << radians(rms_phase_error) << " rms, "
-       << radians(largest_phase_error) << " at most, above " << radians(kPhaseLimit) << " for " << percent(shares.slid)
-       << " of the power\npoints of reflection leave their surface: " << percent(shares.left)
-       << "\nlegs blocked: " << percent(shares.blocked) << "\nsurfaces turn: " << percent(shares.turned)
-       << ", cosines change by " << largest_cosine_change << " at most\nnew surface: " << percent(shares.new_surface);
-  add_objects(*this, text);
-  return text.str();
+  std::string text = found.empty() ? "one trace serves this frame" : "one trace does not serve this frame";
+  if (has_array) text += " and this array";
+  for (const std::string& warning : found) text += "\n* " + warning;
+  const std::string sizes = radians(rms_phase_error) + " rms, " + radians(largest_phase_error) + " at most";
+  text += line("reflection slides", sizes + ", more than " + radians(kPhaseLimit) + " for " + percent(shares.slid) + " of the power");
+  text += line("reflection leaves its surface", percent(shares.left));
+  text += line("something comes in the way", percent(shares.blocked));
+  text += line("surfaces turn", percent(shares.turned));
+  text += line("surface that was hidden", percent(shares.new_surface));
+  return text + object_lines(*this);
 }
 
 }  // namespace echopath

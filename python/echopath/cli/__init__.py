@@ -115,17 +115,18 @@ def _view(options) -> None:
 def _run(options) -> None:
     from . import report
     from .progress import progress_bars
-    from .run import simulate_file, write_outputs
+    from .run import certify, simulate_file, write_outputs
     from ..scene_file import load_scene
 
     scene_file = load_scene(options.scene)
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, progress=progress)
+        certificate = certify(frame, progress=progress)
         written = write_outputs(frame, options.out, partitions=scene_file.partitions())
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.paths.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.files(written)]:
+                 *report.validity(certificate), *report.files(written)]:
         print(text)
 
 

@@ -12,7 +12,7 @@ from ..scene_file import load_scene
 from ..simulate import Frame
 from ..stages import StageClock
 from . import report
-from .run import simulate_file, write_outputs
+from .run import certify, simulate_file, write_outputs
 
 NUM_RAYS = 200_000
 ARMS, LEGS = "pedestrian/arm_*", "pedestrian/leg_*"
@@ -29,9 +29,10 @@ def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, batches=None, prog
         street = load_scene(path)
     frame = simulate_file(street, num_rays=num_rays, seed=seed, batches=batches,
                           extra_parts=limb_partitions(street.parts["route"]), progress=progress)
+    certificate = certify(frame, progress=progress)
     written = write_outputs(frame, out, partitions=street.parts)
     residuals = _check_sums(frame, progress)
-    for text in _report(street, frame, written, residuals):
+    for text in _report(street, frame, certificate, written, residuals):
         say(text)
     return frame
 
@@ -53,7 +54,7 @@ def _check_sums(frame: Frame, progress) -> dict:
     return residuals
 
 
-def _report(street, frame: Frame, written, residuals: dict) -> list[str]:
+def _report(street, frame: Frame, certificate, written, residuals: dict) -> list[str]:
     shown = {partition: cubes for partition, cubes in frame.parts.items() if partition != "limbs"}
     shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != "other"}
     limbs = frame.part_spectra["limbs"]
@@ -63,4 +64,4 @@ def _report(street, frame: Frame, written, residuals: dict) -> list[str]:
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",
             *(report.line(partition, f"{value:.1e}") for partition, value in residuals.items()),
-            *report.files(written)]
+            *report.validity(certificate), *report.files(written)]

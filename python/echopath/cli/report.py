@@ -41,6 +41,11 @@ def effects(all_effects) -> list[str]:
     return ["effects modelled", *lines, *textwrap.wrap(f"not modelled: {others}", 110, subsequent_indent="  ")]
 
 
+def validity(certificate) -> list[str]:
+    """Whether one trace serves the frame, from an ep.Validity."""
+    return str(certificate).splitlines()
+
+
 def stages(all_stages) -> list[str]:
     """Time and peak memory of each stage."""
     lines = [line(stage.name, f"{stage.seconds:8.2f} s {stage.peak_memory / 2**20:10,.0f} MiB") for stage in all_stages]

@@ -4,6 +4,8 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
+import echopath as ep
+
 from .. import plots
 from ..frame_file import LeftOut, save_frame
 from ..path_subset import power_of_strongest
@@ -41,6 +43,15 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.spectrum_settings(), angles=scene_file.angle_settings(), progress=progress)
+
+
+def certify(frame: Frame, *, progress=None):
+    """The ep.Validity of a frame's replay; adds its stage to those of the frame."""
+    clock = StageClock()
+    with clock("validity"):
+        certificate = ep.validity(frame.paths, frame.radar, progress=progress)
+    frame.stages += clock.stages
+    return certificate
 
 
 def write_outputs(frame: Frame, folder, partitions) -> Written:

@@ -353,6 +353,7 @@ def test_nothing_is_wrong_at_the_trace_time():
     rough = ep.Material(permittivity=5 - 0.3j, scattering=0.5)
     scene = shapes.scene_of(ball=(shapes.sphere((5, 0, 1), 0.5, 4), rough, True),
                             plate=(shapes.plate((4.5, 1.5, 1), (-1, -0.3, 0), 1.0), rough),
+                            dish=(Ball((6, -2, 1), (-0.9, 0.3, 0.3), -2.0).mesh(12), rough, True),
                             floor=(shapes.rectangle((0, -4, 0), (9, 0, 0), (0, 8, 0)), rough.replace(mirror=True)),
                             wall=(shapes.rectangle((0, 4, 0), (9, 0, 0), (0, 0, 5)), rough.replace(mirror=True)))
     paths = ep.trace(scene, radar_of(), num_rays=20000)

@@ -11,10 +11,16 @@ constexpr double kOnMirrorRelative = 1e-5;
 
 }  // namespace
 
-// Of a chain of legs: an antenna, or a point of a surface with a normal.
+// Of a chain of legs: an antenna, or a point of a surface with a normal and, where it is curved, the point of its facet.
 struct LegTester::End {
   Vec3 point;
   Vec3 normal = Vec3::Zero();
+  const Vec3* facet = nullptr;
+
+  // From where the surface does not hide `toward` itself: the curved point of a hollow facet lies behind it.
+  const Vec3& seen_from(const Vec3& toward) const {
+    return facet && normal.dot(toward - point) * normal.dot(point - *facet) < 0 ? *facet : point;
+  }
 };
 
 // At the flat triangle, where the trace found it.
@@ -23,7 +29,7 @@ LegTester::End LegTester::facet_of(const PosedHit& hit) {
 }
 
 // On the curved surface, where the trace left it.
-LegTester::End LegTester::surface_of(const PosedHit& hit) { return {hit.point, hit.normal}; }
+LegTester::End LegTester::surface_of(const PosedHit& hit) { return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr}; }
 
 void LegTester::block(int leg) {
   if (leg == path_.count) shadows_.is_end_blocked = true;
@@ -94,8 +100,8 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
 void LegTester::test(const End& from, int first, int last, const End& to) {
   if (is_known_blocked(first, last) || !place_images(from.point, first, last, to.point)) return;
   for (int leg = first; leg <= last; ++leg) {
-    const Vec3& start = leg > first ? image_points_[leg - 1] : from.point;
-    const Vec3& end = leg < last ? image_points_[leg] : to.point;
+    const Vec3& start = leg > first ? image_points_[leg - 1] : from.seen_from(leg < last ? image_points_[leg] : to.point);
+    const Vec3& end = leg < last ? image_points_[leg] : to.seen_from(start);
     if (leg > first && leg < last && (end - start).norm() <= kSamePlace) continue;
     const Vec3 off_start = leg > first ? lifted_image(leg - 1, first, last, end) : lifted(start, from.normal, end);
     const Vec3 off_end = leg < last ? end : lifted(end, to.normal, start);

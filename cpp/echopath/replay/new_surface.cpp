@@ -84,7 +84,7 @@ class Look {
 LaunchPlan plan_rays(const Scene& scene, const EmbreeScene& geometry, const Vec3& from, int64_t num_rays) {
   LaunchSettings settings;
   settings.num_rays = num_rays;
-  settings.with_images = false;
+  settings.max_image_mirrors = 0;
   settings.transmitter = from;
   return plan_launch(scene, geometry, {}, settings);
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/base/errors.h"
 #include "echopath/motion/motion.h"
 #include "keywords.h"
@@ -14,12 +15,7 @@
 namespace echopath::bindings {
 namespace {
 
-Interpolation as_interpolation(const std::string& name) {
-  require(name == "cubic" || name == "linear", "interpolation", "must be 'cubic' or 'linear'", "'" + name + "'");
-  return name == "cubic" ? Interpolation::kCubic : Interpolation::kLinear;
-}
-
-const char* name_of(Interpolation interpolation) { return interpolation == Interpolation::kCubic ? "cubic" : "linear"; }
+constexpr auto kInterpolation = choice<Interpolation>("interpolation", "cubic", "linear");
 
 py::tuple as_tuple(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -30,8 +26,8 @@ py::tuple as_tuple(const TimeSpan& span) {
 
 std::string description(const char* kind, const TimeSpan& span, size_t num_times, Interpolation interpolation) {
   std::ostringstream text;
-  text << kind << "(" << num_times << " times, " << span.begin << " to " << span.end << " s, " << name_of(interpolation)
-       << ")";
+  text << kind << "(" << num_times << " times, " << span.begin << " to " << span.end << " s, "
+       << kInterpolation.name_of(interpolation) << ")";
   return text.str();
 }
 
@@ -49,7 +45,7 @@ std::shared_ptr<KeyframeMotion> keyframe_motion(const py::object& times, const p
       as_vector<double>(times, "times"),
       translations.is_none() ? std::vector<Vec3>{} : as_points(translations, "translations"),
       rotations.is_none() ? std::vector<Quaternion>{} : as_quaternions(rotations, "rotations"),
-      as_interpolation(interpolation));
+      kInterpolation.value_of(interpolation));
 }
 
 std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const py::object& vertices,
@@ -57,7 +53,7 @@ std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const p
   refuse_unknown(unknown, "VertexSequence", {"times", "vertices", "interpolation"});
   std::vector<double> seconds = as_vector<double>(times, "times");
   std::vector<std::vector<Vec3>> frames = as_frames(vertices, "vertices");
-  const Interpolation kind = as_interpolation(interpolation);
+  const Interpolation kind = kInterpolation.value_of(interpolation);
   const py::gil_scoped_release release;
   return std::make_shared<VertexSequence>(std::move(seconds), std::move(frames), kind);
 }
@@ -108,7 +104,7 @@ Between two keys a rotation goes the shorter way. Raises ValueError naming the a
                              "[T, 3] in m, [0, 3] where none were given")
       .def_property_readonly("rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
                              "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
-      .def_property_readonly("interpolation", [](const KeyframeMotion& self) { return name_of(self.interpolation()); },
+      .def_property_readonly("interpolation", [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
                              "\"cubic\" or \"linear\"")
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
@@ -133,7 +129,7 @@ Raises ValueError naming the argument. Cubic sequences take twice the memory of 
                              "Times [N] in s, ascending, where the motion is not smooth.")
       .def_property_readonly("span", [](const VertexSequence& self) { return as_tuple(self.span()); },
                              "(begin, end) in s of the times it is defined on.")
-      .def_property_readonly("interpolation", [](const VertexSequence& self) { return name_of(self.interpolation()); },
+      .def_property_readonly("interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
                              "\"cubic\" or \"linear\"")
       .def("__repr__", [](const VertexSequence& self) {
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
 #include "keywords.h"
@@ -19,6 +20,9 @@ namespace {
 
 // A vector of unit length up to `kUnitTolerance` is scaled to it; one that already is keeps its bits.
 constexpr double kUnitTolerance = 1e-6, kUnitRounding = 1e-14;
+
+constexpr auto kMultiplexing = choice<Multiplexing>("multiplexing", "tdm");
+constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
 
 template <class Vector>
 void make_unit(Vector& vector, const char* argument) {
@@ -85,15 +89,14 @@ Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitt
             const std::string& multiplexing, const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
   refuse_unknown(unknown, "Radar", {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db",
                                     "multiplexing", "motion"});
-  require(multiplexing == "tdm", "multiplexing", "must be 'tdm'", "'" + multiplexing + "'");
-  Radar made{waveform, transmitters, receivers, transmit_power, noise_figure_db, Multiplexing::kTdm, motion};
+  Radar made{waveform,        transmitters,        receivers, transmit_power,
+             noise_figure_db, kMultiplexing.value_of(multiplexing), motion};
   made.validate();
   return made;
 }
 
 const char* kind_of(const AntennaPattern& pattern) {
-  if (pattern.kind == AntennaPattern::Kind::kTable) return "table";
-  return pattern.kind == AntennaPattern::Kind::kIsotropic ? "isotropic" : "cosine_power";
+  return kPatternKind.name_of(pattern.kind);
 }
 
 // One of the arrays of a table, in a new NumPy array; None for other patterns and where there is no phase.
@@ -269,7 +272,7 @@ Raises ValueError naming the argument.)")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB")
-      .def_property_readonly("multiplexing", [](const Radar&) { return "tdm"; }, "\"tdm\"")
+      .def_property_readonly("multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
       .def_property_readonly("motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
                              "Motion of the radar's frame, or None")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")

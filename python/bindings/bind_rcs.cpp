@@ -5,9 +5,9 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"
-#include "footprint_name.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -16,6 +16,8 @@ namespace {
 
 const std::vector<std::string> kKeywords = {"frequency",   "incidence", "observation", "polarization", "num_rays",
                                             "max_bounces", "seed",      "footprint",   "components",   "progress"};
+
+constexpr auto kPlane = choice<ScatteringPlane>("plane", "E", "H");
 
 // [3] or [N, 3] as rows.
 std::vector<Vec3> directions_of(const py::handle& value, const char* argument, bool& is_one) {
@@ -51,7 +53,7 @@ py::object rcs_of(const Scene& scene, double frequency, const py::object& incide
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const RcsSettings settings{frequency,   as_vec3(polarization, "polarization"), num_rays,
-                             max_bounces, seed, as_footprint(footprint)};
+                             max_bounces, seed, kFootprint.value_of(footprint)};
   const auto values = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   const auto column = [&](auto&& value) -> py::object {
     if (is_one) return py::float_(value(values.front()));
@@ -67,8 +69,7 @@ py::object rcs_of(const Scene& scene, double frequency, const py::object& incide
 }
 
 double mie_rcs_of(double radius, double frequency, double bistatic_angle, const std::string& plane) {
-  require(plane == "E" || plane == "H", "plane", "must be 'E' or 'H'", plane);
-  return mie_rcs(radius, frequency, bistatic_angle, plane == "E" ? ScatteringPlane::kE : ScatteringPlane::kH);
+  return mie_rcs(radius, frequency, bistatic_angle, kPlane.value_of(plane));
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "array.h"
+#include "choice.h"
 #include "cube_array.h"
 #include "echopath/base/errors.h"
 #include "echopath/signal/noise.h"
 #include "echopath/signal/synthesizer.h"
-#include "method_name.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -56,7 +56,7 @@ py::array synthesize_echoes(const ChirpSequence& waveform, const py::object& del
   echoes.num_echoes = delay.shape(1);
   echoes.delay.assign(delay.data(), delay.data() + delay.size());
   echoes.amplitude.assign(amplitude.data(), amplitude.data() + amplitude.size());
-  const SynthesisOptions options{tolerance, as_method(method)};
+  const SynthesisOptions options{tolerance, kMethod.value_of(method)};
   auto samples = run_job("synthesize", py::none(), [&](Job& job) {
     Synthesizer synthesizer(waveform, 1, 1, echoes.num_echoes, options);
     synthesizer.add(0, echoes, &job);

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/sim/synthesize.h"
 #include "keywords.h"
-#include "method_name.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -15,13 +15,15 @@ namespace {
 
 const std::vector<std::string> kKeywords = {"tolerance", "method", "evaluate", "phase_tolerance", "progress"};
 
+enum class Evaluation { kInterpolated, kChirps, kSamples };
+constexpr auto kEvaluation = choice<Evaluation>("evaluate", "interpolated", "chirps", "samples");
+
 CubeSettings settings_of(double tolerance, const std::string& method, const std::string& evaluate, double phase_tolerance) {
   CubeSettings settings;
-  require(evaluate == "interpolated" || evaluate == "chirps" || evaluate == "samples", "evaluate",
-          "must be 'interpolated', 'chirps' or 'samples'", evaluate);
-  settings.synthesis = {tolerance, as_method(method), evaluate == "samples"};
+  const Evaluation evaluation = kEvaluation.value_of(evaluate);
+  settings.synthesis = {tolerance, kMethod.value_of(method), evaluation == Evaluation::kSamples};
   settings.replay.phase_tolerance = phase_tolerance;
-  settings.replay.exact = evaluate == "chirps";
+  settings.replay.exact = evaluation == Evaluation::kChirps;
   return settings;
 }
 

@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -11,13 +10,13 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/base/parallel.h"
 #include "echopath/label/partition.h"
 #include "echopath/replay/received_power.h"
 #include "echopath/replay/replay.h"
 #include "echopath/sim/trace_to_error.h"
 #include "echopath/trace/trace.h"
-#include "footprint_name.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -25,25 +24,6 @@ namespace echopath::bindings {
 namespace {
 
 using PathsPtr = std::shared_ptr<Paths>;
-
-// By the order of the enum.
-constexpr std::array<const char*, 2> kPolarizations = {"scalar", "jones"};
-
-PolarizationModel as_polarization(const std::string& name) {
-  for (size_t i = 0; i < kPolarizations.size(); ++i) {
-    if (name == kPolarizations[i]) return static_cast<PolarizationModel>(i);
-  }
-  throw std::invalid_argument("polarization: must be 'scalar' or 'jones', got '" + name + "'");
-}
-
-constexpr std::array<const char*, 4> kSamplers = {"lattice", "fibonacci", "r2", "random"};
-
-Sampler as_sampler(const std::string& name) {
-  for (size_t i = 0; i < kSamplers.size(); ++i) {
-    if (name == kSamplers[i]) return static_cast<Sampler>(i);
-  }
-  throw std::invalid_argument("sampler: must be 'lattice', 'fibonacci', 'r2' or 'random', got '" + name + "'");
-}
 
 // --- TraceFrame and what it holds ---
 
@@ -93,8 +73,8 @@ void bind_frame(py::module_& m) {
                        const std::string& footprint, const TraceStatistics& statistics, int num_batches,
                        double target_error_db, double error_db, const std::string& sampler) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, as_polarization(polarization),
-                               as_footprint(footprint), as_sampler(sampler), statistics, num_batches, target_error_db,
+                               std::move(strata), seed, max_bounces, kPolarization.value_of(polarization),
+                               kFootprint.value_of(footprint), kSampler.value_of(sampler), statistics, num_batches, target_error_db,
                                error_db};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
@@ -111,9 +91,9 @@ void bind_frame(py::module_& m) {
       .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
       .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
       .def_property_readonly(
-          "polarization", [](const TraceFrame& self) { return kPolarizations[static_cast<size_t>(self.polarization)]; },
+          "polarization", [](const TraceFrame& self) { return kPolarization.name_of(self.polarization); },
           "\"scalar\" or \"jones\"")
-      .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprints[static_cast<size_t>(self.footprint)]; },
+      .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
                              "\"second_order\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
@@ -121,7 +101,7 @@ void bind_frame(py::module_& m) {
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
       .def_property_readonly("sampler",
-                             [](const TraceFrame& self) { return kSamplers[static_cast<size_t>(self.sampler)]; },
+                             [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
                              "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
 }
@@ -363,8 +343,8 @@ PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64
   refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
                                     "sampler", "batches", "target_error_db", "max_rays", "progress"});
   TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time,
-                         as_polarization(polarization), as_footprint(footprint), batches.value_or(1)};
-  settings.sampler = as_sampler(sampler);
+                         kPolarization.value_of(polarization), kFootprint.value_of(footprint), batches.value_or(1)};
+  settings.sampler = kSampler.value_of(sampler);
   if (!target_error_db) {
     return std::make_shared<Paths>(
         run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));

@@ -26,7 +26,8 @@ struct SbrSettings {
   Vec3 receiver = Vec3::Zero();
   bool is_polarized = false;                 // follow field vectors (PolarizationModel::kJones)
   Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
-  double specular_probability = 0.0;         // of going on specularly where a surface does both; 0: its specular share
+  // Of going on specularly where a surface does both; 0: its specular share, and any other leaves the expected echo as it is.
+  double specular_probability = 0.0;
 };
 
 class RayShooter {

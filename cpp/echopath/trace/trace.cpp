@@ -66,8 +66,6 @@ void TraceSettings::validate() const {
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
   require(std::isfinite(start_time), "start_time", "must be finite", start_time);
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
-  require(specular_probability >= 0 && specular_probability < 1, "specular_probability", "must lie in [0, 1)",
-          specular_probability);
 }
 
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
@@ -100,7 +98,6 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   sbr.max_bounces = settings.max_bounces;
   sbr.is_polarized = settings.polarization == PolarizationModel::kJones;
   sbr.seed = settings.seed;
-  sbr.specular_probability = settings.specular_probability;
   sbr.frequency = radar.waveform.start_frequency;
   sbr.transmitter = launch.transmitter;
   sbr.receiver = paths.frame.receiver - origin;

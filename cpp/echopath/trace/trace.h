@@ -15,7 +15,6 @@ struct TraceSettings {
   // 1 to 64: independent lattices that share the rays, from which errors follow. Each is as fine as its share of the
   // rays.
   int batches = 1;
-  double specular_probability = 0.0;  // 0: the specular share; any other leaves the expected echo as it is (for tests)
   Sampler sampler = Sampler::kLattice;  // of the launch directions
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "echopath/replay/received_power.h"
+#include "echopath/trace/sbr.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -88,13 +89,33 @@ Scene dihedral(double scattering) {
   return scene;
 }
 
+// What `trace` does, with odds of going on specularly that no setting of it offers. Radar at the origin.
+Paths trace_with_odds(const Scene& scene, double specular_probability, uint64_t seed) {
+  Paths paths;
+  paths.scene = std::make_shared<const Scene>(scene);
+  paths.radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  paths.frame.seed = seed;
+  paths.frame.max_bounces = 2;
+  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  LaunchSettings launch;
+  launch.num_rays = 1 << 14;
+  launch.seed = seed;
+  const std::vector<Mirror> no_mirrors;
+  const LaunchPlan plan = plan_launch(scene, geometry, no_mirrors, launch);
+  paths.frame.strata = plan.strata;
+  SbrSettings odds;
+  odds.max_bounces = 2;
+  odds.seed = seed;
+  odds.specular_probability = specular_probability;
+  const RayShooter shooter(scene, geometry, no_mirrors, plan, odds);
+  std::vector<PathBlock> blocks(1);
+  for (int64_t ray = 0; ray < plan.first_ray.back(); ++ray) shooter.shoot(ray, blocks.front());
+  join_blocks(blocks, paths);
+  return paths;
+}
+
 std::complex<double> double_bounce(double scattering, double specular_probability, uint64_t seed) {
-  TraceSettings settings;
-  settings.num_rays = 1 << 14;
-  settings.max_bounces = 2;
-  settings.seed = seed;
-  settings.specular_probability = specular_probability;
-  const Paths paths = trace(dihedral(scattering), plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
+  const Paths paths = trace_with_odds(dihedral(scattering), specular_probability, seed);
   std::vector<uint8_t> keep;
   for (size_t i = 0; i < paths.offsets.size(); ++i) keep.push_back(paths.num_bounces[i] == 2 && paths.diffuse[i] == 0);
   return coherent_sum(paths.select(keep));

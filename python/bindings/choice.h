@@ -1,0 +1,49 @@
+#pragma once
+// Enums that Python knows by name: the look-up, and the names of those that several binding files take.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "echopath/em/footprint.h"
+#include "echopath/em/jones.h"
+#include "echopath/signal/synthesizer.h"
+#include "echopath/trace/sampler.h"
+
+namespace echopath::bindings {
+
+// The names of an enum's values, in their order, and the argument by which errors call them.
+template <class Enum, size_t N>
+struct Choice {
+  const char* argument;
+  std::array<const char*, N> names;
+
+  // Raises invalid_argument that lists the names.
+  Enum value_of(std::string_view name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<Enum>(found - names.begin());
+    throw std::invalid_argument(std::string(argument) + ": must be " + listed() + ", got '" + std::string(name) + "'");
+  }
+
+  const char* name_of(Enum value) const { return names.at(static_cast<size_t>(value)); }
+
+  // 'a', 'b' or 'c'
+  std::string listed() const {
+    std::string text;
+    for (size_t i = 0; i < N; ++i) text += (i == 0 ? "'" : i + 1 == N ? " or '" : ", '") + std::string(names[i]) + "'";
+    return text;
+  }
+};
+
+template <class Enum, class... Names>
+constexpr Choice<Enum, sizeof...(Names)> choice(const char* argument, Names... names) {
+  return {argument, {names...}};
+}
+
+inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first_order", "second_order");
+inline constexpr auto kMethod = choice<Method>("method", "auto", "direct", "recurrence", "nufft");
+inline constexpr auto kPolarization = choice<PolarizationModel>("polarization", "scalar", "jones");
+inline constexpr auto kSampler = choice<Sampler>("sampler", "lattice", "fibonacci", "r2", "random");
+
+}  // namespace echopath::bindings

@@ -2,21 +2,26 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "array.h"
 #include "choice.h"
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"
+#include "error_target.h"
 #include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {"frequency",   "incidence", "observation", "polarization", "num_rays",
-                                            "max_bounces", "seed",      "footprint",   "components",   "progress"};
+const std::vector<std::string> kKeywords = {"frequency", "incidence", "observation", "polarization", "num_rays",
+                                            "max_bounces", "seed", "footprint", "sampler", "batches",
+                                            "target_error_db", "max_rays", "components", "return_error", "progress"};
 
+enum class NamedChannel { kVv, kHh, kVh, kHv };  // transmitted, received
+constexpr auto kChannel = choice<NamedChannel>("polarization", "vv", "hh", "vh", "hv");
 constexpr auto kPlane = choice<ScatteringPlane>("plane", "E", "H");
 
 // [3] or [N, 3] as rows.
@@ -45,27 +50,99 @@ std::vector<RcsDirections> pairs_of(const py::object& incidence, const py::objec
   return pairs;
 }
 
+RcsChannel channel_of(const std::string& name) {
+  const NamedChannel named = kChannel.value_of(name);
+  RcsChannel channel;
+  const auto vertical = RcsPolarization::Kind::kVertical, horizontal = RcsPolarization::Kind::kHorizontal;
+  channel.transmit.kind = named == NamedChannel::kVv || named == NamedChannel::kVh ? vertical : horizontal;
+  channel.receive.kind = named == NamedChannel::kVv || named == NamedChannel::kHv ? vertical : horizontal;
+  return channel;
+}
+
+// What was asked for as `polarization`, and whether cross sections get an axis for it.
+struct Channels {
+  std::vector<RcsChannel> rows;
+  PolarizationModel model = PolarizationModel::kJones;
+  bool is_list = false;
+};
+
+Channels channels_of(const py::object& value) {
+  if (py::isinstance<py::str>(value)) return {{channel_of(value.cast<std::string>())}};
+  if (py::isinstance<py::sequence>(value) && py::len(value) > 0 && py::isinstance<py::str>(value[py::int_(0)])) {
+    Channels channels;
+    for (const auto& name : value.cast<std::vector<std::string>>()) channels.rows.push_back(channel_of(name));
+    channels.is_list = true;
+    return channels;
+  }
+  bool is_one = false;
+  const std::vector<Vec3> vectors = directions_of(value, "polarization", is_one);
+  require(is_one || vectors.size() == 2, "polarization", "must be [3] or, of transmitter and receiver, [2, 3], rows",
+          vectors.size());
+  RcsChannel channel;
+  channel.transmit.vector = vectors.front();
+  channel.receive.vector = vectors.back();
+  return {{channel}, is_one ? PolarizationModel::kScalar : PolarizationModel::kJones};
+}
+
+// Of one quantity: a number, [N], [C] or [N, C] for N pairs of directions and C polarisations.
+template <class Value>
+py::object column(const std::vector<RadarCrossSection>& entries, const Shape& shape, Value value) {
+  if (shape.empty()) return py::float_(value(entries.front()));
+  std::vector<double> numbers;
+  for (const RadarCrossSection& entry : entries) numbers.push_back(value(entry));
+  return numpy_take(std::move(numbers), shape);
+}
+
+// The cross sections or their errors, in parts or whole.
+py::object columns(const std::vector<RadarCrossSection>& entries, const Shape& shape, bool components, bool errors) {
+  using Entry = RadarCrossSection;
+  if (!components) {
+    return column(entries, shape, [&](const Entry& entry) { return errors ? entry.standard_error : entry.total; });
+  }
+  py::dict parts;
+  parts["coherent"] =
+      column(entries, shape, [&](const Entry& entry) { return errors ? entry.coherent_error : entry.coherent; });
+  parts["diffuse"] =
+      column(entries, shape, [&](const Entry& entry) { return errors ? entry.diffuse_error : entry.diffuse; });
+  return parts;
+}
+
+void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db) {
+  int64_t missed = 0;
+  double worst = 0.0;
+  for (const RadarCrossSection& entry : entries) {
+    if (entry.error_db <= target_error_db || entry.total == 0) continue;  // rays that miss the target need no more rays
+    ++missed;
+    worst = std::max(worst, entry.error_db);
+  }
+  if (missed == 0) return;
+  const std::string count = std::to_string(missed) + " of " + std::to_string(entries.size());
+  warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
+}
+
 py::object rcs_of(const Scene& scene, double frequency, const py::object& incidence, const py::object& observation,
-                  const py::object& polarization, int64_t num_rays, int max_bounces, uint64_t seed,
-                  const std::string& footprint, bool components, const py::object& progress,
-                  const py::kwargs& unknown) {
+                  const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
+                  const std::string& footprint, const std::string& sampler, std::optional<int> batches,
+                  std::optional<double> target_error_db, int64_t max_rays, bool components, bool return_error,
+                  const py::object& progress, const py::kwargs& unknown) {
   refuse_unknown(unknown, "rcs", kKeywords);
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
-  const RcsSettings settings{frequency,   as_vec3(polarization, "polarization"), num_rays,
-                             max_bounces, seed, kFootprint.value_of(footprint)};
-  const auto values = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
-  const auto column = [&](auto&& value) -> py::object {
-    if (is_one) return py::float_(value(values.front()));
-    std::vector<double> numbers;
-    for (const RadarCrossSection& entry : values) numbers.push_back(value(entry));
-    return numpy_take(std::move(numbers));
-  };
-  if (!components) return column([](const RadarCrossSection& entry) { return entry.total(); });
-  py::dict out;
-  out["coherent"] = column([](const RadarCrossSection& entry) { return entry.coherent; });
-  out["diffuse"] = column([](const RadarCrossSection& entry) { return entry.diffuse; });
-  return out;
+  const Channels channels = channels_of(polarization);
+  const RcsSettings defaults;
+  const Effort effort = effort_of(num_rays, batches, target_error_db, max_rays, defaults.num_rays,
+                                  return_error ? kTargetBatches : defaults.batches);
+  require(!return_error || effort.batches > 1, "batches", "must be >= 2 for return_error", effort.batches);
+  const RcsSettings settings{frequency,   channels.rows, channels.model,                 effort.num_rays,
+                             max_bounces, seed,          kFootprint.value_of(footprint), kSampler.value_of(sampler),
+                             effort.batches, effort.target};
+  const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
+  if (target_error_db) warn_of_missed_targets(entries, *target_error_db);
+  Shape shape;
+  if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));
+  if (channels.is_list) shape.push_back(static_cast<py::ssize_t>(channels.rows.size()));
+  const py::object values = columns(entries, shape, components, false);
+  return return_error ? py::make_tuple(values, columns(entries, shape, components, true)) : values;
 }
 
 double mie_rcs_of(double radius, double frequency, double bistatic_angle, const std::string& plane) {
@@ -77,22 +154,33 @@ double mie_rcs_of(double radius, double frequency, double bistatic_angle, const 
 void bind_rcs(py::module_& m) {
   m.def("rcs", &rcs_of, py::arg("scene"), py::kw_only(), py::arg("frequency"), py::arg("incidence"),
         py::arg("observation") = py::none(), py::arg("polarization") = py::make_tuple(0, 0, 1),
-        py::arg("num_rays") = 1 << 17, py::arg("max_bounces") = 4, py::arg("seed") = 1,
-        py::arg("footprint") = "second_order", py::arg("components") = false, py::arg("progress") = py::none(),
+        py::arg("num_rays") = py::none(), py::arg("max_bounces") = 4, py::arg("seed") = 1,
+        py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
+        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("components") = false,
+        py::arg("return_error") = false, py::arg("progress") = py::none(),
         R"(Radar cross section of a scene in m^2, far field, at time 0.
 
-Model: physical optics at every bounce. Coherent echoes add as fields; diffuse ones as powers, the mean over
-realisations of the roughness, without coherent backscatter of multi-bounce paths. Both antennas are isotropic and
-co-polarised.
+Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
+the mean over realisations of the roughness.
 frequency: Hz
 incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
 observation: toward the receiver, likewise; None: monostatic
-polarization: [3], of both antennas; its part across the line of sight counts
-num_rays: rays per direction; max_bounces: 1 to 64; seed; footprint: as in trace
+polarization: [3] of both antennas, with one coefficient a hit (the scalar model of trace); or, with field vectors:
+    [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv" (transmitted, received: "v" points up, "h" lies in the
+    xy-plane, both across the line of sight) or a list [C] of these. Of a vector its part across the line of sight counts
+num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
+seed, footprint, sampler: as in trace
+batches: as in trace; 8 for return_error, else 1
+target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as trace does, until each
+    cross section, of a list of polarizations the first with each transmitter, is known that well
 components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
+return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
+    and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
+    smaller than its error
 progress: callable(stage, fraction) or None
-Returns a number, or [N] where directions are [N, 3]. Each direction costs a trace of its own. Raises ValueError for a
-zero direction, one along the polarization, an empty scene, and mirrors, which have no cross section.)");
+Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction and
+transmit polarization costs a trace of its own. Warns (RuntimeWarning) where max_rays did not do. Raises ValueError for bad
+settings, a zero direction, one along the polarization, an empty scene, and mirrors, which have no cross section.)");
   m.def("mie_rcs", &mie_rcs_of, py::arg("radius"), py::arg("frequency"), py::arg("bistatic_angle") = 0.0,
         py::arg("plane") = "H",
         R"(Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.

@@ -15,8 +15,8 @@
 #include "echopath/label/partition.h"
 #include "echopath/replay/received_power.h"
 #include "echopath/replay/replay.h"
-#include "echopath/sim/trace_to_error.h"
 #include "echopath/trace/trace.h"
+#include "error_target.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -328,38 +328,29 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   return paths;
 }
 
-// A target that was not met is said aloud, and may be made an error.
-void warn_of_missed_target(const TraceFrame& frame) {
-  if (frame.error_db <= frame.target_error_db) return;
-  const std::string text = "trace: max_rays was reached at a standard error of " + std::to_string(frame.error_db) +
-                           " dB, target_error_db is " + std::to_string(frame.target_error_db);
-  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-}
-
 PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
                      uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
                      int64_t max_rays, const py::object& progress, const py::kwargs& unknown) {
   refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
                                     "sampler", "batches", "target_error_db", "max_rays", "progress"});
-  TraceSettings settings{num_rays.value_or(kDefaultRays), max_bounces, seed, start_time,
-                         kPolarization.value_of(polarization), kFootprint.value_of(footprint), batches.value_or(1)};
+  const Effort effort = effort_of(num_rays, batches, target_error_db, max_rays, kDefaultRays, 1);
+  TraceSettings settings{effort.num_rays, max_bounces, seed, start_time, kPolarization.value_of(polarization),
+                         kFootprint.value_of(footprint), effort.batches};
   settings.sampler = kSampler.value_of(sampler);
-  if (!target_error_db) {
-    return std::make_shared<Paths>(
-        run_job("trace", progress, [&](Job& job) { return trace(scene, radar, settings, &job); }));
+  auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
+    return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job)
+                         : trace(scene, radar, settings, &job);
+  }));
+  const TraceFrame& frame = paths->frame;
+  if (frame.error_db > frame.target_error_db) {
+    warn_of_missed_target("trace: max_rays", frame.error_db, frame.target_error_db);
   }
-  const ErrorTarget target{*target_error_db, max_rays};
-  settings.batches = batches.value_or(kTargetBatches);
-  settings.num_rays = num_rays.value_or(std::min(kFirstRays, max_rays));
-  auto paths = std::make_shared<Paths>(
-      run_job("trace", progress, [&](Job& job) { return trace_to_error(scene, radar, settings, target, &job); }));
-  warn_of_missed_target(paths->frame);
   return paths;
 }
 
-ReceivedPower power_of(const Paths& paths, const py::object& progress) {
-  return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job); });
+ReceivedPower power_of(const Paths& paths, int tx, int rx, const py::object& progress) {
+  return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job, {tx, rx}); });
 }
 
 std::string power_text(const ReceivedPower& self) {
@@ -372,7 +363,7 @@ void bind_received_power(py::module_& m) {
   py::class_<ReceivedPower>(m, "ReceivedPower",
                             R"(Mean received power of a set of paths and its Monte-Carlo error; all powers in W.
 
-At the trace time, between the first antennas, at the start frequency; the mean is over the random phases of diffuse
+At the trace time, between two antennas, at the start frequency; the mean is over the random phases of diffuse
 hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN for one batch.)")
       .def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
       .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
@@ -388,11 +379,13 @@ hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN f
       .def_property_readonly("error_db", &ReceivedPower::error_db,
                              "dB, 10 log10(1 + standard_error / power); infinite where not resolved")
       .def("__repr__", &power_text);
-  m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("progress") = py::none(),
+  m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
+        py::arg("progress") = py::none(),
         R"(Mean received power of paths with its standard error, for the whole of a trace or any selection of it.
 
 paths: of a trace with batches for errors; progress: callable(stage, fraction) or None
-Returns a ReceivedPower, in W. Raises KeyboardInterrupt on Ctrl-C.)");
+tx, rx: indices of the antennas
+Returns a ReceivedPower, in W. Raises IndexError for antennas that are not there, KeyboardInterrupt on Ctrl-C.)");
 }
 
 std::string paths_text(const Paths& self) {

@@ -16,13 +16,13 @@ from ._core import (
     FileError, GainTable, Isotropic, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeAzimuth,
     RangeDoppler, ReceivedPower, Selection, Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares,
     VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann, compensate_tdm,
-    estimate_angles, hits, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads, range_azimuth, range_doppler, rcs, received_power, set_num_threads,
-    speed_of_light, synthesize, validity, virtual_array,
+    estimate_angles, hits, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads, range_azimuth, range_doppler,
+    received_power, set_num_threads, speed_of_light, synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
 from .materials import materials
 from .scene import Scene
-from .tessellation import TessellationWarning, trace
+from .tessellation import TessellationWarning, rcs, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part

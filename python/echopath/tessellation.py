@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import dataclasses
+import math
+import numbers
 import warnings
 
 import numpy as np
@@ -141,9 +143,10 @@ def coherent_share(material, wavelength: float) -> float:
     return float(np.exp(-((4.0 * np.pi * material.roughness_height / wavelength) ** 2)))
 
 
-def warn_of_coarse_meshes(scene, radar, stacklevel: int = 2) -> None:
-    """Warns (TessellationWarning) of each curved mesh whose coherent echo would err by more than 0.3 dB."""
-    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
+    """Warns (TessellationWarning) of each curved mesh whose coherent echo at `frequency` [Hz] would err by more than
+    0.3 dB, and names the edge that would do."""
+    wavelength = _core.speed_of_light / frequency
     nodes = scene.nodes
     known = getattr(scene, "__dict__", {}).setdefault("_tessellation", {})  # by mesh ID; meshes of a scene never change
     for mesh in scene.meshes:
@@ -172,8 +175,17 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
 
 
 def trace(scene, radar, **settings):
-    warn_of_coarse_meshes(scene, radar)
+    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
     return _core.trace(scene, radar, **settings)
 
 
-trace.__doc__ = _core.trace.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB."
+def rcs(scene, **settings):
+    frequency = settings.get("frequency")
+    if isinstance(frequency, numbers.Real) and 0.0 < frequency < math.inf:  # the core says what is wrong with others
+        warn_of_coarse_meshes(scene, float(frequency), stacklevel=2)
+    return _core.rcs(scene, **settings)
+
+
+for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):
+    _function.__doc__ = (_of_core.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB, "
+                         "with the edge length in m that would do.")

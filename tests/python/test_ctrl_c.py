@@ -38,6 +38,12 @@ def paths():
                                 frame=traced.frame)
 
 
+def rcs_of_two_directions():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="clothing")
+    return ep.rcs(scene, frequency=77e9, incidence=[(1, 0, 0), (1, 1, 0)], num_rays=1 << 24)
+
+
 PARTS = {f"part {count}": f"T 'plate' .{{{count}}} 'wall'? .* R" for count in range(12)}
 TIMES = np.linspace(0.0, 5e-4, 12)
 WORK = {
@@ -49,6 +55,8 @@ WORK = {
     "amplitudes": lambda paths, folder: paths.amplitudes(TIMES),
     "lengths": lambda paths, folder: paths.lengths(TIMES),
     "points": lambda paths, folder: [paths.points(time) for time in TIMES],
+    "received power": lambda paths, folder: ep.received_power(paths),
+    "rcs of two directions": lambda paths, folder: rcs_of_two_directions(),
     "save": lambda paths, folder: paths.save(folder / "paths.h5", min_power=1e-30),
     "load": lambda paths, folder: ep.Paths.load(saved_once(paths, folder)),
 }

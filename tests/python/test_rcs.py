@@ -17,6 +17,9 @@ PO_SPHERE_TOLERANCE = 0.01       # relative
 DIHEDRAL_TOLERANCE_DB, TRIHEDRAL_TOLERANCE_DB = 0.15, 0.2
 LAMBERT_TOLERANCE = 0.002        # relative: mean powers add, so that only the quadrature over the plate is left
 WEIGHT_RULE_TOLERANCE_DB = 0.2   # mean of 32 seeds of a coin per ray
+POLARIZATION_NULL_DB = -30.0     # the promise for what a symmetry forbids, below the full level
+NUM_SEEDS = 60
+ERROR_OF_ERRORS = 0.3            # relative: 60 values know their spread to 9 %, three times that
 
 # ka: sigma / (pi a^2), metal sphere
 MIE_TABLE = {0.1: .000898, 0.5: .529576, 1: 3.637567, 1.0289: 3.654939, 2: 1.008143, 3: .520765, 5: 1.168837,
@@ -176,6 +179,111 @@ def test_rough_dihedral_keeps_half_the_field():
     assert all(part["diffuse"] > 0 for part in parts)
 
 
+# --- Polarisations ---
+
+def turned_dihedral(angle_deg, side=0.1):
+    """Metal, seen along x, turned about that line; at 0 its edge is vertical."""
+    angle, half = math.radians(angle_deg), RIGHT_ANGLE_HALF * side
+    turn = np.array([[1, 0, 0], [0, math.cos(angle), -math.sin(angle)], [0, math.sin(angle), math.cos(angle)]])
+    edge, left, right = turn @ [0, 0, side], turn @ [half, half, 0], turn @ [half, -half, 0]
+    return scene_of(left=(rectangle(tuple(-edge / 2), tuple(left), tuple(edge)), METAL),
+                    right=(rectangle(tuple(-edge / 2), tuple(right), tuple(edge)), METAL))
+
+
+@pytest.mark.parametrize("angle_deg, co, cross", [(0, 22.196, None), (22.5, 19.185, 19.185), (45, None, 22.196)])
+def test_turned_dihedral_turns_the_polarization(angle_deg, co, cross):
+    # Double bounce (Knott 2004); single bounces, up to -20.3 dBsm together, move full levels by 0.04 dB.
+    vv, hh, vh, hv = ep.rcs(turned_dihedral(angle_deg), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 15,
+                            polarization=["vv", "hh", "vh", "hv"])
+    for found, expected in ((vv, co), (hh, co), (vh, cross), (hv, cross)):
+        if expected is None:
+            assert decibel(found) < 22.196 + POLARIZATION_NULL_DB
+        else:
+            assert abs(decibel(found) - expected) < DIHEDRAL_TOLERANCE_DB
+    assert cross is None or vh == pytest.approx(hv, rel=1e-6)  # reciprocity, to the rounding of a record's floats
+
+
+@pytest.mark.parametrize("bistatic_deg", [0, 45, 90])
+@pytest.mark.parametrize("name, plane", [("vv", "H"), ("hh", "E")])
+def test_bistatic_sphere_in_both_planes_against_mie(bistatic_deg, name, plane):
+    angle = math.radians(bistatic_deg)
+    co, cross = ep.rcs(smooth_sphere(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 14,
+                       observation=(math.cos(angle), math.sin(angle), 0), polarization=[name, name[0] + "hv"[name[0] == "h"]])
+    assert abs(decibel(co / ep.mie_rcs(RADIUS, FREQUENCY, angle, plane=plane))) < SMOOTH_TOLERANCE_DB
+    assert cross < 10 ** (POLARIZATION_NULL_DB / 10) * co
+
+
+def test_vectors_and_lists_are_the_named_polarizations():
+    keywords = dict(frequency=FREQUENCY, incidence=in_plane([0, 10]), num_rays=3000, max_bounces=2)
+    target = turned_dihedral(30)
+    names = ["vh", "hh", "vv"]
+    table = ep.rcs(target, polarization=names, **keywords)
+    assert table.shape == (2, 3)
+    for column, name in zip(table.T, names):
+        assert list(column) == list(ep.rcs(target, polarization=name, **keywords))
+    bistatic = keywords | {"incidence": (1, 0, 0), "observation": (1, 0.4, 0.2)}
+    vh, hv = ep.rcs(target, polarization=["vh", "hv"], **bistatic)
+    assert abs(decibel(vh / hv)) > 0.1  # so that the next lines tell them apart
+    across = np.cross((0, 0, 1), (1, 0.4, 0.2))
+    # Parts across the line of sight count, of any length and sign.
+    assert ep.rcs(target, polarization=[(0.2, 0, 3), across], **bistatic) == pytest.approx(vh, rel=1e-6)
+    assert ep.rcs(target, polarization=[(0, -1, 0), (7, 2.8, 2.4)], **bistatic) == pytest.approx(hv, rel=1e-6)
+    up = ep.rcs(target, polarization="vh", frequency=FREQUENCY, incidence=(0, 0, 1), num_rays=100)
+    assert isinstance(up, float)  # no direction is without a vertical and a horizontal
+
+
+def test_flat_metal_returns_the_polarization_as_it_came():
+    direction = (1, 0.01, 0.02)
+    vv, hh, vh = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=direction, num_rays=1 << 13,
+                        polarization=["vv", "hh", "vh"])
+    scalar = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=direction, num_rays=1 << 13)
+    assert vv == pytest.approx(scalar, rel=1e-5) and hh == pytest.approx(scalar, rel=1e-5)
+    assert vh < 1e-10 * vv
+
+
+# --- Standard errors ---
+
+def rough_plate():
+    return plate_scene(1.0, lambert(0.3))
+
+
+def test_standard_error_is_the_spread_over_seeds():
+    for scene, num_rays in ((rough_plate(), 512), (smooth_sphere(), 256)):
+        rows = np.array([ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0.4, 0.3), num_rays=num_rays, seed=seed,
+                                sampler="random", return_error=True) for seed in range(NUM_SEEDS)])
+        spread, claimed = rows[:, 0].std(ddof=1), np.sqrt(np.mean(rows[:, 1] ** 2))
+        assert claimed == pytest.approx(spread, rel=ERROR_OF_ERRORS)
+
+
+def test_errors_have_the_shape_of_what_they_belong_to():
+    directions = in_plane([0, 20])
+    keywords = dict(frequency=FREQUENCY, incidence=directions, num_rays=4000)
+    value, error = ep.rcs(rough_plate(), return_error=True, **keywords)
+    assert value.shape == error.shape == (2,) and np.all(error > 0) and np.all(error < value)
+    assert list(value) == list(ep.rcs(rough_plate(), batches=8, **keywords))
+    parts, errors = ep.rcs(rough_plate(), return_error=True, components=True, **keywords)
+    assert np.all(parts["coherent"] == 0) and np.all(errors["coherent"] == 0)
+    assert list(parts["diffuse"]) == list(value) and list(errors["diffuse"]) == list(error)
+    with pytest.raises(ValueError, match="batches: must be >= 2 for return_error, got 1"):
+        ep.rcs(rough_plate(), return_error=True, batches=1, **keywords)
+
+
+def test_rays_double_until_the_error_is_met(recwarn):
+    keywords = dict(frequency=FREQUENCY, incidence=in_plane([0, 30]), num_rays=64, sampler="random", return_error=True)
+    value, error = ep.rcs(rough_plate(), target_error_db=0.1, **keywords)
+    assert np.all(10 * np.log10(1 + error / value) < 0.1) and not list(recwarn)
+    with pytest.warns(RuntimeWarning, match="rcs: for 2 of 2 cross sections max_rays was reached .* target_error_db is 0.01"):
+        ep.rcs(rough_plate(), target_error_db=0.01, max_rays=256, **keywords)
+    edge_on = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(0, 1, 0), target_error_db=0.1, return_error=True)
+    assert edge_on == (0.0, 0.0)  # with no warning: nothing is there to be missed
+
+
+def test_meshes_too_coarse_are_warned_of():
+    coarse = scene_of(ball=(sphere((0, 0, 0), RADIUS, 2), METAL))
+    with pytest.warns(ep.TessellationWarning, match="edges of 7.* mm would do"):
+        ep.rcs(coarse, frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=10)
+
+
 # --- What the figure must not depend on ---
 
 def test_place_and_length_of_directions_do_not_matter():
@@ -210,7 +318,10 @@ def test_a_target_seen_edge_on_returns_nothing():
     (dict(observation=(0, 0, 0)), "observation"),
     (dict(observation=[(1, 0, 0)] * 3, incidence=[(1, 0, 0)] * 2), "observation"),
     (dict(frequency=-1.0), "frequency"), (dict(num_rays=0), "num_rays"), (dict(max_bounces=65), "max_bounces"),
-    (dict(footprint="third"), "footprint"), (dict(polarization=(0, 0, 0)), "polarization")])
+    (dict(footprint="third"), "footprint"), (dict(polarization=(0, 0, 0)), "polarization"),
+    (dict(polarization="vertical"), "polarization"), (dict(polarization=[(0, 0, 1)] * 3), "polarization"),
+    (dict(polarization=["vv", "left"]), "polarization"), (dict(sampler="sobol"), "sampler"),
+    (dict(batches=65), "batches"), (dict(target_error_db=0.0), "target_error_db")])
 def test_bad_input_is_named(keywords, name):
     with pytest.raises(ValueError, match=name):
         ep.rcs(plate_scene(), **{"frequency": FREQUENCY, "incidence": (1, 0, 0), **keywords})

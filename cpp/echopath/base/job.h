@@ -10,24 +10,28 @@ namespace echopath {
 
 class Job {
  public:
+  Job() = default;
+  // Part of another one (or of none), which must outlive it: cancelled with it, with a progress of its own.
+  explicit Job(const Job* whole) : whole_(whole) {}
   void start(int64_t total) {
     done_ = 0;
     total_ = total;
   }
   void advance(int64_t amount) { done_ += amount; }
   void cancel() { cancelled_ = true; }
-  bool cancelled() const { return cancelled_; }
+  bool cancelled() const { return cancelled_ || (whole_ && whole_->cancelled()); }
   double fraction() const {
     const int64_t total = total_;
     return total > 0 ? static_cast<double>(done_) / static_cast<double>(total) : 0.0;
   }
   void throw_if_cancelled() const {
-    if (cancelled_) throw Cancelled();
+    if (cancelled()) throw Cancelled();
   }
 
  private:
   std::atomic<int64_t> done_{0}, total_{0};
   std::atomic<bool> cancelled_{false};
+  const Job* whole_ = nullptr;
 };
 
 }  // namespace echopath

@@ -76,10 +76,21 @@ class BatchSums {
   std::complex<double> open_field_ = 0.0;
 };
 
-BatchSums sum_batches(const Paths& paths, Job* job) {
-  Radar radar = paths.radar;
-  radar.transmitters.resize(1);
-  radar.receivers.resize(1);
+const Antenna& antenna_at(const std::vector<Antenna>& antennas, int index, const char* name) {
+  if (index >= 0 && index < static_cast<int>(antennas.size())) return antennas[static_cast<size_t>(index)];
+  throw std::out_of_range(std::string(name) + ": must lie in 0 to " + std::to_string(antennas.size() - 1) + ", got " +
+                          std::to_string(index));
+}
+
+Radar one_channel(const Radar& radar, Channel channel) {
+  Radar one = radar;
+  one.transmitters = {antenna_at(radar.transmitters, channel.tx, "tx")};
+  one.receivers = {antenna_at(radar.receivers, channel.rx, "rx")};
+  return one;
+}
+
+BatchSums sum_batches(const Paths& paths, Channel channel, Job* job) {
+  const Radar radar = one_channel(paths.radar, channel);
   const Replayer replayer(paths, radar);
   BatchSums sums(paths);
   std::vector<int64_t> indices;
@@ -149,8 +160,8 @@ double ReceivedPower::error_db() const {
   return 10.0 * std::log10(1.0 + standard_error / power);
 }
 
-ReceivedPower received_power(const Paths& paths, Job* job) {
-  const Estimates estimates = scaled_up(sum_batches(paths, job));
+ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
+  const Estimates estimates = scaled_up(sum_batches(paths, channel, job));
   const auto count = static_cast<double>(estimates.field.size());
   std::complex<double> mean = 0.0;
   for (const std::complex<double>& field : estimates.field) mean += field / count;

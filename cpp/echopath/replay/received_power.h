@@ -5,7 +5,7 @@
 
 namespace echopath {
 
-// At the trace time, between the first antennas, at the start frequency. The mean is over the random phases of diffuse
+// At the trace time, between two antennas, at the start frequency. The mean is over the random phases of diffuse
 // hits.
 struct ReceivedPower {
   double power = 0.0;           // W, coherent + diffuse
@@ -24,6 +24,11 @@ struct ReceivedPower {
   double error_db() const;
 };
 
+// Indices of the antennas between which a power is received.
+struct Channel {
+  int tx = 0, rx = 0;
+};
+
 // The power of `paths`, the whole of a trace or any selection of it: the paths of each batch of rays, times the number
 // of batches, are one independent estimate; paths without rays (image method) belong to each. From the estimates C_b of
 // the field and P_b of the diffuse power of B batches:
@@ -33,7 +38,7 @@ struct ReceivedPower {
 // coherent part is 2 |m|^2 s^2/B + s^4/(B (B - 1)), but the error of a lattice may lie along its field. Pure noise gets
 // an error up to 40 % too large. One batch: |sum a|^2 and no errors. What all batches have in common, such as the
 // coarseness of a mesh or what the footprint filter takes away, shows in no error. A job advances by paths. Raises
-// Cancelled.
-ReceivedPower received_power(const Paths& paths, Job* job = nullptr);
+// out_of_range for antennas that the radar of the trace does not have; Cancelled.
+ReceivedPower received_power(const Paths& paths, Job* job = nullptr, Channel channel = {});
 
 }  // namespace echopath

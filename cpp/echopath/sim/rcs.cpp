@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
-#include "echopath/replay/replay.h"
-#include "echopath/trace/trace.h"
+#include "echopath/replay/received_power.h"
 
 namespace echopath {
 namespace {
@@ -15,7 +12,6 @@ namespace {
 constexpr double kPhaseError = 1e-3;      // rad, of the spherical wave fronts of both antennas together
 constexpr double kAmplitudeError = 1e-4;  // relative, of their spreading
 constexpr double kSmallestSine = 1e-3;    // between line of sight and polarization
-constexpr int64_t kPathsPerBlock = 4096;
 
 struct Target {
   Vec3 centre = Vec3::Zero();
@@ -45,32 +41,64 @@ double far_distance(const Target& target, double wavenumber) {
   return std::max({flat, target.radius / kAmplitudeError, kTwoPi / wavenumber});
 }
 
-Antenna far_antenna(const Target& target, const Vec3& direction, double distance, const Vec3& polarization,
+// Unit vector across the unit vector `toward` the antenna.
+Vec3 across(const RcsPolarization& polarization, const Vec3& toward) {
+  const TransverseBasis basis = transverse_basis(toward);
+  if (polarization.kind == RcsPolarization::Kind::kHorizontal) return basis.horizontal;
+  if (polarization.kind == RcsPolarization::Kind::kVertical) return basis.vertical;
+  const Vec3 unit = polarization.vector.normalized();
+  const Vec3 rest = unit - toward.dot(unit) * toward;
+  require(rest.norm() > kSmallestSine, "polarization", "must not lie along a direction, sine of the angle", rest.norm());
+  return rest.normalized();
+}
+
+Antenna far_antenna(const Target& target, const Vec3& direction, double distance, const RcsPolarization& polarization,
                     const char* name) {
   const double length = direction.norm();
   require(std::isfinite(length) && length > 0, name, "must be finite and not zero, length", length);
   const Vec3 toward = direction / length;
-  const Vec3 across = polarization.normalized() - toward.dot(polarization.normalized()) * toward;
-  require(across.norm() > kSmallestSine, "polarization", "must not lie along a direction, sine of the angle",
-          across.norm());
   Antenna antenna;
   antenna.position = target.centre + distance * toward;
-  antenna.polarization = across.normalized();
+  antenna.polarization = across(polarization, toward);
   return antenna;
 }
 
+// The channels of one pair of directions that share a transmit polarisation, and so a trace.
+struct Shot {
+  Radar radar;                   // a receiver for each channel
+  std::vector<size_t> channels;  // indices into the results
+};
+
 // At time 0 and one frequency: a frame too short for anything to move.
-Radar far_radar(const Target& target, const RcsDirections& pair, double distance, const RcsSettings& settings) {
+Radar far_radar(double frequency, const Antenna& transmitter) {
   Radar radar;
-  radar.waveform.start_frequency = settings.frequency;
+  radar.waveform.start_frequency = frequency;
   radar.waveform.bandwidth = 1.0;
   radar.waveform.num_samples = 1;
   radar.waveform.sampling_rate = 1e15;
   radar.waveform.num_chirps = 1;
   radar.transmit_power = 1.0;
-  radar.transmitters = {far_antenna(target, pair.incidence, distance, settings.polarization, "incidence")};
-  radar.receivers = {far_antenna(target, pair.observation, distance, settings.polarization, "observation")};
+  radar.transmitters = {transmitter};
   return radar;
+}
+
+// Appends the shots of one pair, whose results begin at `first`.
+void add_shots(const Target& target, const RcsDirections& pair, double distance, const RcsSettings& settings, size_t first,
+               std::vector<Shot>& shots) {
+  const size_t own = shots.size();
+  std::vector<RcsPolarization> transmitted;
+  for (size_t i = 0; i < settings.channels.size(); ++i) {
+    const auto& [transmit, receive] = settings.channels[i];
+    const auto found = std::find(transmitted.begin(), transmitted.end(), transmit);
+    const size_t index = own + static_cast<size_t>(found - transmitted.begin());
+    if (found == transmitted.end()) {
+      transmitted.push_back(transmit);
+      const Antenna transmitter = far_antenna(target, pair.incidence, distance, transmit, "incidence");
+      shots.push_back({far_radar(settings.frequency, transmitter), {}});
+    }
+    shots[index].radar.receivers.push_back(far_antenna(target, pair.observation, distance, receive, "observation"));
+    shots[index].channels.push_back(first + i);
+  }
 }
 
 TraceSettings tracing_of(const RcsSettings& settings) {
@@ -78,58 +106,40 @@ TraceSettings tracing_of(const RcsSettings& settings) {
   tracing.num_rays = settings.num_rays;
   tracing.max_bounces = settings.max_bounces;
   tracing.seed = settings.seed;
+  tracing.polarization = settings.model;
   tracing.footprint = settings.footprint;
+  tracing.sampler = settings.sampler;
+  tracing.batches = settings.batches;
   return tracing;
 }
 
-struct Sums {
-  std::complex<double> field = 0.0;
-  double power = 0.0;
-};
-
-Sums sum_block(const Paths& paths, const Replayer& replayer, double wavenumber, double distance, int64_t begin,
-               int64_t end) {
-  std::vector<int64_t> indices(static_cast<size_t>(end - begin));
-  std::iota(indices.begin(), indices.end(), begin);
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  replayer.evaluate(indices, paths.frame.trace_time, lengths, amplitudes);
-  Sums sums;
-  for (size_t i = 0; i < indices.size(); ++i) {
-    // Phase relative to the centre of the target: that of the whole length would lose digits.
-    if (paths.diffuse[static_cast<size_t>(indices[i])] == 0) {
-      sums.field += amplitudes[i] * std::polar(1.0, -wavenumber * (lengths[i] - 2.0 * distance));
-    } else {
-      sums.power += std::norm(amplitudes[i]);
-    }
-  }
-  return sums;
+Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings, Job* job) {
+  const TraceSettings tracing = tracing_of(settings);
+  return settings.target ? trace_to_error(scene, radar, tracing, *settings.target, job) : trace(scene, radar, tracing, job);
 }
 
-Sums sum_of(const Paths& paths, double wavenumber, double distance, Job* job) {
-  const Replayer replayer(paths, paths.radar);
-  const int64_t num_blocks = (paths.num_paths() + kPathsPerBlock - 1) / kPathsPerBlock;
-  std::vector<Sums> blocks(static_cast<size_t>(num_blocks));
-  parallel_for(num_blocks, [&](int64_t i) {
-    if (job) job->throw_if_cancelled();
-    const int64_t begin = i * kPathsPerBlock, end = std::min(paths.num_paths(), begin + kPathsPerBlock);
-    blocks[static_cast<size_t>(i)] = sum_block(paths, replayer, wavenumber, distance, begin, end);
-  });
-  Sums sums;
-  for (const Sums& block : blocks) {
-    sums.field += block.field;
-    sums.power += block.power;
-  }
-  return sums;
+// `scale`: m^2 per W at the antenna port for 1 W transmitted.
+RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, Job* job) {
+  const ReceivedPower power = received_power(paths, job, {0, receiver});
+  return {scale * power.power,   scale * power.standard_error, scale * power.coherent,     scale * power.coherent_error,
+          scale * power.diffuse, scale * power.diffuse_error,  paths.frame.error_db};
 }
 
 }  // namespace
 
 void RcsSettings::validate() const {
   require(std::isfinite(frequency) && frequency > 0, "frequency", "must be finite and > 0 Hz", frequency);
-  const double length = polarization.norm();
-  require(std::isfinite(length) && length > 0, "polarization", "must be finite and not zero, length", length);
+  require(!channels.empty(), "polarization", "must name at least one channel, channels", channels.size());
+  for (const RcsChannel& channel : channels) {
+    for (const RcsPolarization* polarization : {&channel.transmit, &channel.receive}) {
+      const double length = polarization->vector.norm();
+      require(std::isfinite(length) && length > 0, "polarization", "must be finite and not zero, length", length);
+    }
+    require(model == PolarizationModel::kJones || channel.transmit == channel.receive, "polarization",
+            "must be the same for both antennas in the scalar model, receive", channel.receive.vector.transpose());
+  }
   tracing_of(*this).validate();
+  if (target) target->validate();
 }
 
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
@@ -138,21 +148,23 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   const Target target = target_of(scene);
   const double wavenumber = kTwoPi * settings.frequency / kSpeedOfLight;
   const double distance = far_distance(target, wavenumber);
-  std::vector<Radar> radars;
-  for (const RcsDirections& pair : directions) radars.push_back(far_radar(target, pair, distance, settings));
+  // (4 pi)^3 R^4 / lambda^2 for Q^2 = 1 W
+  const double scale = std::pow(4.0 * kPi, 3) * std::pow(distance, 4) * std::pow(wavenumber / kTwoPi, 2);
+  std::vector<Shot> shots;
+  for (size_t i = 0; i < directions.size(); ++i) {
+    add_shots(target, directions[i], distance, settings, i * settings.channels.size(), shots);
+  }
 
-  const TraceSettings tracing = tracing_of(settings);
-  if (job) job->start(static_cast<int64_t>(radars.size()));
-  std::vector<RadarCrossSection> out;
-  for (const Radar& radar : radars) {
-    if (job) job->throw_if_cancelled();
-    // With one direction the progress is that of its trace, else by directions.
-    const Paths paths = trace(scene, radar, tracing, radars.size() == 1 ? job : nullptr);
-    const Sums sums = sum_of(paths, wavenumber, distance, job);
-    // (4 pi)^3 R^4 / lambda^2 for Q^2 = 1 W
-    const double scale = std::pow(4.0 * kPi, 3) * std::pow(distance, 4) * std::pow(wavenumber / kTwoPi, 2);
-    out.push_back({std::norm(sums.field) * scale, sums.power * scale});
-    if (job && radars.size() > 1) job->advance(1);
+  std::vector<RadarCrossSection> out(directions.size() * settings.channels.size());
+  const bool is_one = shots.size() == 1;  // its progress is that of its trace, else by shots
+  if (job) job->start(static_cast<int64_t>(shots.size()));
+  for (const Shot& shot : shots) {
+    Job part(job);
+    const Paths paths = shoot(scene, shot.radar, settings, is_one && job ? job : &part);
+    for (size_t i = 0; i < shot.channels.size(); ++i) {
+      out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), scale, &part);
+    }
+    if (job && !is_one) job->advance(1);
   }
   return out;
 }

@@ -1,11 +1,12 @@
 #pragma once
 // Radar cross sections: what a target alone returns to antennas far away.
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/em/footprint.h"
 #include "echopath/scene/scene.h"
+#include "echopath/sim/trace_to_error.h"
 
 namespace echopath {
 
@@ -15,30 +16,55 @@ struct RcsDirections {
   Vec3 observation = Vec3::UnitX();  // toward the receiver; equal to `incidence`: monostatic
 };
 
+// Polarisation of an antenna across its line of sight.
+struct RcsPolarization {
+  enum class Kind {
+    kVector,
+    kHorizontal,  // in the xy-plane (em/jones.h, transverse_basis)
+    kVertical,    // up
+  };
+  Kind kind = Kind::kVector;
+  Vec3 vector = Vec3::UnitZ();  // kVector: world axes; its part across the line of sight counts
+  bool operator==(const RcsPolarization&) const = default;
+};
+
+struct RcsChannel {
+  RcsPolarization transmit, receive;
+};
+
 struct RcsSettings {
-  double frequency = 77e9;             // Hz
-  Vec3 polarization = Vec3::UnitZ();   // of both antennas, world axes; its part across the line of sight counts
-  int64_t num_rays = 1 << 17;          // per pair of directions
-  int max_bounces = 4;                 // 1 to 64
+  double frequency = 77e9;                       // Hz
+  std::vector<RcsChannel> channels = {RcsChannel{}};
+  PolarizationModel model = PolarizationModel::kScalar;  // kScalar knows nothing of what is received cross-polarised
+  int64_t num_rays = 1 << 17;                    // per pair of directions and transmit polarisation
+  int max_bounces = 4;                           // 1 to 64
   uint64_t seed = 1;
   Footprint footprint = Footprint::kSecondOrder;
+  Sampler sampler = Sampler::kLattice;
+  int batches = 1;                               // 1 to 64; from 2 on cross sections have standard errors
+  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/trace_to_error.h).
+  std::optional<ErrorTarget> target;
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;
 };
 
-// Coherent echoes add as fields, |sum a|^2; diffuse ones, whose phases are random, as powers, sum |a|^2: their mean
-// over realisations of the roughness. Both in m^2. Two orders of a diffuse multi-bounce path count as independent.
+// All in m^2, with the standard errors of replay/received_power.h: NaN for one batch. Coherent echoes add as fields;
+// diffuse ones, whose phases are random, as powers: their mean over realisations of the roughness. With batches the
+// coherent part is free of bias by noise, which can take it below zero where it is not resolved.
 struct RadarCrossSection {
-  double coherent = 0.0, diffuse = 0.0;
-  double total() const { return coherent + diffuse; }
+  double total = 0.0, standard_error = 0.0;
+  double coherent = 0.0, coherent_error = 0.0;
+  double diffuse = 0.0, diffuse_error = 0.0;
+  double error_db = 0.0;  // dB, what was reached where there is a target; else 0
 };
 
 // sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic
 // antennas at a distance R at which the wave fronts are flat over the scene's bounding sphere to 1e-3 rad and their
-// amplitude to 1e-4. Each pair costs a trace of its own.
-// Raises invalid_argument for bad settings, a zero direction, one along the polarization, a scene without meshes, or
-// one with mirrors: they stand for planes without end, which have no cross section.
+// amplitude to 1e-4. Returns [pair * channels + channel]. Each pair and transmit polarisation costs a trace of its own,
+// which the channels of that polarisation share.
+// Raises invalid_argument for bad settings, a zero direction, one along a polarization vector, a scene without meshes,
+// or one with mirrors: they stand for planes without end, which have no cross section.
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
                                    const RcsSettings& settings, Job* job = nullptr);
 

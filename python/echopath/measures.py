@@ -8,13 +8,31 @@ EXTENT_BELOW_PEAK_DB = 30.0
 
 
 def power_dbm(cube) -> float:
-    """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros."""
+    """Mean power of a cube [tx, rx, chirp, sample] in dBm; -inf for zeros.
+
+    Of this one realisation of the random phases; `ep.received_power` has the mean over them and its standard error.
+    """
     return in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
 
 
 def in_dbm(power: float) -> float:
     """A power in W in dB re 1 mW; -inf for none."""
     return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
+
+
+def with_error(power) -> str:
+    """An ep.ReceivedPower in dBm +- dB; the bound of two standard errors where it is not resolved."""
+    if power.resolved:
+        return f"{in_dbm(power.power):.2f} dBm +- {power.error_db:.2f} dB"
+    bound = max(power.power, 0.0) + 2.0 * power.standard_error
+    return f"not resolved, below {in_dbm(bound):.2f} dBm" if bound > 0.0 else "nothing"
+
+
+def note_on_errors(paths) -> str:
+    """Why the levels of a trace have no standard errors and what gives them; "" where they have."""
+    if paths.frame.num_batches > 1:
+        return ""
+    return "one set of rays: no standard errors; --batches 8 or trace(batches=8) gives them"
 
 
 def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):

@@ -61,6 +61,18 @@ class Frame:
         """
         return ep.range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 
+    @cached_property
+    def mean_power(self):
+        """ep.ReceivedPower of all paths, in W: the mean over the random phases, with errors for traces with batches."""
+        return ep.received_power(self.paths)
+
+    @cached_property
+    def mean_part_powers(self) -> dict:
+        """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
+        return {partition: {name: ep.received_power(self.paths.select(part_of_path == index))
+                            for index, name in enumerate(self.parts[partition])}
+                for partition, part_of_path in self.part_of_path.items()}
+
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"
         return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"

@@ -99,7 +99,7 @@ def _describe_frame(path: Path) -> list[str]:
     if frame.cube is None:
         return lines
     shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
-    return [*lines, "cube", shape, *report.powers(frame.cube, frame.parts)]
+    return [*lines, "cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame)]
 
 
 def _describe_meshes(meshes) -> list[str]:

@@ -5,9 +5,7 @@ import textwrap
 
 import numpy as np
 
-import echopath as ep
-
-from ..measures import in_dbm, power_dbm, velocity_extent
+from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
 
@@ -62,25 +60,23 @@ def powers(whole, parts: dict) -> list[str]:
 
 
 def mean_powers(frame) -> list[str]:
-    """Mean received power of the whole and of each part with its standard error, for traces with batches."""
-    paths = frame.paths
-    if paths.frame.num_batches < 2:
-        return []
-    lines = [f"mean received power over the random phases, +- standard error of {paths.frame.num_batches} batches",
-             line("whole", power_with_error(ep.received_power(paths)))]
-    for partition, part_of_path in frame.part_of_path.items():
+    """Mean received power of the whole and of each part with its standard error; without batches, what gives it."""
+    note = note_on_errors(frame.paths)
+    if note:
+        return [line("standard errors", note)]
+    num_batches = frame.paths.frame.num_batches
+    lines = [f"mean received power over the random phases, +- standard error of {num_batches} batches",
+             line("whole", _aligned(with_error(frame.mean_power)))]
+    for partition, part_powers in frame.mean_part_powers.items():
         lines.append(f"mean received power, {partition}")
-        lines += [line(name, power_with_error(ep.received_power(paths.select(part_of_path == index))))
-                  for index, name in enumerate(frame.parts[partition])]
+        lines += [line(name, _aligned(with_error(power))) for name, power in part_powers.items()]
     return lines
 
 
-def power_with_error(power) -> str:
-    """An ep.ReceivedPower in dBm +- dB; the bound of two standard errors where it is not resolved."""
-    if power.resolved:
-        return f"{_power_text(in_dbm(power.power))} +- {power.error_db:.2f} dB"
-    bound = max(power.power, 0.0) + 2.0 * power.standard_error
-    return f"  not resolved, below {in_dbm(bound):.2f} dBm" if bound > 0.0 else _power_text(-np.inf)
+def _aligned(text: str) -> str:
+    """Levels below those of `powers`, words two columns in."""
+    level, unit, error = text.partition(" dBm")
+    return f"{level:>8}{unit}{error}" if "+-" in error else f"  {text}"
 
 
 def extent(label: str, spectrum) -> str:

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from ..measures import STATIC_SPEED
+from ..measures import STATIC_SPEED, with_error
 from .style import MAP_COLOURS, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
@@ -31,10 +31,11 @@ def colour_limits(spectrum) -> tuple[float, float]:
     return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
 
 
-def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None):
+def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None, note=""):
     """One range-Doppler map, cropped to where there is signal, at rest or moving.
 
     spectrum: of `range_doppler`; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`.
+    note: small print below the map.
     Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive).
     """
     vmin, vmax = _limits(spectrum, vmin, vmax)
@@ -43,14 +44,16 @@ def plot_range_doppler(spectrum, *, title="Received power by range and radial ve
         image = _draw_whole(axes, spectrum, vmin, vmax, title)
         axes.set_ylabel(VELOCITY_LABEL)
         _colour_bar(figure, image, [axes])
+        _small_print(figure, note)
     return figure
 
 
-def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None):
+def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note=""):
     """The maps of the parts of a partition side by side, cropped to what moves, with one colour scale for all.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
-    the strongest part when there is no `whole`). Returns a matplotlib figure with the axes of `plot_range_doppler`.
+    the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
+    note: small print. Returns a matplotlib figure with the axes of `plot_range_doppler`.
     """
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
@@ -58,15 +61,17 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None)
     rows = -(-len(spectra) // columns)
     with new_figure(3.4 * columns + 1.2, 3.4 * rows + 0.5) as figure:
         panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
-        image = _draw_parts(panels, spectra, vmin, vmax)
+        image = _draw_parts(panels, spectra, vmin, vmax, powers)
         figure.supxlabel(RANGE_LABEL, fontsize=9)
         figure.supylabel(VELOCITY_LABEL, fontsize=9)
         figure.suptitle(title, fontsize=11)
         _colour_bar(figure, image, panels[:len(spectra)])
+        _small_print(figure, note)
     return figure
 
 
-def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None):
+def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None,
+                  powers=None, note=""):
     """The whole map above the maps of its parts, on one colour scale; otherwise as `plot_partition`."""
     vmin, vmax = _limits(whole, vmin, vmax)
     with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
@@ -74,13 +79,14 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
         axes = upper.subplots()
         image = _draw_whole(axes, whole, vmin, vmax, title)
         panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
-        _draw_parts(panels, spectra, vmin, vmax)
+        _draw_parts(panels, spectra, vmin, vmax, powers)
         lower.suptitle(parts_title, fontsize=10)
         lower.supxlabel(RANGE_LABEL, fontsize=9)
         for first in (axes, panels[0]):
             first.set_ylabel(VELOCITY_LABEL)
         _colour_bar(upper, image, [axes])
         _colour_bar(lower, image, panels)
+        _small_print(figure, note)
     return figure
 
 
@@ -92,11 +98,12 @@ def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):
     return image
 
 
-def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float):
+def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
     """The parts in as many panels, the panels left over removed; returns the last image."""
     for axes, (name, spectrum) in zip(panels, spectra.items()):
         image = _draw(axes, spectrum, vmin, vmax)
-        axes.set_title(name if name != "other" else "other: all the rest")
+        axes.set_title((name if name != "other" else "other: all the rest") +
+                       (f"\n{with_error(powers[name])}".replace("+-", "±") if powers else ""))
     for axes in panels[len(spectra):]:
         axes.remove()
     _crop(panels[:len(spectra)], signal_extent(list(spectra.values()), vmin, is_moving_meant=True))
@@ -151,6 +158,11 @@ def _crop(panels, extent) -> None:
         left, right, bottom, top = axes.get_images()[0].get_extent()
         axes.set_xlim(max(left, extent[0]), min(right, extent[1]))
         axes.set_ylim(max(bottom, extent[2]), min(top, extent[3]))
+
+
+def _small_print(figure, note: str) -> None:
+    if note:
+        figure.text(0.995, 0.004, note, fontsize=6.5, color="0.4", horizontalalignment="right", verticalalignment="bottom")
 
 
 def _colour_bar(figure, image, panels) -> None:

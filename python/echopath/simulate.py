@@ -7,6 +7,7 @@ from functools import cached_property
 import echopath as ep
 
 from .azimuth_map import checked_settings, sees_azimuth
+from .effects import of_paths
 from .path_subset import part_of_path
 from .stages import Stage, StageClock
 
@@ -20,6 +21,7 @@ class Frame:
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     noise_seed: of the thermal noise, None: no noise
+    evaluate: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     stages: time and peak memory of each stage
@@ -37,12 +39,18 @@ class Frame:
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
+    evaluate: str = "interpolated"
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
     def noisy_cube(self):
         """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call."""
         return self.cube if self.noise_seed is None else ep.add_noise(self.cube, self.radar, seed=self.noise_seed)
+
+    @property
+    def effects(self) -> list:
+        """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
+        return of_paths(self.paths, evaluate=self.evaluate, noise_seed=self.noise_seed)
 
     @cached_property
     def path_power(self):
@@ -107,7 +115,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=labels, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
-                  angle_settings=angle_settings, stages=clock.stages)
+                  angle_settings=angle_settings, evaluate=evaluate, stages=clock.stages)
     with clock("spectra"):
         with_spectra(frame)
     if sees_azimuth(radar):

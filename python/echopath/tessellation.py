@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import math
 import numbers
 import warnings
@@ -146,18 +147,35 @@ def coherent_share(material, wavelength: float) -> float:
 def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
     """Warns (TessellationWarning) of each curved mesh whose coherent echo at `frequency` [Hz] would err by more than
     0.3 dB, and names the edge that would do."""
+    for _, text in coarse_meshes(scene, frequency):
+        warnings.warn(text, TessellationWarning, stacklevel=stacklevel + 1)
+
+
+def coarse_meshes(scene, frequency: float) -> list:
+    """Meshes of a scene whose coherent echo at `frequency` [Hz] would err by more than 0.3 dB: (mesh, what is wrong)."""
     wavelength = _core.speed_of_light / frequency
-    nodes = scene.nodes
-    known = getattr(scene, "__dict__", {}).setdefault("_tessellation", {})  # by mesh ID; meshes of a scene never change
+    nodes, found = scene.nodes, []
     for mesh in scene.meshes:
         if mesh.material.mirror or coherent_share(mesh.material, wavelength) < COHERENT_SHARE:
             continue
-        if mesh.id not in known:
-            known[mesh.id] = tessellation(mesh.mesh.vertices, mesh.mesh.triangles)
-        measured = known[mesh.id]
+        measured = _measured(mesh.mesh)
         text = measured and _complaint(mesh.name, measured, wavelength, nodes[mesh.node].smooth)
         if text:
-            warnings.warn(text, TessellationWarning, stacklevel=stacklevel + 1)
+            found.append((mesh, text))
+    return found
+
+
+_known: dict = {}  # tessellations by the digest of a mesh
+
+
+def _measured(mesh) -> Tessellation | None:
+    """The tessellation of a mesh, measured once: a digest of its arrays costs a hundredth."""
+    digest = hashlib.blake2b(mesh.vertices, digest_size=16)
+    digest.update(mesh.triangles)
+    key = digest.digest()
+    if key not in _known:
+        _known[key] = tessellation(mesh.vertices, mesh.triangles)
+    return _known[key]
 
 
 def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: bool) -> str:

@@ -56,7 +56,7 @@ def test_all_files_are_written(demo):
 def test_the_report_tells_what_was_asked_for(demo):
     _, frame, lines = demo
     text = "\n".join(lines)
-    for word in ("rays", "hits", "paths", "effects modelled", "mirrors by images", "not modelled", "trace",
+    for word in ("rays", "hits", "paths", "effects modelled", "mirrors by images", "effects not modelled", "trace",
                  "synthesis", "MiB", "received power, route", "received power, body", "arms", "legs",
                  "received power, legs by route", "|whole - sum of parts|", "frame.h5"):
         assert word in text

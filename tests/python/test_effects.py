@@ -1,10 +1,14 @@
 """The report of modelled effects: each is there exactly when the scene or the radar asks for it."""
+import inspect
+import re
+
 import h5py
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath.cli import report
+from echopath.effects import rules
 
 SPECULAR, ROUGH = "metal", "clothing"
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
@@ -36,46 +40,110 @@ def deforming():
 
 
 MOVING = ep.LinearMotion(velocity=(1, 0, 0))
+TURNING = ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2)
 
 
-@pytest.mark.parametrize("name, scene, radar, because", [
-    ("coherent physical optics", make_scene(), None, "1 mesh: plate"),
-    ("footprint filter", make_scene(), None, "second order"),
-    ("smooth surfaces", make_scene(smooth=True), None, "plate"),
-    ("diffuse lobe, random phase", make_scene(ROUGH), None, "plate"),
-    ("loss by roughness height", make_scene(ep.Material(permittivity=4.0, roughness_height=3e-4)), None, "plate"),
-    ("Fresnel coefficients", make_scene("concrete"), None, "plate"),
-    ("mirrors by images", make_scene(ep.Material.metal(mirror=True)), None, "plate"),
-    ("motion over chirps", make_scene(motion=MOVING), None, "plate"),
-    ("motion over chirps", None, make_radar(motion=MOVING), "the radar moves"),
-    ("motion within chirps", make_scene(motion=MOVING), None, "linear"),
-    ("deforming meshes", deforming(), None, "plate"),
-    ("antenna patterns", None, make_radar(pattern=ep.CosinePower(2.0)), "cosine_power"),
-    ("antenna phases", None, make_radar(pattern=PHASED), "phase"),
-    ("transmitters take turns (TDM)", None, make_radar(2), "2 transmitters"),
-    ("real samples", None, make_radar(real=True), "real"),
-])
-def test_an_effect_is_on_where_something_asks_for_it(name, scene, radar, because):
-    effect = found(scene, radar)[name]
+SPECULAR_BALL = ep.Scene()
+SPECULAR_BALL.add(ep.actors.sphere(0.1), name="ball", material=SPECULAR, position=(5, 0, 0), smooth=True)
+MIRROR = ep.Material.metal(mirror=True)
+
+
+def beside_mirror():
+    scene = make_scene(ROUGH)
+    scene.add(ep.actors.wall(9, 3), name="wall", material=MIRROR, position=(3, 2, 0))
+    return scene
+
+
+# Of each effect: what asks for it (scene, radar, settings), a word of the reason, and what does not.
+CASES = {
+    "coherent physical optics": (dict(scene=make_scene()), "1 mesh: plate", dict(scene=make_scene(ROUGH))),
+    "footprint filter": (dict(footprint="first_order"), "first order", dict(footprint="none")),
+    "smooth surfaces": (dict(scene=make_scene(smooth=True)), "plate", {}),
+    "tubes behind curved bounces": (dict(scene=SPECULAR_BALL), "ball", dict(scene=SPECULAR_BALL, max_bounces=1)),
+    "caustics": (dict(scene=SPECULAR_BALL), "quarter turns", {}),
+    "check of the tessellation": ({}, "0.3 dB", dict(scene=make_scene(ROUGH))),
+    "perfect conductors": ({}, "plate", dict(scene=make_scene(ROUGH))),
+    "Fresnel coefficients": (dict(scene=make_scene("concrete")), "plate", {}),
+    "constant reflectivity": (dict(scene=make_scene(ep.Material(reflectivity=0.5))), "plate", {}),
+    "diffuse lobe, random phase": (dict(scene=make_scene(ROUGH)), "plate", {}),
+    "loss by roughness height": (dict(scene=make_scene(ep.Material(permittivity=4.0, roughness_height=3e-4))), "plate", {}),
+    "mirrors by images": (dict(scene=make_scene(MIRROR)), "plate", {}),
+    "legs over images": (dict(scene=beside_mirror()), "two mirrors", dict(scene=make_scene(MIRROR))),
+    "multiple bounces": (dict(max_bounces=2), "= 2", dict(max_bounces=1)),
+    "Russian roulette behind bounce 3": (dict(max_bounces=4), "= 4", dict(max_bounces=3)),
+    "reversals behind small mirrors": ({}, "Fresnel zone", dict(scene=make_scene(ROUGH))),
+    "both orders of diffuse chains": (dict(scene=make_scene(ROUGH)), "share their phases", {}),
+    "motion over chirps": (dict(radar=make_radar(motion=MOVING)), "the radar moves", {}),
+    "motion within chirps": (dict(scene=make_scene(motion=MOVING), evaluate="samples"), "at every sample", {}),
+    "deforming meshes": (dict(scene=deforming()), "plate", {}),
+    "paths at rest evaluated once": ({}, "1 of 1", dict(scene=make_scene(motion=MOVING))),
+    "antenna patterns": (dict(radar=make_radar(pattern=ep.CosinePower(2.0))), "cosine_power", {}),
+    "gain tables": (dict(radar=make_radar(pattern=PHASED)), "1 antenna", {}),
+    "antenna phases": (dict(radar=make_radar(pattern=PHASED)), "phase", {}),
+    "array from one set of rays": (dict(radar=make_radar(2)), "2 x 1", {}),
+    "transmitters take turns (TDM)": (dict(radar=make_radar(2)), "2 transmitters", {}),
+    "polarised fields": (dict(polarization="jones"), "jones", {}),
+    "depolarisation by roughness": (dict(scene=make_scene(TURNING), polarization="jones"), "plate", dict(scene=make_scene(TURNING))),
+    "residual video phase": ({}, "always", None),
+    "anti-alias filter": ({}, "76.75 m", None),
+    "real samples": (dict(radar=make_radar(real=True)), "real", {}),
+    "thermal noise": (dict(noise_seed=3), "noise figure 12 dB", {}),
+    "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
+    "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),
+    "standard errors": (dict(batches=8), "batches = 8", {}),
+    "rays until an error is met": (dict(target_error_db=0.1), "0.1", {}),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_an_effect_is_on_where_something_asks_for_it_and_off_where_nothing_does(name):
+    asking, because, plain = CASES[name]
+    effect = found(**asking)[name]
     assert effect.modelled and because in effect.reason
-    # And off where nothing does: the opposite kind of surface, at rest, one isotropic antenna.
-    plain = found(make_scene(ROUGH if name in ("coherent physical optics", "footprint filter") else SPECULAR))[name]
-    assert not plain.modelled and plain.reason
+    if plain is not None:
+        other = found(**plain)[name]
+        assert not other.modelled and other.reason
 
 
-def test_settings_switch_effects_off():
-    assert not found(footprint="none")["footprint filter"].modelled
-    assert not found(max_bounces=3)["Russian roulette behind bounce 3"].modelled
-    assert not found(max_bounces=1)["multiple bounces"].modelled
-    assert found(max_bounces=2)["multiple bounces"].modelled
+def test_every_rule_has_a_case():
+    assert set(CASES) == {rule.name for rule in rules.RULES}
 
 
-def test_polarised_fields_are_on_where_the_settings_ask_for_them():
-    turning = make_scene(ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2))
-    assert found(turning, polarization="jones")["polarised fields"].modelled
-    assert found(turning, polarization="jones")["depolarisation by roughness"].modelled
-    assert not found(polarization="jones")["depolarisation by roughness"].modelled
-    assert not found(turning)["polarised fields"].modelled and not found(turning)["depolarisation by roughness"].modelled
+def keywords_of(function) -> set:
+    """Of a function of the core, from the signature in its docstring."""
+    return set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
+
+
+def fields_of(kind) -> set:
+    return {name for name, member in vars(kind).items() if isinstance(member, property)}
+
+
+PUBLIC = {"Material": fields_of(ep.Material), "Antenna": fields_of(ep.Antenna),
+          "AntennaPattern": fields_of(ep.AntennaPattern), "ChirpSequence": fields_of(ep.ChirpSequence),
+          "Radar": fields_of(ep.Radar), "Node": fields_of(ep._core.Node), "trace": keywords_of(ep._core.trace),
+          "synthesize": keywords_of(ep.synthesize)}
+
+
+@pytest.mark.parametrize("owner", PUBLIC)
+def test_every_field_and_setting_is_answered_for(owner):
+    """A new one needs a rule that names it, or stands with the quantities that ask for no effect (effects/rules.py)."""
+    answered = {field.split(".")[1] for rule in rules.RULES for field in rule.answers_for if field.split(".")[0] == owner}
+    known = answered | set(rules.QUANTITIES[owner])
+    assert PUBLIC[owner] - known == set() and known - PUBLIC[owner] == set()
+
+
+def test_settings_of_a_trace_are_all_given_to_the_rules():
+    given = set(inspect.signature(ep.effects).parameters)
+    asked = {field.split(".")[1] for rule in rules.RULES for field in rule.answers_for
+             if field.split(".")[0] in ("trace", "synthesize")}
+    assert asked <= given
+
+
+def test_the_signal_of_a_frame_has_effects_of_its_own():
+    frame = ep.simulate(make_scene(motion=MOVING), make_radar(), num_rays=100, evaluate="samples", noise_seed=5)
+    by_name = {effect.name: effect for effect in frame.effects}
+    assert by_name["thermal noise"].reason.endswith("noise_seed = 5")
+    assert "samples" in by_name["motion within chirps"].reason
 
 
 def test_a_scalar_trace_says_that_it_does_not_tell_antennas_apart():
@@ -104,10 +172,12 @@ def test_the_record_knows_its_effects_and_writes_them(tmp_path):
         assert [reason.decode() for reason in group["reason"]] == [effect.reason for effect in paths.effects]
 
 
-def test_the_printed_report_has_every_effect_once():
+def test_the_printed_report_has_every_effect_with_its_reason():
     effects = ep.effects(make_scene(), make_radar())
-    text = " ".join(" ".join(report.effects(effects)).split())
+    lines = report.effects(effects)
+    text = " ".join(" ".join(lines).split())
     for effect in effects:
-        assert text.count(effect.name) == 1, effect.name
-        assert not effect.modelled or effect.reason in text
-    assert all(len(line) <= 120 for line in report.effects(effects))
+        assert sum(line.startswith(f"  {effect.name} ") for line in lines) == 1, effect.name
+        assert effect.reason in text
+    assert lines.index("effects not modelled") > 10
+    assert all(len(line) <= 120 for line in lines)

@@ -124,7 +124,7 @@ def _run(options) -> None:
                               batches=options.batches, progress=progress)
         certificate = certify(frame, progress=progress)
         written = write_outputs(frame, options.out, partitions=scene_file.partitions())
-    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.paths.effects),
+    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.validity(certificate), *report.files(written)]:
         print(text)

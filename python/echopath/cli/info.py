@@ -95,7 +95,7 @@ def _describe_frame(path: Path) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
     lines = [str(path), *_describe_scene(frame.scene), *_describe_radar(frame.radar), "record",
-             *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.paths.effects)]
+             *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is None:
         return lines
     shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))

@@ -8,6 +8,7 @@ import numpy as np
 from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
+MAX_WIDTH = 118  # columns
 
 
 def _power_text(power: float) -> str:
@@ -33,10 +34,16 @@ def _target(frame) -> list[str]:
 
 
 def effects(all_effects) -> list[str]:
-    """The modelled effects with what asked for them, and the names of the others."""
-    lines = [line(effect.name, effect.reason) for effect in all_effects if effect.modelled]
-    others = ", ".join(effect.name for effect in all_effects if not effect.modelled)
-    return ["effects modelled", *lines, *textwrap.wrap(f"not modelled: {others}", 110, subsequent_indent="  ")]
+    """The effects that were modelled and those that were not, each with what asked for it or why not."""
+    lines = []
+    for title, modelled in (("effects modelled", True), ("effects not modelled", False)):
+        lines.append(title)
+        for effect in all_effects:
+            if effect.modelled == modelled:
+                text = line(effect.name, effect.reason)
+                indent = " " * (LABEL_WIDTH + 2)
+                lines += textwrap.wrap(text, MAX_WIDTH, subsequent_indent=indent, break_on_hyphens=False)
+    return lines
 
 
 def validity(certificate) -> list[str]:

@@ -1,0 +1,42 @@
+"""Which effects a run models, which it leaves out, and why."""
+from __future__ import annotations
+
+from .. import _core
+from . import surfaces, motion, radar, sampling  # noqa: F401, I001  each adds its rules, in this order
+from .rules import RULES, Case, Effect, Settings
+
+# What no scene and no setting can ask for.
+OUT_OF_SCOPE = [
+    Effect("transmission through sheets", False, "not modelled"),
+    Effect("edge diffraction, creeping waves", False, "out of scope: deep sidelobes are wrong, main lobes within 1 dB"),
+    Effect("atmospheric loss", False, "not modelled: about 0.4 dB/km"),
+    Effect("phase noise, quantisation", False, "not modelled"),
+    Effect("interference", False, "not modelled"),
+]
+
+
+def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "scalar",
+            sampler: str = "lattice", batches: int = 1, target_error_db: float | None = None,
+            evaluate: str = "interpolated", noise_seed: int | None = None) -> list[Effect]:
+    """Which effects a run of `scene` with `radar` models, and why.
+
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; evaluate: as in
+    `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects that nothing
+    can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
+    """
+    case = Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db, evaluate,
+                                       noise_seed))
+    found = [rule(case) for rule in RULES]
+    return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
+
+
+def of_paths(paths, **settings) -> list[Effect]:
+    """The effects of a trace, from the scene, radar and settings that it recorded; settings: those of later stages."""
+    frame = paths.frame
+    return effects(paths.scene, paths.radar, max_bounces=frame.max_bounces, footprint=frame.footprint,
+                   polarization=frame.polarization, sampler=frame.sampler, batches=frame.num_batches,
+                   target_error_db=frame.target_error_db or None, **settings)
+
+
+# The core knows no reports: its record of paths gets this property here.
+_core.Paths.effects = property(of_paths, doc="list of Effect: what the trace modelled, what not, and why")

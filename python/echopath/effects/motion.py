@@ -1,0 +1,36 @@
+"""Effects of motion during a frame."""
+from __future__ import annotations
+
+from .rules import Case, meshes_or, named, rule
+
+
+def _moves(case: Case) -> bool:
+    return bool(case.moving) or case.radar.motion is not None
+
+
+@rule("motion over chirps", "Node.motion", "Radar.motion")
+def _over_chirps(case: Case):
+    reasons = ["the radar moves"] * (case.radar.motion is not None) + [named(case.moving)] * bool(case.moving)
+    return _moves(case), "; ".join(reasons) or "nothing moves"
+
+
+@rule("motion within chirps", "synthesize.evaluate")
+def _within_chirps(case: Case):
+    if not _moves(case):
+        return False, "nothing moves"
+    exact = case.settings.evaluate == "samples"
+    return True, 'at every sample; evaluate = "samples"' if exact else "linear; with motion over chirps"
+
+
+@rule("deforming meshes", "Node.sequence")
+def _deforming(case: Case):
+    return meshes_or([mesh for mesh in case.moving if case.nodes[mesh.node].sequence is not None],
+                     "no mesh has a vertex sequence")
+
+
+@rule("paths at rest evaluated once")
+def _bypass(case: Case):
+    if case.radar.motion is not None:
+        return False, "the radar moves"
+    still = len(case.meshes) - len(case.moving)
+    return still > 0, f"{still} of {len(case.meshes)} meshes and the radar stand still" if still else "all meshes move"

@@ -1,0 +1,98 @@
+"""Effects of antennas, waveform and receiver."""
+from __future__ import annotations
+
+import numpy as np
+
+from .rules import Case, meshes_or, rule
+
+CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
+
+
+def _antennas(case: Case) -> list:
+    return [*case.radar.transmitters, *case.radar.receivers]
+
+
+@rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "AntennaPattern.kind", "AntennaPattern.peak_gain",
+      "AntennaPattern.exponent")
+def _patterns(case: Case):
+    shaped = sorted({antenna.pattern.kind for antenna in _antennas(case)} - {"isotropic"})
+    return bool(shaped), ", ".join(shaped) or "all antennas are isotropic"
+
+
+@rule("gain tables", "AntennaPattern.table_gain")
+def _tables(case: Case):
+    count = sum(antenna.pattern.kind == "table" for antenna in _antennas(case))
+    return count > 0, f"of {count} antenna" + "s" * (count > 1) if count else "no pattern is a table"
+
+
+@rule("antenna phases", "AntennaPattern.table_phase")
+def _phases(case: Case):
+    phased = any(antenna.pattern.table_phase is not None for antenna in _antennas(case))
+    return phased, "phase of a table" if phased else "no pattern has a phase"
+
+
+@rule("array from one set of rays", "Antenna.position", "Radar.receivers")
+def _array(case: Case):
+    counts = len(case.radar.transmitters), len(case.radar.receivers)
+    if max(counts) == 1:
+        return False, "one transmitter, one receiver"
+    return True, f"{counts[0]} x {counts[1]} channels; each path is replayed for each"
+
+
+@rule("transmitters take turns (TDM)", "Radar.transmitters", "Radar.multiplexing")
+def _turns(case: Case):
+    slots = len(case.radar.transmitters)
+    return slots > 1, f"{slots} transmitter" + "s" * (slots > 1)
+
+
+@rule("polarised fields", "trace.polarization", "Antenna.polarization")
+def _polarization(case: Case):
+    if case.settings.polarization == "jones":
+        return True, 'polarization = "jones"'
+    reason = "each hit takes the TE or TM coefficient nearer to the polarization"
+    if _has_crossed_antennas(case):
+        reason += '; antennas of other polarisation count as co-polarised: polarization = "jones" tells them apart'
+    return False, reason
+
+
+@rule("depolarisation by roughness", "Material.cross_polarization")
+def _depolarisation(case: Case):
+    if case.settings.polarization != "jones":
+        return False, 'polarization = "scalar"'
+    return meshes_or([mesh for mesh in case.diffuse if mesh.material.cross_polarization > 0.0],
+                     "no rough material has a cross_polarization")
+
+
+def _has_crossed_antennas(case: Case) -> bool:
+    first, *others = [_polarization_of(antenna) for antenna in _antennas(case)]
+    return any(abs(first @ other) < CO_POLARISED for other in others)
+
+
+def _polarization_of(antenna) -> np.ndarray:
+    """[3] unit vector in the radar's frame."""
+    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
+    cross = np.cross(imaginary, antenna.polarization)
+    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
+
+
+@rule("residual video phase", "ChirpSequence.bandwidth")
+def _video_phase(case: Case):
+    return True, "always: it costs nothing"
+
+
+@rule("anti-alias filter", "ChirpSequence.sampling_rate")
+def _filter(case: Case):
+    return True, f"always: echoes beyond {case.radar.waveform.max_range:.4g} m are cut off"
+
+
+@rule("real samples", "ChirpSequence.real")
+def _real(case: Case):
+    return case.radar.waveform.real, "real = true" if case.radar.waveform.real else "complex samples"
+
+
+@rule("thermal noise", "Radar.noise_figure_db")
+def _noise(case: Case):
+    seed = case.settings.noise_seed
+    if seed is None:
+        return False, "not part of paths and parts; add_noise or noise_seed add it to the whole"
+    return True, f"noise figure {case.radar.noise_figure_db:g} dB, on the whole; noise_seed = {seed}"

@@ -1,0 +1,29 @@
+"""How the rays are spread, and what they tell of their own error."""
+from __future__ import annotations
+
+from .rules import Case, rule
+
+
+@rule("even spread of the rays", "trace.sampler")
+def _sampler(case: Case):
+    return case.settings.sampler != "random", f'sampler = "{case.settings.sampler}"'
+
+
+@rule("rays aimed at objects")
+def _aimed(case: Case):
+    if not case.objects:
+        return False, "nothing but mirrors: all rays fill the field of view"
+    images = " and at their images" if case.mirrors and case.settings.max_bounces > 1 else ""
+    return True, f"a cone for each object{images}; the rest of the rays fills the field of view"
+
+
+@rule("standard errors", "trace.batches")
+def _errors(case: Case):
+    count = case.settings.batches
+    return count > 1, f"batches = {count}" if count > 1 else "one set of rays; batches = 8 gives them"
+
+
+@rule("rays until an error is met", "trace.target_error_db")
+def _target(case: Case):
+    target = case.settings.target_error_db
+    return target is not None, "no target_error_db" if target is None else f"target_error_db = {target:g}"

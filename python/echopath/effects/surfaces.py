@@ -1,0 +1,117 @@
+"""Effects that surfaces and the number of bounces ask for."""
+from __future__ import annotations
+
+from ..tessellation import coarse_meshes
+from .rules import Case, meshes_or, named, rule
+
+ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/sbr.cpp)
+
+
+@rule("coherent physical optics", "Material.scattering")
+def _coherent(case: Case):
+    return meshes_or(case.coherent, "no mesh but mirrors has a specular share")
+
+
+@rule("footprint filter", "trace.footprint")
+def _footprint(case: Case):
+    order = case.settings.footprint
+    if order == "none":
+        return False, 'footprint = "none"'
+    if not case.coherent:
+        return False, "no coherent echoes to filter"
+    kind = {"first_order": "phases linear across a ray's footprint",
+            "second_order": "quadratic phases on curved surfaces, flat-top on flat ones"}[order]
+    return True, f"{order.replace('_', ' ')}, for the coherent echoes: {kind}"
+
+
+@rule("smooth surfaces", "Node.smooth")
+def _smooth(case: Case):
+    return meshes_or(case.smooth, "no mesh is marked smooth")
+
+
+@rule("tubes behind curved bounces")
+def _curved_bounces(case: Case):
+    if case.settings.max_bounces == 1:
+        return False, "max_bounces = 1"
+    curved = [mesh for mesh in case.coherent if mesh in case.smooth]
+    return meshes_or(curved, "no smooth mesh has a specular share")
+
+
+@rule("caustics")
+def _caustics(case: Case):
+    modelled, reason = _curved_bounces(case)
+    return modelled, "quarter turns of the phase and a least width of tubes, behind smooth meshes" if modelled else reason
+
+
+@rule("check of the tessellation")
+def _tessellation(case: Case):
+    if not case.coherent:
+        return False, "no coherent echoes"
+    coarse = [mesh for mesh, _ in coarse_meshes(case.scene, case.radar.waveform.start_frequency)]
+    return True, f"too coarse: {named(coarse)}" if coarse else "errs by 0.3 dB at most"
+
+
+@rule("perfect conductors", "Material.conductor")
+def _conductors(case: Case):
+    return meshes_or([mesh for mesh in case.meshes if mesh.material.conductor], "no material is a conductor")
+
+
+@rule("Fresnel coefficients", "Material.permittivity", "Material.conductivity")
+def _fresnel(case: Case):
+    return meshes_or([mesh for mesh in case.meshes if mesh.material.permittivity is not None],
+                     "no material has a permittivity")
+
+
+@rule("constant reflectivity", "Material.reflectivity")
+def _reflectivity(case: Case):
+    return meshes_or([mesh for mesh in case.meshes if mesh.material.reflectivity is not None],
+                     "no material has a reflectivity")
+
+
+@rule("diffuse lobe, random phase", "Material.scattering")
+def _diffuse(case: Case):
+    return meshes_or(case.diffuse, "no material scatters diffusely")
+
+
+@rule("loss by roughness height", "Material.roughness_height")
+def _roughness(case: Case):
+    return meshes_or([mesh for mesh in case.meshes if mesh.material.roughness_height > 0.0],
+                     "no material has a roughness height")
+
+
+@rule("mirrors by images", "Material.mirror")
+def _mirrors(case: Case):
+    return meshes_or(case.mirrors, "no mesh is marked mirror")
+
+
+@rule("legs over images")
+def _image_legs(case: Case):
+    if case.settings.max_bounces == 1:
+        return False, "max_bounces = 1"
+    if not (case.mirrors and case.objects):
+        return False, "no mesh is marked mirror" if not case.mirrors else "nothing but mirrors"
+    return True, "to and from each object and each rough mirror, over up to two mirrors"
+
+
+@rule("multiple bounces", "trace.max_bounces")
+def _bounces(case: Case):
+    return case.settings.max_bounces > 1, f"max_bounces = {case.settings.max_bounces}"
+
+
+@rule(f"Russian roulette behind bounce {ROULETTE_BOUNCE}")
+def _roulette(case: Case):
+    return case.settings.max_bounces > ROULETTE_BOUNCE, f"max_bounces = {case.settings.max_bounces}"
+
+
+@rule("reversals behind small mirrors")
+def _reversals(case: Case):
+    if case.settings.max_bounces == 1:
+        return False, "max_bounces = 1"
+    return bool(case.coherent), "surfaces below their Fresnel zone" if case.coherent else "no coherent echoes"
+
+
+@rule("both orders of diffuse chains")
+def _pairs(case: Case):
+    if case.settings.max_bounces == 1:
+        return False, "max_bounces = 1"
+    return bool(case.diffuse), "two or more diffuse hits share their phases" if case.diffuse else "nothing is rough"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "array.h"
+#include "echopath/replay/renewal.h"
 #include "echopath/replay/validity.h"
 #include "keywords.h"
 #include "run_job.h"
@@ -110,9 +111,43 @@ the trace time and the times of the check; physical-optics paths are scaled to t
       .def("__repr__", &repr_of);
 }
 
+std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, double time, const py::object& progress,
+                                     const py::kwargs& unknown) {
+  refuse_unknown(unknown, "renew", {"time", "progress"});
+  return run_job("renew", progress, [&](Job& job) {
+    return std::make_shared<Renewal>(renew(paths, radar ? *radar : paths.radar, time, &job));
+  });
+}
+
+void bind_renewal(py::module_& m) {
+  py::class_<Renewal, std::shared_ptr<Renewal>>(m, "Renewal", "A record brought up to another time; made by `renew`.")
+      .def_property_readonly("paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
+                             "Paths that are still there, in their order.")
+      .def_readonly("num_blocked", &Renewal::num_blocked, "Paths left out because something stands in the way of a leg.")
+      .def_readonly("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface.")
+      .def_readonly("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew.")
+      .def("__repr__", [](const Renewal& self) {
+        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) + ", num_blocked=" + std::to_string(self.num_blocked) +
+               ", num_lost=" + std::to_string(self.num_lost) + ", num_moved=" + std::to_string(self.num_moved) + ")";
+      });
+  m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
+        py::arg("progress") = py::none(),
+        R"(A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
+
+Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view has
+no paths.
+
+paths: of a trace
+radar: whose motion carries the antennas of the trace along, or None: that of the trace
+time: s
+progress: callable (stage, fraction) or None
+Returns a Renewal. Raises ValueError when a motion does not cover the time.)");
+}
+
 }  // namespace
 
 void bind_replay(py::module_& m) {
+  bind_renewal(m);
   bind_shares(m);
   bind_report(m);
   m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),

@@ -130,15 +130,66 @@ Cube empty_like(const Radar& radar) {
   return cube;
 }
 
+// Stretches of a frame with the settings for each.
+std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
+  return stretches_of(radar, paths.frame.start_time, num_keyframes(paths, radar, settings.keyframes, job));
+}
+
+CubeSettings within_stretch(CubeSettings settings) {
+  settings.keyframes = {};
+  return settings;
+}
+
+void insert_chirps(const Cube& stretch, int first_chirp, Cube& frame) {
+  const size_t size = static_cast<size_t>(stretch.num_chirps) * stretch.num_samples;
+  const size_t frame_size = static_cast<size_t>(frame.num_chirps) * frame.num_samples;
+  const size_t first = static_cast<size_t>(first_chirp) * frame.num_samples;
+  for (size_t channel = 0; channel < static_cast<size_t>(frame.num_tx) * frame.num_rx; ++channel) {
+    std::copy_n(stretch.values.data() + channel * size, size, frame.values.data() + channel * frame_size + first);
+  }
+}
+
 }  // namespace
 
 Cube synthesize(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
-  return std::move(synthesize_groups(paths, radar, nullptr, 1, settings, job).front());
+  const Retrace retrace = settings.keyframes.retrace;
+  if (retrace == Retrace::kNever) return std::move(synthesize_groups(paths, radar, nullptr, 1, settings, job).front());
+  Cube frame = empty_like(radar);
+  for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
+    const Paths record = record_of(paths, stretch, retrace, job);
+    insert_chirps(synthesize(record, stretch.radar, within_stretch(settings), job), stretch.first_chirp, frame);
+  }
+  return frame;
 }
+
+namespace {
+
+std::vector<std::vector<PartCube>> decompose_stretches(const Paths& paths, const Radar& radar,
+                                                       const std::vector<std::vector<NamedSelection>>& partitions,
+                                                       const CubeSettings& settings, Job* job) {
+  std::vector<std::vector<PartCube>> frame;
+  for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
+    const Paths record = record_of(paths, stretch, settings.keyframes.retrace, job);
+    const auto parts = decompose(record, stretch.radar, partitions, within_stretch(settings), job);
+    if (frame.empty()) {
+      for (const std::vector<PartCube>& partition : parts) {
+        std::vector<PartCube>& whole = frame.emplace_back();
+        for (const PartCube& part : partition) whole.push_back({part.name, empty_like(radar)});
+      }
+    }
+    for (size_t i = 0; i < parts.size(); ++i) {
+      for (size_t k = 0; k < parts[i].size(); ++k) insert_chirps(parts[i][k].cube, stretch.first_chirp, frame[i][k].cube);
+    }
+  }
+  return frame;
+}
+
+}  // namespace
 
 std::vector<std::vector<PartCube>> decompose(const Paths& paths, const Radar& radar,
                                              const std::vector<std::vector<NamedSelection>>& partitions,
                                              const CubeSettings& settings, Job* job) {
+  if (settings.keyframes.retrace != Retrace::kNever) return decompose_stretches(paths, radar, partitions, settings, job);
   std::vector<Partition> parts;
   for (const std::vector<NamedSelection>& named : partitions) parts.push_back(make_partition(paths, named, job));
   CombinedPartition combined = combine(std::move(parts), job);

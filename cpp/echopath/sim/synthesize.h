@@ -5,6 +5,7 @@
 
 #include "echopath/label/partition.h"
 #include "echopath/replay/replay.h"
+#include "echopath/sim/keyframes.h"
 #include "echopath/signal/synthesizer.h"
 
 namespace echopath {
@@ -12,6 +13,7 @@ namespace echopath {
 struct CubeSettings {
   SynthesisOptions synthesis;  // the method is chosen from the whole set of paths, never per part
   ReplaySettings replay;
+  KeyframeSettings keyframes;
 };
 
 // IF samples [tx, rx, chirp, sample] in sqrt(W), noise-free.

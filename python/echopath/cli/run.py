@@ -43,7 +43,8 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
         settings["batches"] = batches
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
-                    **scene_file.spectrum_settings(), angles=scene_file.angle_settings(), progress=progress)
+                    **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
+                    progress=progress)
 
 
 def certify(frame: Frame, *, progress=None):

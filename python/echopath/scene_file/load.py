@@ -17,16 +17,17 @@ import echopath as ep
 from ..azimuth_map import checked_settings
 from ..simulate import as_partitions
 from .errors import validated
-from .schema import AngleTable, ObjectTable, RadarTable, SceneTable, SpectrumTable, Table, TraceTable, nearest_key
+from .schema import (AngleTable, ObjectTable, RadarTable, ReplayTable, SceneTable, SpectrumTable, Table, TraceTable,
+                     nearest_key)
 
 
 @dataclasses.dataclass(frozen=True)
 class SceneFile:
     """What a scene file says.
 
-    path: of the file; title: one line; scene, radar: ready to trace; trace, spectrum, angle: settings, as keywords by
-    `trace_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one partition),
-    {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise.
+    path: of the file; title: one line; scene, radar: ready to trace; trace, replay, spectrum, angle: settings, as keywords
+    by `trace_settings()`, `replay_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one
+    partition), {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise.
     """
 
     path: Path
@@ -34,6 +35,7 @@ class SceneFile:
     scene: object
     radar: object
     trace: TraceTable
+    replay: ReplayTable
     spectrum: SpectrumTable
     angle: AngleTable
     parts: dict
@@ -45,6 +47,10 @@ class SceneFile:
         if self.trace.target_error_db is not None and "num_rays" not in self.trace.model_fields_set:
             settings["num_rays"] = None  # where the search begins is then up to it
         return settings
+
+    def replay_settings(self) -> dict:
+        """Keywords of `ep.synthesize`: evaluate, retrace, keyframes."""
+        return self.replay.model_dump()
 
     def spectrum_settings(self) -> dict:
         """Keywords of `ep.range_doppler`: window, zero_pad."""
@@ -82,8 +88,8 @@ def load_scene(path) -> SceneFile:
         settings = validated(SceneTable, table)
         scene_file = SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
                                radar=_build_radar(settings.radar, path.parent), trace=settings.trace,
-                               spectrum=settings.spectrum, angle=settings.angle, parts=dict(settings.parts),
-                               noise_seed=settings.noise.seed)
+                               replay=settings.replay, spectrum=settings.spectrum, angle=settings.angle,
+                               parts=dict(settings.parts), noise_seed=settings.noise.seed)
         with _blame("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         return scene_file

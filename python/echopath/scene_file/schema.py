@@ -225,6 +225,14 @@ class TraceTable(Table):
     max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
 
 
+class ReplayTable(Table):
+    evaluate: Literal["interpolated", "chirps", "samples"] = Field(
+        "interpolated", description="polynomials over the frame, every chirp, or every sample of fast rotors")
+    retrace: Literal["never", "invalid", "always"] = Field(
+        "never", description="what is renewed at keyframes: nothing, shadows and points of reflection, the whole trace")
+    keyframes: int = Field(0, ge=0, description="stretches of the frame; 0: as many as validity suggests")
+
+
 class SpectrumTable(Table):
     window: Window = Field("hann", description="a name, or [\"chebyshev\", sidelobe level in dB]")
     zero_pad: int = Field(1, ge=1, description="length of the transforms over that of the data")
@@ -280,6 +288,7 @@ class SceneTable(Table):
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
     trace: TraceTable = TraceTable()
+    replay: ReplayTable = ReplayTable()
     spectrum: SpectrumTable = SpectrumTable()
     angle: AngleTable = AngleTable()
     noise: NoiseTable = NoiseTable()

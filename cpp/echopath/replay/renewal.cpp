@@ -1,0 +1,187 @@
+#include "echopath/replay/renewal.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "echopath/base/parallel.h"
+#include "echopath/replay/amplitude.h"
+#include "echopath/replay/frame_probe.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kPathsPerBlock = 2048;
+constexpr double kStaysPut = 1e-3;   // rad: points of reflection that change the length by less keep their hits
+constexpr double kConverged = 1e-6;  // rad, of the length that the next Newton step would change
+constexpr int kMaxSteps = 12;        // they converge quadratically; what needs more is at a caustic
+
+enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
+
+// What became of a block of paths; hits of those that moved, in the order of the record.
+struct BlockOutcome {
+  std::vector<Outcome> of_path;
+  std::vector<Hit> moved_hits;
+};
+
+Radar carried_radar(const Paths& paths, const Radar& radar) {
+  Radar carried = probe_radar(paths, radar);
+  carried.transmitters.resize(1);
+  carried.receivers.resize(1);
+  return carried;
+}
+
+class Renewer {
+ public:
+  Renewer(const Paths& paths, const Radar& radar, double time, Job* job)
+      : paths_(paths), radar_(carried_radar(paths, radar)), localise_(paths), walk_(*paths.scene, localise_.smooth_normals()),
+        wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
+        origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
+        geometry_(*paths.scene, pose_, origin_, job), instant_(*paths.scene, radar_, origin_, time) {}
+
+  BlockOutcome renew_block(std::span<const int64_t> indices) const {
+    BlockOutcome block;
+    const LocalPaths local = localise_(indices);
+    Scratch scratch(local.longest);
+    for (const LocalPath& path : local.paths) block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
+    return block;
+  }
+
+ private:
+  struct Scratch {
+    std::vector<PosedHit> posed;
+    std::vector<LocalHit> hits;
+    std::vector<std::array<Vec3, 3>> normals;  // of hits that moved
+    SpecularSlide slide;
+    explicit Scratch(int longest) : posed(size_of(longest)), hits(size_of(longest)), normals(size_of(longest)) {}
+    static size_t size_of(int longest) { return static_cast<size_t>(std::max(longest, 1)); }
+  };
+
+  Outcome renew_path(const LocalPath& recorded, Scratch& scratch, std::vector<Hit>& moved_hits) const {
+    LocalPath path = recorded;
+    std::copy_n(recorded.hits, recorded.count, scratch.hits.begin());
+    path.hits = scratch.hits.data();
+    pose_hits(path, instant_, scratch.posed.data());
+    Outcome outcome = Outcome::kKept;
+    if (path.sliding != 0) outcome = find_reflections(path, scratch);
+    if (outcome == Outcome::kLost) return outcome;
+    if (is_blocked(path, scratch.posed.data())) return Outcome::kBlocked;
+    if (outcome == Outcome::kMoved) append_hits(path, moved_hits);
+    return outcome;
+  }
+
+  const Vec3& start_of(const LocalPath& path) const {
+    return (path.is_reversed ? instant_.receivers : instant_.transmitters).front().position;
+  }
+  const Vec3& end_of(const LocalPath& path) const {
+    return (path.is_reversed ? instant_.transmitters : instant_.receivers).front().position;
+  }
+
+  // Newton steps from the recorded points of reflection to Fermat's.
+  Outcome find_reflections(const LocalPath& path, Scratch& scratch) const {
+    for (int step = 0; step < kMaxSteps; ++step) {
+      if (!scratch.slide.solve(path, scratch.posed.data(), start_of(path))) return Outcome::kLost;
+      const double phase = wavenumber_ * std::abs(scratch.slide.excess());
+      if (phase < (step == 0 ? kStaysPut : kConverged)) return step == 0 ? Outcome::kKept : Outcome::kMoved;
+      for (size_t i = 0; i < scratch.slide.size(); ++i) {
+        if (!move_hit(scratch.slide.hit(i), scratch.slide.step(i), scratch)) return Outcome::kLost;
+      }
+    }
+    return Outcome::kLost;
+  }
+
+  bool move_hit(int k, const Vec3& step, Scratch& scratch) const {
+    const auto at = static_cast<size_t>(k);
+    LocalHit& hit = scratch.hits[at];
+    const uint32_t mesh_id = hit.mesh_id;
+    const Vec3 point = surface_point(scratch.posed[at], step);
+    const Vec3 in_mesh = instant_.rotation(mesh_id).inverse() * (point - instant_.translation(mesh_id));
+    const auto spot = walk_.find(mesh_id, hit.triangle_id, instant_.local_vertices(mesh_id), in_mesh);
+    if (!spot) return false;
+    hit = local_hit(*paths_.scene, spot->hit);
+    const std::vector<Vec3>& of_vertices = walk_.smooth_normals(mesh_id);
+    if (!of_vertices.empty() && find_smooth_normals(hit, of_vertices, scratch.normals[at])) hit.normals = &scratch.normals[at];
+    pose_hit(hit, instant_, false, scratch.posed[at]);
+    return true;
+  }
+
+  bool is_blocked(const LocalPath& path, const PosedHit* hits) const {
+    LegTester tester(geometry_, path, hits);
+    if (path.first_material < 0) {
+      tester.test_images(start_of(path), end_of(path));
+    } else {
+      tester.test_start(start_of(path));
+      tester.test_inner();
+      tester.test_end(end_of(path));
+    }
+    const LegShadows& shadows = tester.shadows();
+    return shadows.blocked != 0 || shadows.is_end_blocked || shadows.off_mirror != 0;
+  }
+
+  static void append_hits(const LocalPath& path, std::vector<Hit>& out) {
+    for (int k = 0; k < path.count; ++k) {
+      const LocalHit& hit = path.hits[path.is_reversed ? path.count - 1 - k : k];
+      out.push_back({hit.mesh_id, hit.triangle_id, static_cast<float>(hit.u), static_cast<float>(hit.v)});
+    }
+  }
+
+  const Paths& paths_;
+  Radar radar_;
+  Localiser localise_;
+  SurfaceWalk walk_;
+  double wavenumber_;
+  Pose pose_;
+  Vec3 origin_;
+  EmbreeScene geometry_;
+  Instant instant_;
+};
+
+// The paths that are still there, those that moved with hits of their own behind those of the record.
+void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Renewal& renewal, Job* job) {
+  std::vector<uint8_t> keep;
+  std::vector<int64_t> moved_offsets;  // of the paths that stay, -1: where they were
+  auto hits = record.hits;
+  std::shared_ptr<std::vector<Hit>> grown;
+  for (const BlockOutcome& block : blocks) {
+    int64_t next = grown ? std::ssize(*grown) : record.num_hits();
+    if (!block.moved_hits.empty()) {
+      if (!grown) grown = std::make_shared<std::vector<Hit>>(*record.hits);
+      grown->insert(grown->end(), block.moved_hits.begin(), block.moved_hits.end());
+    }
+    for (const Outcome outcome : block.of_path) {
+      const auto path = keep.size();
+      keep.push_back(outcome == Outcome::kKept || outcome == Outcome::kMoved);
+      renewal.num_blocked += outcome == Outcome::kBlocked;
+      renewal.num_lost += outcome == Outcome::kLost;
+      renewal.num_moved += outcome == Outcome::kMoved;
+      if (!keep.back()) continue;
+      moved_offsets.push_back(outcome == Outcome::kMoved ? next : -1);
+      if (outcome == Outcome::kMoved) next += record.num_bounces[path];
+    }
+  }
+  renewal.paths = record.select(keep, job);
+  if (!grown) return;
+  renewal.paths.hits = grown;
+  for (size_t i = 0; i < moved_offsets.size(); ++i) {
+    if (moved_offsets[i] >= 0) renewal.paths.offsets[i] = moved_offsets[i];
+  }
+}
+
+}  // namespace
+
+Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job) {
+  const Renewer renewer(paths, radar, time, job);
+  const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsPerBlock - 1) / kPathsPerBlock;
+  std::vector<BlockOutcome> blocks(static_cast<size_t>(num_blocks));
+  if (job) job->start(num_blocks);
+  parallel_for(num_blocks, [&](int64_t i) {
+    const int64_t begin = i * kPathsPerBlock;
+    std::vector<int64_t> indices(static_cast<size_t>(std::min(kPathsPerBlock, num_paths - begin)));
+    std::iota(indices.begin(), indices.end(), begin);
+    blocks[static_cast<size_t>(i)] = renewer.renew_block(indices);
+  }, job);
+  Renewal renewal;
+  assemble(paths, blocks, renewal, job);
+  return renewal;
+}
+
+}  // namespace echopath

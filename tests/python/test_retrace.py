@@ -1,0 +1,158 @@
+"""Records renewed at other times of a frame, against what closed forms and fresh traces say."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+FREQUENCY = 77e9
+WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
+ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
+ON_FERMAT = 1e-3       # rad: the least that a renewal mends
+
+
+def radar_of(num_chirps=64, chirp_interval=100e-6, num_samples=64):
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=0.3e9, num_samples=num_samples, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=chirp_interval)
+    return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+
+
+def chirp_times(radar):
+    waveform = radar.waveform
+    return np.arange(waveform.num_chirps) * waveform.chirp_interval + 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+
+
+def facing(half_width, half_height):
+    """A plate across the x axis."""
+    y, z = half_width, half_height
+    return ep.Mesh([[0, -y, -z], [0, y, -z], [0, y, z], [0, -y, z]], [[0, 1, 2], [0, 2, 3]])
+
+
+def hidden_target():
+    """A small target at 20 m; a shutter at 10 m whose edge crosses the line of sight when t = 3.2 ms."""
+    scene = ep.Scene()
+    scene.add(facing(0.05, 0.05), name="target", material=ROUGH, position=(20, 0, 0))
+    edge = 2.0 - 0.05 / 2  # the target's near side, seen from the radar
+    scene.add(facing(2.0, 1.0), name="shutter", material=ep.Material(reflectivity=1e-6, scattering=1.0),
+              position=(10, -edge - 100 * 3.2e-3, 0), motion=ep.LinearMotion(velocity=(0, 100, 0)))
+    return scene
+
+
+def power_of_chirps(cube):
+    return (np.abs(cube[0, 0]) ** 2).sum(axis=1)
+
+
+def test_what_comes_in_the_way_takes_its_echoes_out():
+    radar = radar_of(num_chirps=64)
+    scene = hidden_target()
+    paths = ep.trace(scene, radar, num_rays=4000, max_bounces=1)
+    target = paths.select("T 'target' R")
+    assert target.num_paths > 100
+    never = power_of_chirps(ep.synthesize(target, radar))
+    renewed = power_of_chirps(ep.synthesize(target, radar, retrace="invalid", keyframes=16))
+    # The shutter needs 0.5 ms over the target, whose shadow is half as wide at 10 m: 5 chirps, in stretches of 4.
+    edge = 32
+    assert np.allclose(renewed[:edge - 4], never[:edge - 4], rtol=1e-9) and never.min() > 0
+    assert np.all(renewed[edge + 12:] == 0)
+    between = renewed[edge - 4:edge + 12].reshape(4, 4).mean(axis=1)
+    assert np.all(np.diff(between) <= 1e-3 * never.max())
+
+
+def test_a_scene_at_rest_keeps_its_bits():
+    radar = radar_of(num_chirps=12)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1))
+    paths = ep.trace(scene, radar, num_rays=3000)
+    renewed = ep.renew(paths, time=radar.waveform.chirp_interval).paths
+    assert renewed.num_paths == paths.num_paths and np.array_equal(renewed.hits, paths.hits)
+    assert np.array_equal(ep.synthesize(paths, radar, retrace="invalid", keyframes=3), ep.synthesize(paths, radar))
+
+
+def sliding_scene(wall_end=60.0):
+    """A rough target that moves past a metal wall at y = 3: the wall's bounce slides, being no flagged mirror."""
+    scene = ep.Scene()
+    wall = ep.Mesh([[-20, 3, -10], [wall_end, 3, -10], [wall_end, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(wall, name="wall", material=ep.Material.metal())
+    scene.add(facing(0.5, 2.0), name="target", material=ROUGH, position=(19.5, 0, 0), motion=ep.LinearMotion(velocity=(60, 0, 0)))
+    return scene
+
+
+def ghosts_of(scene, radar):
+    paths = ep.trace(scene, radar, num_rays=400000, max_bounces=2).select("T 'wall' 'target' R")
+    assert paths.num_paths > 15
+    return paths
+
+
+def test_points_of_reflection_are_found_anew():
+    """Target at 60 m/s, wall 3 m aside: frozen bounces err by more than a radian after 10 ms, renewed ones do not."""
+    radar = radar_of(num_chirps=256, chirp_interval=80e-6)
+    paths = ghosts_of(sliding_scene(), radar)
+    end = chirp_times(radar)[-1]
+
+    def error(record):
+        """rad, of the longest frozen way at the end of the frame; truth by the image of the radar in the wall."""
+        target = record.points(end)[record.offsets + 1]
+        exact = np.linalg.norm(target - [0, 6, 0], axis=1) + np.linalg.norm(target, axis=1)
+        return WAVE_NUMBER * np.abs(record.lengths([end])[0] - exact).max()
+
+    assert error(paths) > 0.5
+    renewed = ep.renew(paths, time=end)
+    assert renewed.paths.num_paths == paths.num_paths == renewed.num_moved
+    assert error(renewed.paths) < ON_FERMAT
+    # The target's own hits, weights and phases are those of the trace.
+    assert np.array_equal(renewed.paths.hits[renewed.paths.offsets + 1], paths.hits[paths.offsets + 1])
+    assert np.array_equal(renewed.paths.weight, paths.weight)
+
+
+def test_reflections_that_leave_their_surface_are_lost():
+    """The wall ends where half of the bounces stand at the end of the frame: the others find no wall."""
+    radar, wall_end = radar_of(num_chirps=256, chirp_interval=80e-6), 10.7
+    paths = ghosts_of(sliding_scene(wall_end), radar)
+    end = chirp_times(radar)[-1]
+    target = paths.points(end)[paths.offsets + 1]
+    bounce = target[:, 0] * 3.0 / (6.0 - target[:, 1])
+    on_wall = bounce < wall_end
+    assert 0 < on_wall.sum() < paths.num_paths
+    renewed = ep.renew(paths, time=end)
+    assert renewed.num_lost == np.count_nonzero(~on_wall)
+    assert np.array_equal(renewed.paths.weight, paths.weight[on_wall])
+
+
+def test_always_traces_each_stretch_anew():
+    radar, scene = radar_of(num_chirps=8), hidden_target()
+    paths = ep.trace(scene, radar, num_rays=2000, seed=3)
+    whole = ep.synthesize(paths, radar, retrace="always", keyframes=2)
+    half = radar_of(num_chirps=4)
+    for i in range(2):
+        again = ep.trace(scene, half, num_rays=paths.frame.statistics.num_rays, seed=3, start_time=i * 4 * 100e-6)
+        assert np.array_equal(whole[:, :, 4 * i:4 * i + 4], ep.synthesize(again, half))
+
+
+def test_parts_of_renewed_frames_add_up():
+    radar = radar_of(num_chirps=32)
+    paths = ep.trace(hidden_target(), radar, num_rays=3000)
+    settings = {"retrace": "invalid", "keyframes": 4, "method": "nufft"}
+    parts = ep.decompose(paths, radar, {"target": "T 'target' R"}, **settings)
+    whole = ep.synthesize(paths, radar, **settings)
+    assert np.abs(sum(parts.values()) - whole).max() < 1e-12 * np.abs(whole).max()
+
+
+def test_bits_do_not_depend_on_threads():
+    radar = radar_of(num_chirps=16)
+    paths = ep.trace(sliding_scene(), radar, num_rays=20000, max_bounces=2)
+    cubes = []
+    for threads in (1, 3):
+        ep.set_num_threads(threads)
+        cubes.append(ep.synthesize(paths, radar, retrace="invalid", keyframes=2))
+    ep.set_num_threads(0)
+    assert np.array_equal(*cubes)
+
+
+@pytest.mark.parametrize("keywords, text", [
+    ({"retrace": "sometimes"}, "retrace: must be"),
+    ({"retrace": "invalid", "keyframes": 17}, "keyframes: must lie in"),
+    ({"retrace": "invalid", "keyframes": -1}, "keyframes: must not be negative"),
+])
+def test_bad_settings_are_named(keywords, text):
+    radar = radar_of(num_chirps=16)
+    with pytest.raises(ValueError, match=text):
+        ep.synthesize(ep.trace(ep.Scene(), radar, num_rays=10), radar, **keywords)

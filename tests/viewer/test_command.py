@@ -38,9 +38,12 @@ def test_a_file_that_is_none_of_ours_is_refused_before_a_window_opens(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have a screen")
-def test_without_a_screen_it_says_so():
-    done = run(VIEW, DISPLAY="", WAYLAND_DISPLAY="", QT_QPA_PLATFORM="")
+@pytest.mark.parametrize("command", [["view"], ["demo", "--view", "--out", "nowhere"]])
+def test_without_a_screen_it_says_so_at_once(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = run([*VIEW[:-1], *command], DISPLAY="", WAYLAND_DISPLAY="", QT_QPA_PLATFORM="")
     assert done.returncode == 2 and "needs a screen" in done.stderr and "off_screen" in done.stderr
+    assert not list(tmp_path.iterdir())
 
 
 def test_without_the_extra_it_says_what_to_install():

@@ -141,6 +141,10 @@ def test_a_part_named_in_the_viewer_is_the_map_of_what_was_visible(session):
         session.add_part("left ghosts")
     with pytest.raises(ValueError, match="empty"):
         session.add_part(" ")
+    session.remove_part((OWN_GROUP, "left ghosts"))
+    assert session.part_key == (WHOLE, WHOLE) and session.visible.all()
+    with pytest.raises(ValueError, match="named here"):
+        session.remove_part(("route", "ghost"))
 
 
 def test_the_spectrum_of_a_mesh_is_that_of_the_paths_that_hit_it(session):

@@ -264,6 +264,9 @@ def test_a_named_part_joins_the_maps_at_once(qtbot, window):
     qtbot.keyClicks(window.filter_box.name_edit, "multipath")
     qtbot.mouseClick(window.filter_box.add_button, LEFT)
     assert window.filter_box.name_error.isVisible() and "taken" in window.filter_box.name_error.text()
+    window.session.set_part(("own", "multipath"))
+    qtbot.keyClick(window, Qt.Key.Key_Delete)
+    assert ("own", "multipath") not in window.map_area.panels and window.session.part_key == (WHOLE, WHOLE)
 
 
 # --- maps ---
@@ -471,6 +474,23 @@ def test_a_frame_file_is_opened(qtbot, window, frame, tmp_path):
     assert "frame.h5" in window.windowTitle() and window.session.paths.num_paths == frame.paths.num_paths
 
 
+def test_a_script_opens_paths_with_parts_of_them(qtbot, frame):
+    parts = ep.decompose(frame.paths, frame.radar, {"ghosts": "T 'wall_*' 'walker' R"})
+    window = ep.view(frame.scene, frame.paths, parts, window="rect", block=False)
+    qtbot.addWidget(window)
+    window.session.set_part(("parts", "ghosts"))
+    wanted = ep.range_doppler(parts["ghosts"], frame.radar, window="rect")
+    assert np.array_equal(window.session.part.spectrum.values, wanted.values)
+    assert window.session.visible.sum() == frame.paths.select("T 'wall_*' 'walker' R").num_paths
+    window.close()
+
+
+@pytest.mark.parametrize("arguments, keywords", [((3,), {}), ((), {"parts": {}}), ((None, None, None, None), {})])
+def test_what_cannot_be_viewed_is_refused(arguments, keywords):
+    with pytest.raises(TypeError, match="view"):
+        ep.view(*arguments, **keywords)
+
+
 # --- empty, closing ---
 
 def test_without_a_frame_the_window_says_what_to_do(qtbot, frame):
@@ -500,6 +520,7 @@ def test_opening_and_closing_five_times_leaves_nothing_behind(qtbot, frame):
         window = MainWindow()
         window.show_input(from_frame(frame))
         open_on_screen(qtbot, window)
+        assert window.view3d._fallback is None  # a context that pyvistaqt makes for what is drawn too early
         gone += [weakref.ref(window.session), weakref.ref(window.view3d.builder)]
         window.close()
         window.deleteLater()

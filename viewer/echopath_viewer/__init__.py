@@ -21,6 +21,13 @@ def view(*what, **keywords):
     return open_window(*what, **keywords)
 
 
+def require_window() -> None:
+    """Raises ModuleNotFoundError or OSError where `view` could not open a window: before long work whose end it is."""
+    with _told_what_to_install():
+        from .window.app import require_screen
+    require_screen()
+
+
 def plot_rays(scene, paths, **keywords):
     """Draws a scene with its strongest rays, on a screen or without one; see `echopath_viewer.plot.plot_rays`."""
     with _told_what_to_install():

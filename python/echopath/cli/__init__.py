@@ -98,6 +98,10 @@ def _demo(options) -> None:
     from .demo import run_demo
     from .progress import progress_bars
 
+    if options.view:
+        from echopath_viewer import require_window
+
+        require_window()
     with progress_bars() as progress:
         frame = run_demo(options.out, num_rays=options.rays, seed=options.seed, batches=options.batches, progress=progress)
     if options.view:

@@ -258,6 +258,15 @@ class Session:
         self._tell("maps")
         return part
 
+    def remove_part(self, key: tuple) -> None:
+        """Takes away a part that was named in the viewer. Raises ValueError for another one."""
+        if key[0] != OWN_GROUP:
+            raise ValueError("part: only parts that were named here can be removed")
+        self.parts.remove(key)
+        if self.part_key == key:
+            self.set_part((WHOLE, WHOLE))
+        self._tell("maps")
+
     def set_dynamic_range(self, decibels: float) -> None:
         self.dynamic_range_db = float(decibels)
         self._tell("maps")

@@ -22,7 +22,7 @@ def view(*what, parts=None, block=True, **settings):
     Raises ep.FileError for a file that cannot be shown, before there is a window; OSError without a screen.
     """
     view_input = read_input(*what, parts=parts, **settings)
-    _require_screen()
+    require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
     window = MainWindow()
     if view_input is not None:
@@ -34,8 +34,8 @@ def view(*what, parts=None, block=True, **settings):
     return None
 
 
-def _require_screen() -> None:
-    """Qt would end the program instead of raising."""
+def require_screen() -> None:
+    """Raises OSError where there is none: Qt would end the program."""
     if sys.platform != "linux" or any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
         return
     raise OSError("the viewer needs a screen, and DISPLAY names none; ep.plot_rays(scene, paths, off_screen=True, "
@@ -44,24 +44,19 @@ def _require_screen() -> None:
 
 def _run(application) -> None:
     """Until all windows are closed. Ctrl-C closes them and is raised as KeyboardInterrupt."""
-    interrupted = []
     if threading.current_thread() is not threading.main_thread():
         application.exec()
         return
-
-    def interrupt(*_) -> None:
-        interrupted.append(True)
-        application.closeAllWindows()
-        application.quit()
-
-    before = signal.signal(signal.SIGINT, interrupt)
-    awake = QtCore.QTimer(interval=SIGNAL_CHECK_MS)  # Python sees signals only while it runs
-    awake.timeout.connect(lambda: None)
-    awake.start()
+    interrupted = []
+    before = signal.signal(signal.SIGINT, lambda *_: interrupted.append(True))
+    # Python sees signals only while it runs; and what it sees in the middle of drawing must wait for its end.
+    watch = QtCore.QTimer(interval=SIGNAL_CHECK_MS)
+    watch.timeout.connect(lambda: application.closeAllWindows() if interrupted else None)
+    watch.start()
     try:
         application.exec()
     finally:
-        awake.stop()
+        watch.stop()
         signal.signal(signal.SIGINT, before)
     if interrupted:
         raise KeyboardInterrupt
@@ -77,8 +72,8 @@ def read_input(*what, parts=None, **settings):
         raise TypeError("view: parts, window and zero_pad belong to scene and paths: view(scene, paths, parts=...)")
     if not what:
         return None
-    if isinstance(what[0], (str, os.PathLike)):
+    if len(what) == 1 and isinstance(what[0], (str, os.PathLike)):
         return from_file(what[0])
-    if isinstance(what[0], ep.Frame):
+    if len(what) == 1 and isinstance(what[0], ep.Frame):
         return from_frame(what[0])
-    raise TypeError(f"view: takes a frame file, a Frame or (scene, paths, parts), got {type(what[0]).__name__}")
+    raise TypeError(f"view: takes a frame file, a Frame or (scene, paths, parts), got {what!r}")

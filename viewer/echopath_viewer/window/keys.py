@@ -20,6 +20,7 @@ KEYS = (
     ("Space", "toggle_play", "Play or pause"),
     ("Left", "previous_chirp", "One chirp back"),
     ("Right", "next_chirp", "One chirp on"),
+    ("Del", "remove_part", "Remove the chosen part, if it was named here"),
     ("Esc", "clear_selection", "Select nothing"),
     ("?", "show_help", "This list"),
 )

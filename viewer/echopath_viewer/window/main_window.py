@@ -59,12 +59,13 @@ class MainWindow(QtWidgets.QMainWindow):
         return True
 
     def show_input(self, view_input) -> None:
-        """Shows what `model.inputs` has read."""
+        """Shows what `model.inputs` has read, and the window: there is no drawing into one that was never shown."""
         self.session = Session(view_input)
         self.show_message("")
+        self._set_content_shown(True)
+        self.show()
         for part in (self.tree, self.filter_box, self.map_area, self.time_bar):
             part.show_session(self.session)
-        self._set_content_shown(True)
         self.view3d.show_session(self.session)
         self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
         self.table.show_session(self.session)
@@ -162,6 +163,12 @@ class MainWindow(QtWidgets.QMainWindow):
 
     def next_chirp(self) -> None:
         self.session.set_chirp(self.session.chirp + 1)
+
+    def remove_part(self) -> None:
+        try:
+            self.session.remove_part(self.session.part_key)
+        except ValueError as error:
+            self.show_message(str(error))
 
     def clear_selection(self) -> None:
         self.session.select_cells(None)
@@ -268,7 +275,7 @@ class MainWindow(QtWidgets.QMainWindow):
         file_menu.addAction(meshes)
         look_menu = self.menuBar().addMenu("View")
         for name in ("look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
-                     "toggle_play", "previous_chirp", "next_chirp", "clear_selection"):
+                     "toggle_play", "previous_chirp", "next_chirp", "remove_part", "clear_selection"):
             look_menu.addAction(actions[name])
         self.menuBar().addMenu("Help").addAction(actions["show_help"])
         self._fill_bar(bar, actions)
@@ -322,6 +329,7 @@ class MainWindow(QtWidgets.QMainWindow):
 
     def closeEvent(self, event):  # noqa: N802
         self.time_bar.stop()
+        self._listing.stop()
         self.session = None
         self.view3d.builder = None
         self.view3d.close()

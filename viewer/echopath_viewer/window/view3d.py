@@ -117,6 +117,10 @@ class View3D(QtInteractor):
 
     # --- Qt ---
 
+    def closeEvent(self, event):  # noqa: N802
+        self._render_timer.stop()
+        super().closeEvent(event)
+
     def resizeEvent(self, event):  # noqa: N802
         super().resizeEvent(event)
         if self.builder is not None:

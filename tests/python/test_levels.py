@@ -13,7 +13,7 @@ WALL_TOLERANCE_DB = 0.05
 FRINGE_TOLERANCE_DB = 0.1
 FOUR_PATH_TOLERANCE_DB = 0.3     # physical optics with the footprint filter against its bare quadrature
 ENERGY_TOLERANCE = 0.005         # relative
-CORNER_TOLERANCE = 0.012         # relative: two standard errors of the mean of the seeds below, and of the reference
+CORNER_TOLERANCE = 0.007         # relative: three standard errors of the mean of the seeds below
 COEFFICIENT_TOLERANCE_DB = 0.1
 
 MIRROR = ep.Material.metal(mirror=True)

@@ -5,6 +5,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/trace/sbr_state.h"
+#include "echopath/trace/scatter_points.h"
 
 namespace echopath {
 namespace {
@@ -180,9 +181,18 @@ void RayShooter::reflect_tube(Ray& ray, const Surface& surface) const {
   ray.is_curved = ray.is_curved || point.is_smooth;
 }
 
+// Two numbers in [0, 1) for the direction in which the ray leaves its hit diffusely. Neighbours are neighbours no more deeper
+// in a chain.
+std::array<double, 2> RayShooter::scatter_numbers(const Ray& ray, int batch) const {
+  if (ray.coherent) return scatter_point(settings_.seed, batch, ray.index, ray.depth - 1);
+  const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
+  return uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
+}
+
 void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch,
                                 PathBlock& block) const {
   const Vec3& normal = surface.point.normal;
+  const Vec3 out = cosine_lobe(normal, scatter_numbers(ray, block.current_batch));
   if (ray.coherent) begin_chain(ray, surface, probability, scratch, block);
   ray.coefficient *= std::abs(surface.response.gamma) * surface.response.diffuse;
   ray.area *= surface.area;
@@ -191,9 +201,6 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
   ray.sequence = kOther;
   ray.mirror = MirrorBounce{};
   ray.last_was_mirror = false;
-  const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
-  const auto random = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
-  const Vec3 out = cosine_lobe(normal, random);
   leave_diffuse(ray, surface, out, probability, scratch.chain);
   if (settings_.is_polarized) scatter_polarized(ray, surface, out);
   ray.direction = out;

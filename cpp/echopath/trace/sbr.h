@@ -65,6 +65,7 @@ class RayShooter {
   void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
   void bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
+  std::array<double, 2> scatter_numbers(const Ray& ray, int batch) const;
   Odds odds_of(const Material& material, const SurfaceResponse& response) const;
   static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
   SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;

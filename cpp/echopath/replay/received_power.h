@@ -14,7 +14,7 @@ struct ReceivedPower {
   double coherent = 0.0;
   double coherent_error = 0.0;  // W
   // W: sum over the diffuse hits of |field of all paths over this hit|^2. They share its random phase, so that both
-  // orders of a path over a mirror add as fields; different hits add as powers.
+  // orders of a path over a mirror, and of a chain of several diffuse hits, add as fields; different hits add as powers.
   double diffuse = 0.0;
   double diffuse_error = 0.0;   // W
   bool resolved = false;        // the power is at least twice its standard error

@@ -4,7 +4,7 @@ from __future__ import annotations
 from ..tessellation import coarse_meshes
 from .rules import Case, meshes_or, named, rule
 
-ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/sbr.cpp)
+ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/sbr_state.h)
 
 
 @rule("coherent physical optics", "Material.scattering")

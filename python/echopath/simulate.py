@@ -21,7 +21,7 @@ class Frame:
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     noise_seed: of the thermal noise, None: no noise
-    evaluate: how the signal follows moving echoes, as in `synthesize`
+    evaluate, retrace: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     stages: time and peak memory of each stage
@@ -40,6 +40,7 @@ class Frame:
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
     evaluate: str = "interpolated"
+    retrace: str = "never"
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -50,7 +51,7 @@ class Frame:
     @property
     def effects(self) -> list:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
-        return of_paths(self.paths, evaluate=self.evaluate, noise_seed=self.noise_seed)
+        return of_paths(self.paths, evaluate=self.evaluate, retrace=self.retrace, noise_seed=self.noise_seed)
 
     @cached_property
     def path_power(self):
@@ -116,7 +117,8 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=labels, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
-                  angle_settings=angle_settings, evaluate=evaluate, stages=clock.stages)
+                  angle_settings=angle_settings, evaluate=evaluate, retrace=retrace,
+                  stages=clock.stages)
     with clock("spectra"):
         with_spectra(frame)
     if sees_azimuth(radar):

@@ -22,6 +22,13 @@ def _within_chirps(case: Case):
     return True, 'at every sample; evaluate = "samples"' if exact else "linear; with motion over chirps"
 
 
+@rule("records renewed at keyframes", "synthesize.retrace")
+def _renewed(case: Case):
+    what = {"never": "one record serves the frame", "invalid": "shadows and points of reflection",
+            "always": "the scene is traced anew"}[case.settings.retrace]
+    return case.settings.retrace != "never", f'{what}; retrace = "{case.settings.retrace}"'
+
+
 @rule("deforming meshes", "Node.sequence")
 def _deforming(case: Case):
     return meshes_or([mesh for mesh in case.moving if case.nodes[mesh.node].sequence is not None],

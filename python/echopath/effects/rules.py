@@ -31,6 +31,7 @@ class Settings:
     batches: int
     target_error_db: float | None
     evaluate: str
+    retrace: str
     noise_seed: int | None
 
 
@@ -98,7 +99,7 @@ QUANTITIES = {
     "Radar": ("waveform", "transmit_power", "frame_duration"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name"),
     "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "progress"),
-    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "progress"),
+    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "progress"),
 }
 
 

@@ -138,6 +138,7 @@ def _write_signal(file, frame: Frame) -> None:
     write_array(group, "cube", frame.cube, unit="sqrt(W)")
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
     group.attrs["evaluate"] = frame.evaluate
+    group.attrs["retrace"] = frame.retrace
     if frame.noise_seed is not None:
         group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
 
@@ -180,7 +181,8 @@ def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
-    frame.evaluate = read_attribute(group, "evaluate", str) if "evaluate" in group.attrs else Frame.evaluate
+    for name in ("evaluate", "retrace"):
+        setattr(frame, name, read_attribute(group, name, str) if name in group.attrs else getattr(Frame, name))
     frame.spectrum_settings = _read_settings(read_group(file, "spectra"))
     if "range_azimuth" in file:
         frame.angle_settings = _read_settings(read_group(file, "range_azimuth"))

@@ -45,11 +45,16 @@ FieldPair launched_fields(const Vec3& direction) {
 }
 
 JonesMatrix arriving_components(const FieldPair& fields, const Vec3& direction) {
-  const TransverseBasis basis = transverse_basis(direction);
+  return components(fields, launched_fields(direction));
+}
+
+JonesMatrix components(const FieldPair& fields, const FieldPair& axes) {
   JonesMatrix matrix;
-  for (size_t launch = 0; launch < 2; ++launch) {
-    matrix[launch] = std::complex<float>(dot(basis.horizontal, fields[launch]));
-    matrix[2 + launch] = std::complex<float>(dot(basis.vertical, fields[launch]));
+  for (size_t row = 0; row < 2; ++row) {
+    for (size_t launch = 0; launch < 2; ++launch) {
+      const std::complex<double> along = axes[row].transpose() * fields[launch];
+      matrix[2 * row + launch] = std::complex<float>(along);
+    }
   }
   return matrix;
 }

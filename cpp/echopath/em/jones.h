@@ -31,6 +31,8 @@ TransverseBasis transverse_basis(const Vec3& direction);
 // The two launches along a direction, and the components across the direction of arrival of what has become of them.
 FieldPair launched_fields(const Vec3& direction);
 JonesMatrix arriving_components(const FieldPair& fields, const Vec3& direction);
+// Likewise along two fields in the place of both axes.
+JonesMatrix components(const FieldPair& fields, const FieldPair& axes);
 
 // Components (horizontal, vertical) of a polarisation vector across a direction, of length 1; zero along the direction.
 Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction);

@@ -83,14 +83,17 @@ class RayShooter {
   void reflect_polarized(const Ray& ray, const Surface& surface, FieldPair& fields) const;
   JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
-  JonesMatrix pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const;
+  void follow_legs(const Ray& ray, Scratch& scratch) const;
+  JonesMatrix pair_matrix(const Ray& ray, const Surface& surface, const Scratch& scratch, size_t in, size_t out) const;
   void scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const;
   FieldPair scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
   FieldPair scattered_back(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
                            const Vec3& out) const;
   JonesMatrix opposite_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const Chain& chain) const;
   FieldPair incident_over(const Leg& leg) const;
-  JonesMatrix received_over(const Leg& leg, FieldPair fields) const;
+  FieldPair fields_over(const Leg& leg, FieldPair fields) const;
+  FieldPair axes_over(const Leg& leg) const;
+  JonesMatrix received_over(const Leg& leg, const FieldPair& fields) const;
   std::complex<double> phase_factor(const Ray& ray) const;
 
   const Scene& scene_;

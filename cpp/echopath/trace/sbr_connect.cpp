@@ -166,16 +166,19 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch, block);
   scratch.transmit.push_back(own_leg(ray));
+  if (settings_.is_polarized) follow_legs(ray, scratch);
   const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
   const std::complex<double> phase = phase_factor(ray);
 
-  for (const Leg& in : scratch.transmit) {
+  for (size_t i = 0; i < scratch.transmit.size(); ++i) {
+    const Leg& in = scratch.transmit[i];
     const SurfaceResponse response = response_toward(surface, in.to_antenna);
     const std::complex<double> scalar =
         settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
     const std::complex<double> weight = root_area * scalar * phase;
     const uint64_t bits = uint64_t{1} << in.num_bounces;
-    for (const Leg& out : scratch.receive) {
+    for (size_t j = 0; j < scratch.receive.size(); ++j) {
+      const Leg& out = scratch.receive[j];
       const int count = in.num_bounces + 1 + out.num_bounces;
       if (count > settings_.max_bounces) continue;
       if (out.num_bounces == 0 && in.sequence == ray.sequence) {
@@ -186,7 +189,7 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
         const auto hits = pair_hits(in, surface.point.hit, out);
         block.add(hits.data(), count, bits, settings_.is_polarized ? weight : weight * out.gain, ray.stratum);
       }
-      if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, in, out));
+      if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, scratch, i, j));
     }
   }
 }

@@ -67,9 +67,8 @@ FieldPair RayShooter::scattered_back(const Ray& ray, const Surface& surface, con
   return out_fields;
 }
 
-// Fields at a surface point of launches along a leg to it.
-FieldPair RayShooter::incident_over(const Leg& leg) const {
-  FieldPair fields = launched_fields(leg.at_antenna);
+// What fields at the antenna become on the way over a leg to its surface point.
+FieldPair RayShooter::fields_over(const Leg& leg, FieldPair fields) const {
   Vec3 direction = leg.at_antenna;
   for (int k = leg.num_bounces; k-- > 0;) {
     const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
@@ -80,14 +79,16 @@ FieldPair RayShooter::incident_over(const Leg& leg) const {
   return fields;
 }
 
+// Fields at a surface point of launches along a leg to it.
+FieldPair RayShooter::incident_over(const Leg& leg) const { return fields_over(leg, launched_fields(leg.at_antenna)); }
+
+// Along which of the fields that leave a surface point a receiver at the end of a leg sees its two components: by
+// reciprocity what its own axes become on the way to the point.
+FieldPair RayShooter::axes_over(const Leg& leg) const { return fields_over(leg, launched_fields(-leg.at_antenna)); }
+
 // Components at the receiver of fields that leave a surface point along a leg.
-JonesMatrix RayShooter::received_over(const Leg& leg, FieldPair fields) const {
-  for (int k = 0; k < leg.num_bounces; ++k) {
-    const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
-    const Material& material = *mirrors_[static_cast<size_t>(bounce.mirror)].material;
-    reflect_all(fields, bounce.direction, bounce.normal, material, settings_.frequency, bounce.specular_share);
-  }
-  return arriving_components(fields, -leg.at_antenna);
+JonesMatrix RayShooter::received_over(const Leg& leg, const FieldPair& fields) const {
+  return components(fields, axes_over(leg));
 }
 
 JonesMatrix RayShooter::coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
@@ -110,10 +111,17 @@ JonesMatrix RayShooter::opposite_matrix(const Ray& ray, const Surface& surface, 
   return received_over(leg, scattered_back(ray, surface, chain.fields, ray.direction, leg.to_antenna));
 }
 
-// The ray's own way to the hit is one of the legs `in`.
-JonesMatrix RayShooter::pair_matrix(const Ray& ray, const Surface& surface, const Leg& in, const Leg& out) const {
-  const FieldPair incident = in.sequence == ray.sequence ? ray.polarized : incident_over(in);
-  return received_over(out, scattered(ray, surface, incident, -in.to_antenna, out.to_antenna));
+// Of all pairs of legs, each of which is followed once. The ray's own way to the hit is one of the transmit legs.
+void RayShooter::follow_legs(const Ray& ray, Scratch& scratch) const {
+  scratch.incident.clear();
+  scratch.axes.clear();
+  for (const Leg& in : scratch.transmit) scratch.incident.push_back(in.sequence == ray.sequence ? ray.polarized : incident_over(in));
+  for (const Leg& out : scratch.receive) scratch.axes.push_back(axes_over(out));
+}
+
+JonesMatrix RayShooter::pair_matrix(const Ray& ray, const Surface& surface, const Scratch& scratch, size_t in, size_t out) const {
+  const Vec3 arrival = -scratch.transmit[in].to_antenna;
+  return components(scattered(ray, surface, scratch.incident[in], arrival, scratch.receive[out].to_antenna), scratch.axes[out]);
 }
 
 }  // namespace echopath

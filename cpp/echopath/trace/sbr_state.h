@@ -73,6 +73,7 @@ struct RayShooter::Chain {
 
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
+  std::vector<FieldPair> incident, axes;  // of these, for pairs, where polarised (sbr_polarization.cpp)
   Chain chain;  // of rays that have left a diffuse hit
 };
 

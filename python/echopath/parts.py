@@ -7,12 +7,14 @@ from ._core import decompose as _decompose
 class Parts(dict):
     """{name: cube [tx, rx, chirp, sample] in sqrt(W)} of one partition, "other" last; made by `decompose`.
 
-    cubes: as above; selections: {name: selection} as they were given, without "other".
+    cubes: as above; selections: {name: selection} as they were given, without "other"
+    radar: that of the signals, None: not known
     """
 
-    def __init__(self, cubes, selections):
+    def __init__(self, cubes, selections, radar=None):
         super().__init__(cubes)
         self.selections = dict(selections)
+        self.radar = radar
 
 
 def decompose(paths, radar=None, parts=None, **settings):
@@ -27,6 +29,7 @@ def decompose(paths, radar=None, parts=None, **settings):
     """
     parts = {} if parts is None else parts
     cubes = _decompose(paths, radar, parts, **settings)
+    radar = paths.radar if radar is None else radar
     if parts and all(isinstance(group, dict) for group in parts.values()):
-        return {view: Parts(cubes[view], group) for view, group in parts.items()}
-    return Parts(cubes, parts)
+        return {view: Parts(cubes[view], group, radar) for view, group in parts.items()}
+    return Parts(cubes, parts, radar)

@@ -1,7 +1,6 @@
 """The model of the viewer, without VTK and Qt: filters, cells, selections, colours, against slow loops."""
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 
@@ -13,7 +12,6 @@ from echopath_viewer.model import (
     OWN_GROUP, WHOLE, CellBox, CellIndex, FilterError, Filters, Session, from_frame, from_paths, ray_segments,
 )
 from echopath_viewer.model.picking import nearest_segment
-from echopath_viewer.model.view_state import apply_state, load_state, save_state, state_of
 
 ROUNDING = 1e-9
 SINGLE = 2e-6    # relative, of positions kept in single precision
@@ -132,7 +130,7 @@ def test_a_part_named_in_the_viewer_is_the_map_of_what_was_visible(session):
     session.set_filters(Filters(expression="T .* 'wall_left' .* R"))
     part = session.add_part("left ghosts")
     mask = session.visible.copy()
-    alone = ep.range_doppler(ep.synthesize(session.paths.select(mask)), session.radar, **session.spectrum_settings)
+    alone = ep.range_doppler(ep.synthesize(session.paths.select(mask)), session.radar, **session.signals.spectrum_settings)
     assert np.abs(part.spectrum.values - alone.values).max() <= ROUNDING * np.abs(alone.values).max()
     session.set_filters(Filters())
     session.set_part((OWN_GROUP, "left ghosts"))
@@ -147,18 +145,75 @@ def test_a_part_named_in_the_viewer_is_the_map_of_what_was_visible(session):
         session.remove_part(("route", "ghost"))
 
 
+def wanted_map(session, paths):
+    """The map of some paths (indices) from the record alone."""
+    mask = np.zeros(session.paths.num_paths, bool)
+    mask[paths] = True
+    return ep.range_doppler(ep.synthesize(session.paths.select(mask)), session.radar).values
+
+
+def assert_same_map(part, wanted) -> None:
+    assert np.abs(part.spectrum.values - wanted).max() <= ROUNDING * np.abs(wanted).max()
+
+
+def paths_over(session, name: str, min_bounces: int) -> list:
+    return [path for path in range(session.paths.num_paths)
+            if name in hit_names(session, path) and session.paths.num_bounces[path] >= min_bounces]
+
+
 def test_the_spectrum_of_a_mesh_is_that_of_the_paths_that_hit_it(session):
     session.set_filters(Filters(min_bounces=2))
     session.select_node("walker/head")
     part, = session.parts.of_group("mesh")
-    slow = [path for path in range(session.paths.num_paths)
-            if "walker/head" in hit_names(session, path) and session.paths.num_bounces[path] >= 2]
-    assert np.array_equal(np.flatnonzero(part.mask), slow)
+    slow = paths_over(session, "walker/head", 2)
+    assert_same_map(part, wanted_map(session, slow))
+    session.set_part(part.key)
+    assert np.array_equal(np.flatnonzero(session.visible), slow)
     assert session.meshes_of_node() == {session.mesh_names.index("walker/head")}
     session.select_node("walker")
     assert session.meshes_of_node() == {0, 1} and [part.name for part in session.parts.of_group("mesh")] == ["walker"]
     session.select_node(None)
-    assert not session.parts.of_group("mesh")
+    assert not session.parts.of_group("mesh") and session.part_key == (WHOLE, WHOLE)
+
+
+@pytest.mark.parametrize("base", [(WHOLE, WHOLE), ("route", "ghost")])
+def test_the_map_of_a_mesh_does_not_depend_on_the_mesh_chosen_before(frame, base):
+    one, two = Session(from_frame(frame)), Session(from_frame(frame))
+    one.set_part(base)
+    one.select_node("walker/head")
+    two.set_part(base)
+    two.select_node("wall_left")
+    two.set_part(("mesh", "wall_left"))
+    two.select_node("walker/head")
+    (part,), (wanted,) = (session.parts.of_group("mesh") for session in (two, one))
+    assert np.array_equal(part.mask, wanted.mask) and np.array_equal(part.spectrum.values, wanted.spectrum.values)
+    assert two.part_key == base
+
+
+def test_the_map_of_a_mesh_follows_the_filters(session):
+    session.select_node("walker/head")
+    session.set_part(("mesh", "walker/head"))
+    for min_bounces in (2, 1):
+        session.set_filters(Filters(min_bounces=min_bounces))
+        slow = paths_over(session, "walker/head", min_bounces)
+        assert np.array_equal(np.flatnonzero(session.visible), slow)
+        session.refresh_node()
+        assert session.part_key == ("mesh", "walker/head")
+        assert_same_map(session.part, wanted_map(session, slow))
+    before = session.part
+    session.refresh_node()
+    assert session.part is before
+
+
+@pytest.mark.parametrize("hide", [lambda session: session.set_filters(Filters(min_bounces=3)),
+                                  lambda session: session.set_part(("count", "other"))])
+def test_a_chosen_ray_that_is_hidden_is_chosen_no_more(session, hide):
+    single = int(np.flatnonzero(session.paths.num_bounces == 1)[0])
+    session.select_ray(single)
+    session.set_filters(Filters(max_bounces=2))
+    assert session.ray == single
+    hide(session)
+    assert not session.visible[single] and session.ray is None
 
 
 def test_paths_with_parts_are_viewed_as_the_frame_is(frame):
@@ -172,8 +227,6 @@ def test_paths_with_parts_are_viewed_as_the_frame_is(frame):
             assert np.array_equal(part.mask, frame.part_of_path["route"] == index)
             wanted = frame.part_spectra["route"][name].values
             assert np.abs(part.spectrum.values - wanted).max() <= 1e-6 * np.abs(wanted).max()  # synthesis: 1e-7
-    unknown = from_paths(None, frame.paths, dict(cubes)).parts["parts", "ghost"]
-    assert unknown.mask is None and not unknown.is_known
     with pytest.raises(ValueError, match="scene"):
         from_paths(ep.Scene(), frame.paths)
 
@@ -288,43 +341,6 @@ def test_segments_behind_the_eye_are_not_picked():
     ends = np.array([[0, 1]])
     assert nearest_segment(np.array(behind), ends, clip_from_world, (100, 100), (50, 50), 5.0) is None
     assert nearest_segment(np.array(across), ends, clip_from_world, (100, 100), (75, 50), 5.0) == 0
-
-
-# --- state ---
-
-def test_a_view_is_saved_and_loaded(frame, tmp_path):
-    first = Session(from_frame(frame))
-    first.set_channel(0, 1)
-    first.set_filters(Filters(min_bounces=2, expression="T .* 'walker' .* R"))
-    first.add_part("mine")
-    first.set_part((OWN_GROUP, "mine"))
-    first.set_partition("count")
-    first.set_color_by("speed")
-    first.set_max_rays(123)
-    first.set_mesh_visible([1], False)
-    first.set_mesh_colour(2, (1, 2, 3))
-    first.set_chirp(7)
-    first.select_cells(CellBox(3, 60, 2, 20))
-    first.select_ray(11)
-    save_state(state_of(first), tmp_path / "view.json")
-    second = Session(from_frame(frame))
-    assert apply_state(second, load_state(tmp_path / "view.json")) == []
-    assert state_of(second) == state_of(first)
-    assert np.array_equal(second.visible, first.visible) and np.array_equal(second.lit, first.lit)
-
-
-def test_a_view_of_another_frame_says_what_does_not_fit(session):
-    state = state_of(session) | {"hidden_meshes": ["car"], "part": ["route", "lost"], "channel": [5, 0]}
-    misfits = apply_state(session, json.loads(json.dumps(state)))
-    assert any("car" in text for text in misfits) and any("lost" in text for text in misfits)
-    assert any("transmitter 5" in text for text in misfits)
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": "echopath view", "version": 99}'])
-def test_what_is_no_view_is_refused(tmp_path, text):
-    (tmp_path / "x.json").write_text(text)
-    with pytest.raises(ep.FileError, match="x.json"):
-        load_state(tmp_path / "x.json")
 
 
 # --- empty ---

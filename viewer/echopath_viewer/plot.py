@@ -9,7 +9,7 @@ import pyvista as pv
 
 import echopath as ep
 
-from .model import WHOLE, Filters, Part, PartSet, Session, ViewInput
+from .model import Filters, PartSet, Session, Signals, ViewInput, whole_part
 from .scene_builder import SceneBuilder
 
 NUM_RAYS = 300
@@ -34,6 +34,7 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     Raises ValueError naming the argument.
     """
     _refuse_unknown(unknown)
+    _check_numbers(paths.radar, tx, rx, num_rays, chirp)
     session = _session_of(scene, paths)
     session.set_max_rays(num_rays)
     session.set_color_by(color_by)
@@ -54,6 +55,15 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     return target
 
 
+def _check_numbers(radar, tx, rx, num_rays, chirp) -> None:
+    for name, value, count in (("tx", tx, len(radar.transmitters)), ("rx", rx, len(radar.receivers)),
+                               ("chirp", 0 if chirp is None else chirp, radar.waveform.num_chirps)):
+        if not 0 <= value < count:
+            raise ValueError(f"{name}: must lie in [0, {count - 1}], got {value}")
+    if num_rays < 0:
+        raise ValueError(f"num_rays: must not be negative, got {num_rays}")
+
+
 def _new_plotter(off_screen, window_size):
     """Without a screen VTK would look for one first, and say aloud that it found none."""
     if off_screen and sys.platform == "linux" and not os.environ.get("DISPLAY"):
@@ -69,8 +79,8 @@ def _session_of(scene, paths) -> Session:
     radar = paths.radar
     shape = len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
     cube = np.zeros(shape, complex)
-    whole = Part(WHOLE, WHOLE, ep.range_doppler(cube, radar))
-    return Session(ViewInput(paths, PartSet(whole), {}, cube))
+    signals = Signals(paths, {})
+    return Session(ViewInput(paths, PartSet(whole_part(signals.map_of(cube))), signals, cube))
 
 
 def _refuse_unknown(unknown: dict) -> None:

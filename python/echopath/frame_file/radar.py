@@ -54,7 +54,7 @@ def _write_tables(group, patterns) -> None:
     if not any(pattern.kind == "table" for pattern in patterns):
         return
     numbers = {}
-    table_of_antenna = [-1 if pattern.kind != "table" else numbers.setdefault(_table_key(pattern), len(numbers))
+    table_of_antenna = [-1 if pattern.kind != "table" else numbers.setdefault(table_key(pattern), len(numbers))
                         for pattern in patterns]
     write_array(group, "table", np.array(table_of_antenna, np.int32))
     tables = group.create_group("tables")
@@ -67,7 +67,7 @@ def _write_tables(group, patterns) -> None:
             write_array(table, "phase", pattern.table_phase, unit="rad")
 
 
-def _table_key(pattern) -> tuple:
+def table_key(pattern) -> tuple:
     arrays = (pattern.azimuth, pattern.elevation, pattern.table_gain, pattern.table_phase)
     return tuple(None if array is None else array.tobytes() for array in arrays)
 

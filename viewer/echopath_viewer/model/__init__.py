@@ -3,13 +3,14 @@ from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, Colouring, Legend, colour_rays, mesh_palette
 from .columns import Columns, read_columns
 from .filters import FilterError, Filters
-from .inputs import ViewInput, from_file, from_frame, from_paths
+from .inputs import ViewInput, from_file, from_frame, from_paths, whole_part
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, PartSet
 from .segments import Segments, ray_segments
 from .session import Session
+from .signals import Signals
 
 __all__ = [
     "COLOUR_MODES", "CellBox", "CellIndex", "Colouring", "Columns", "FilterError", "Filters", "Legend", "MESH_GROUP",
-    "OWN_GROUP", "Part", "PartSet", "Segments", "Session", "ViewInput", "WHOLE", "colour_rays", "from_file", "from_frame",
-    "from_paths", "mesh_palette", "ray_segments", "read_columns",
+    "OWN_GROUP", "Part", "PartSet", "Segments", "Session", "Signals", "ViewInput", "WHOLE", "colour_rays", "from_file",
+    "from_frame", "from_paths", "mesh_palette", "ray_segments", "read_columns", "whole_part",
 ]

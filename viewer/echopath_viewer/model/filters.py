@@ -45,6 +45,17 @@ class Filters:
                 mask &= _checked(field, lambda text=text, parse=parse: matches(parse(text)))
         return mask
 
+    def selection(self):
+        """The same in words, a Selection; None for a filter by power, which has none. The texts are good ones."""
+        if self.min_power_dbm is not None:
+            return None
+        selection = ep.Selection.num_bounces(self.min_bounces, self.max_bounces if self.max_bounces < MAX_BOUNCES else None)
+        for field, parse in (("mesh", _touching), ("expression", ep.parse_selection)):
+            text = getattr(self, field).strip()
+            if text:
+                selection = selection & parse(text)
+        return selection
+
     def describe(self) -> str:
         """In a few words; "" where nothing is filtered."""
         words = []

@@ -7,18 +7,20 @@ import numpy as np
 
 import echopath as ep
 from echopath.path_subset import part_of_path
+from echopath.same_radar import difference
 from echopath.simulate import as_partitions
 
-from .part_set import WHOLE, Part, PartSet, spectrum_of
+from .part_set import WHOLE, Part, PartSet
+from .signals import Signals, all_paths, selections_of
 
 
 @dataclasses.dataclass
 class ViewInput:
-    """Paths and parts with the settings of the maps; cube: the whole [tx, rx, chirp, sample]; title: of the window."""
+    """Paths and parts; signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window."""
 
     paths: object
     parts: PartSet
-    spectrum_settings: dict
+    signals: Signals
     cube: np.ndarray
     title: str = ""
 
@@ -32,26 +34,34 @@ def from_frame(frame, title: str = "") -> ViewInput:
     """A simulated frame; one that is only a record of paths is synthesised."""
     if frame.cube is None:
         return from_paths(frame.scene, frame.paths, title=title)
-    parts = [Part(partition, name, frame.part_spectra[partition][name], frame.part_of_path[partition] == index)
-             for partition, cubes in frame.parts.items() for index, name in enumerate(cubes)]
-    return ViewInput(frame.paths, PartSet(Part(WHOLE, WHOLE, frame.spectrum), parts), dict(frame.spectrum_settings),
-                     frame.cube, title)
+    parts = [Part(partition, name, frame.part_spectra[partition][name], frame.part_of_path[partition] == index, selection)
+             for partition, cubes in frame.parts.items()
+             for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
+    signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
+                      getattr(frame, "keyframes", 0))
+    return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title)
 
 
-def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, title: str = "") -> ViewInput:
+def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate="interpolated", retrace="never",
+               keyframes=0, title: str = "") -> ViewInput:
     """Paths of a trace with parts of them.
 
     scene: that of the paths, or None; parts: of `decompose`, or selections {name: selection}, one partition or several
-    window, zero_pad: of the maps.
+    window, zero_pad: of the maps; evaluate, retrace, keyframes: of the signals, as in `synthesize`
+    Raises ValueError for another scene and for parts of another radar.
     """
     if scene is not None and len(scene.meshes) != len(paths.scene.meshes):
         raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
                          f"got one with {len(scene.meshes)}")
-    settings = {"window": window, "zero_pad": zero_pad}
-    cube = ep.synthesize(paths)
-    made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, paths, settings)]
-    whole = Part(WHOLE, WHOLE, ep.range_doppler(cube, paths.radar, **settings))
-    return ViewInput(paths, PartSet(whole, made), settings, cube, title)
+    signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
+    made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
+    cube = ep.synthesize(paths, **signals.settings)
+    return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title)
+
+
+def whole_part(spectrum) -> Part:
+    """The whole signal as a part, by its map."""
+    return Part(WHOLE, WHOLE, spectrum, selection=all_paths())
 
 
 def _partitions(parts) -> dict:
@@ -61,12 +71,24 @@ def _partitions(parts) -> dict:
     return as_partitions(parts) and {"parts": parts}
 
 
-def _parts_of(partition: str, group, paths, settings: dict) -> list[Part]:
+def _parts_of(partition: str, group, signals: Signals) -> list[Part]:
+    _check_radar(group, signals.paths)
     cubes, selections = group, getattr(group, "selections", None)
     if not any(isinstance(value, np.ndarray) for value in group.values()):
-        cubes, selections = ep.decompose(paths, None, group), group
-    spectra = {name: ep.range_doppler(cube, paths.radar, **settings) for name, cube in cubes.items()}
+        cubes, selections = ep.decompose(signals.paths, None, group, **signals.settings), group
+    spectra = {name: signals.map_of(cube) for name, cube in cubes.items()}
     if selections is None:
-        return [Part(partition, name, spectrum, is_known=False) for name, spectrum in spectra.items()]
-    labels = part_of_path(paths, selections)
-    return [Part(partition, name, spectrum, labels == index) for index, (name, spectrum) in enumerate(spectra.items())]
+        none = np.zeros(signals.paths.num_paths, bool)
+        return [Part(partition, name, spectrum, none, is_known=False) for name, spectrum in spectra.items()]
+    labels = part_of_path(signals.paths, selections)
+    return [Part(partition, name, spectrum, labels == index, selection)
+            for index, ((name, spectrum), selection) in enumerate(zip(spectra.items(), selections_of(selections)))]
+
+
+def _check_radar(group, paths) -> None:
+    """The axes of a map, the cells of paths and where the antennas are belong to the radar of the trace."""
+    radar = getattr(group, "radar", None)
+    name = "" if radar is None else difference(radar, paths.radar, paths.frame.start_time)
+    if name:
+        raise ValueError(f"parts: must be of the radar that traced the paths, got signals of one with another {name}; "
+                         "trace with that radar to view them")

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 
-import echopath as ep
 from echopath.plots import power_dbm
 
 WHOLE = "whole"
@@ -20,14 +19,16 @@ class Part:
     """One map and the paths behind it.
 
     group, name: its partition and its name there; the whole has both "whole"
-    spectrum: RangeDoppler; mask: bool [P], None: all paths
-    is_known: False for signals that were given without a word on their paths; recipe: how to make it again, for saving.
+    spectrum: RangeDoppler; mask: bool [P], None: all paths; selection: the same paths in words, None: there are none
+    is_known: False for signals that were given without a word on their paths: their mask holds none
+    recipe: how to make it again, for saving
     """
 
     group: str
     name: str
     spectrum: object
     mask: np.ndarray | None = None
+    selection: object = None
     is_known: bool = True
     recipe: dict | None = None
     _levels: dict = dataclasses.field(default_factory=dict)
@@ -89,8 +90,3 @@ class PartSet:
         """The upper end of the colour scale in dBm: the peak of the whole, up to the next multiple of 5."""
         return 5.0 * math.ceil(float(self.whole.level(tx, rx).max()) / 5.0)
 
-
-def spectrum_of(paths, mask, settings: dict, progress=None):
-    """The map of some paths without noise; mask: bool [P], settings: of `range_doppler`."""
-    cube = ep.synthesize(paths.select(mask), paths.radar, progress=progress)
-    return ep.range_doppler(cube, paths.radar, **settings)

@@ -12,8 +12,9 @@ from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays, mesh_palette
 from .columns import read_columns
 from .filters import Filters
-from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, spectrum_of
+from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
 from .segments import ray_segments
+from .signals import both
 from .slow_time import power_by_chirp
 
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
@@ -32,7 +33,7 @@ class Session:
         self.paths, self.parts = view_input.paths, view_input.parts
         self.scene, self.radar = self.paths.scene, self.paths.radar
         self.title, self.cube = view_input.title, view_input.cube
-        self.spectrum_settings = view_input.spectrum_settings
+        self.signals = view_input.signals
         self.mesh_names = [mesh.name for mesh in self.scene.meshes]
         self.palette = mesh_palette(self.scene)
         self.hidden_meshes: set[int] = set()
@@ -44,6 +45,8 @@ class Session:
         self.box: CellBox | None = None
         self.ray: int | None = None
         self.node: str | None = None
+        self.node_base = WHOLE, WHOLE  # the part whose paths the map of the node is made of
+        self.is_node_stale = False     # that map is of other filters
         self.chirp = self.radar.waveform.num_chirps // 2
         self._listeners, self._matches = [], OrderedDict()
         self._read_channel(0, 0)
@@ -68,6 +71,7 @@ class Session:
     def set_channel(self, tx: int, rx: int) -> None:
         """Another pair of antennas: powers, ranges, cells and maps are its own."""
         self._read_channel(tx, rx)
+        self.is_node_stale |= self.node is not None and self.filters.min_power_dbm is not None
         self._refresh_visible()
         self._tell("rays", "maps", "selection")
 
@@ -109,6 +113,7 @@ class Session:
     def set_filters(self, filters: Filters) -> None:
         """Raises FilterError, and keeps the filters as they were, for a text that is not understood."""
         mask = filters.mask(self.columns, self.matches)
+        self.is_node_stale |= self.node is not None and filters != self.filters
         self.filters = filters
         self._set_visible(mask)
         self._tell("rays", "selection")
@@ -135,6 +140,8 @@ class Session:
 
     def _set_visible(self, mask) -> None:
         self.visible = mask if self.part.mask is None else mask & self.part.mask
+        if self.ray is not None and not self.visible[self.ray]:
+            self.ray = None
         self._lit = self._lit_rays = None
         self._visible_rays = self._strongest(self.visible)
 
@@ -216,23 +223,56 @@ class Session:
 
     def select_node(self, name: str | None, progress=None) -> None:
         """Selects a mesh or a group of meshes by its full name and makes the map of the visible paths that hit it; None
-        takes that map away."""
-        part = None if name is None else self._part_of_node(name, progress)
-        self.node = name
-        was_shown = self.part_key[0] == MESH_GROUP
+        takes that map away.
+
+        A map of another mesh is left first: the part below it says which paths there are. Raises ValueError for what has no
+        signal of its own; the mesh is selected then too.
+        """
+        self._make_node(name, self.node_base if self._is_node_shown else self.part_key, progress)
+
+    def refresh_node(self, progress=None) -> None:
+        """Makes the map of the selected mesh anew where the filters have changed since. Raises as `select_node`."""
+        if self.node is None or not self.is_node_stale:
+            return
+        was_shown = self._is_node_shown
+        self._make_node(self.node, self.node_base, progress)
+        if was_shown:
+            self.set_part((MESH_GROUP, self.node))
+
+    @property
+    def _is_node_shown(self) -> bool:
+        return self.part_key[0] == MESH_GROUP
+
+    def _make_node(self, name: str | None, base: tuple, progress) -> None:
+        base = base if base in self.parts else (WHOLE, WHOLE)
+        try:
+            part = None if name is None else self._part_of_node(name, base, progress)
+        except ValueError:
+            self._replace_node(name, base, None)
+            raise
+        self._replace_node(name, base, part)
+
+    def _replace_node(self, name: str | None, base: tuple, part: Part | None) -> None:
+        self.node, self.node_base, self.is_node_stale = name, base, False
+        was_shown = self._is_node_shown
         for old in self.parts.of_group(MESH_GROUP):
             self.parts.remove(old.key)
         if part is not None:
             self.parts.add(part)
         if was_shown:
-            self.part_key = (WHOLE, WHOLE)
+            self.part_key = base
             self._refresh_visible()
-            self._tell("rays")
+            self._tell("rays", "selection")
         self._tell("maps", "meshes")
 
-    def _part_of_node(self, name: str, progress) -> Part:
-        mask = self.visible & self.matches(ep.hits(name))
-        return Part(MESH_GROUP, name, spectrum_of(self.paths, mask, self.spectrum_settings, progress), mask)
+    def _part_of_node(self, name: str, base: tuple, progress) -> Part:
+        """Its mask holds all paths of the part below, its map those that pass the filters."""
+        below, hits = self.parts[base], ep.hits(name)
+        mask = self.matches(hits) if below.mask is None else below.mask & self.matches(hits)
+        selection = both(below.selection, hits)
+        shown = mask & self.filters.mask(self.columns, self.matches)
+        spectrum = self.signals.spectrum(shown, both(selection, self.filters.selection()), progress)
+        return Part(MESH_GROUP, name, spectrum, mask, selection)
 
     def meshes_of_node(self) -> set:
         """IDs of the meshes that are selected."""
@@ -250,13 +290,17 @@ class Session:
             raise ValueError("name: must not be empty")
         if any(part.name == name for part in self.parts.shown_beside(self.partition)):
             raise ValueError(f"name: '{name}' is taken")
-        mask = self.visible.copy()
-        spectrum = spectrum_of(self.paths, mask, self.spectrum_settings, progress)
-        recipe = {"part": list(self.part_key), "filters": dataclasses.asdict(self.filters)}
-        part = Part(OWN_GROUP, name, spectrum, mask, recipe=recipe)
+        mask, selection = self.visible.copy(), both(self.part.selection, self.filters.selection())
+        spectrum = self.signals.spectrum(mask, selection, progress)
+        part = Part(OWN_GROUP, name, spectrum, mask, selection, recipe=self._recipe())
         self.parts.add(part)
         self._tell("maps")
         return part
+
+    def _recipe(self) -> dict:
+        base, node = (self.node_base, self.node) if self._is_node_shown else (self.part_key, None)
+        return {"part": list(base), "node": node,
+                "filters": dataclasses.asdict(self.filters)}
 
     def remove_part(self, key: tuple) -> None:
         """Takes away a part that was named in the viewer. Raises ValueError for another one."""
@@ -284,8 +328,9 @@ class Session:
         return int(cells.range_index[path]), int(cells.velocity_index[path])
 
     def slow_time_power(self, progress=None):
-        """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole."""
-        cube = self.cube if self.box is None else ep.synthesize(self.paths.select(self.lit), progress=progress)
+        """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole. Raises ValueError where those
+        rays have no signal of their own."""
+        cube = self.cube if self.box is None else self.signals.cube(self.lit, progress=progress)
         return power_by_chirp(cube, *self.channel)
 
     def explain(self, path: int) -> list[tuple]:

@@ -9,10 +9,8 @@ import echopath as ep
 from .cell_index import CellBox
 from .colours import COLOUR_MODES
 from .filters import Filters
-from .part_set import OWN_GROUP, WHOLE
-
-FORMAT = "echopath view"
-VERSION = 1
+from .part_set import MESH_GROUP, OWN_GROUP, WHOLE
+from .view_format import FORMAT, VERSION, check_state
 
 
 def state_of(session) -> dict:
@@ -20,6 +18,7 @@ def state_of(session) -> dict:
     return {
         "format": FORMAT, "version": VERSION, "frame": session.title, "filters": dataclasses.asdict(session.filters),
         "own_parts": {part.name: part.recipe for part in session.parts.of_group(OWN_GROUP)},
+        "node": session.node, "node_base": list(session.node_base),
         "part": list(session.part_key), "partition": session.partition, "channel": list(session.channel),
         "color_by": session.color_by, "max_rays": session.max_rays, "dynamic_range_db": session.dynamic_range_db,
         "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None, "ray": session.ray,
@@ -29,22 +28,23 @@ def state_of(session) -> dict:
 
 
 def apply_state(session, state: dict) -> list[str]:
-    """Takes over a state as far as it fits the frame; returns what did not. Raises ValueError for what is no state."""
-    _check(state)
+    """Takes over a state as far as it fits the frame; returns what did not. Raises ValueError for what is no state, and
+    has changed nothing then."""
+    check_state(state)
     misfits = []
     session.set_channel(*_channel(session, state, misfits))
+    _attempt(misfits, "partition", lambda: _set_partition(session, state.get("partition")))
     for name, recipe in state.get("own_parts", {}).items():
         _attempt(misfits, f"part '{name}'", lambda: _add_part(session, name, recipe))
-    _attempt(misfits, "partition", lambda: _set_partition(session, state.get("partition")))
-    _attempt(misfits, "part", lambda: _set_part(session, tuple(state.get("part", (WHOLE, WHOLE)))))
     _attempt(misfits, "filters", lambda: session.set_filters(Filters(**state.get("filters", {}))))
+    _attempt(misfits, "mesh", lambda: _set_node(session, state.get("node"), state.get("node_base", (WHOLE, WHOLE))))
+    _attempt(misfits, "part", lambda: _set_part(session, state.get("part", (WHOLE, WHOLE))))
     _apply_looks(session, state, misfits)
-    session.set_chirp(int(state.get("chirp", session.chirp)))
-    box = state.get("box")
-    _attempt(misfits, "cells", lambda: session.select_cells(CellBox(*map(int, box)) if box else None))
+    session.set_chirp(state.get("chirp", session.chirp))
+    _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box")))
     ray = state.get("ray")
-    if ray is not None and 0 <= int(ray) < session.paths.num_paths:
-        session.select_ray(int(ray))
+    if ray is not None and ray < session.paths.num_paths and session.visible[ray]:
+        session.select_ray(ray)
     return misfits
 
 
@@ -61,7 +61,7 @@ def load_state(path) -> dict:
     try:
         with open(path, encoding="utf-8") as file:
             state = json.load(file)
-        _check(state)
+        check_state(state)
     except OSError as error:
         raise ep.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except ValueError as error:
@@ -69,17 +69,10 @@ def load_state(path) -> dict:
     return state
 
 
-def _check(state) -> None:
-    if not isinstance(state, dict) or state.get("format") != FORMAT:
-        raise ValueError(f"its format is not '{FORMAT}'")
-    if state.get("version") != VERSION:
-        raise ValueError(f"it has version {state.get('version')}, this program reads {VERSION}")
-
-
 def _attempt(misfits: list, what: str, work) -> None:
     try:
         work()
-    except (ValueError, TypeError, KeyError) as error:
+    except ValueError as error:
         misfits.append(f"{what}: {error}")
 
 
@@ -96,15 +89,34 @@ def _add_part(session, name: str, recipe: dict) -> None:
         return
     before = session.part_key, session.filters
     try:
-        _set_part(session, tuple(recipe["part"]))
         session.set_filters(Filters(**recipe["filters"]))
+        _set_part(session, recipe["part"])
+        if recipe.get("node") is not None:
+            _set_node(session, recipe["node"], recipe["part"])
+            _set_part(session, (MESH_GROUP, recipe["node"]))
         session.add_part(name)
     finally:
-        session.set_part(before[0])
+        session.select_node(None)
+        session.set_part(before[0] if before[0] in session.parts else (WHOLE, WHOLE))
         session.set_filters(before[1])
 
 
-def _set_part(session, key: tuple) -> None:
+def _select_cells(session, box) -> None:
+    spectrum = session.parts.whole.spectrum
+    if box is not None and not (box[0] < len(spectrum.range) and box[2] < len(spectrum.velocity)):
+        raise ValueError(f"the map has no cells {list(box)}")
+    session.select_cells(None if box is None else CellBox(*box))
+
+
+def _set_node(session, name: str | None, base) -> None:
+    if name is not None and name not in [node.name for node in session.scene.nodes]:
+        raise ValueError(f"there is no '{name}'")
+    _set_part(session, base)
+    session.select_node(name)
+
+
+def _set_part(session, key) -> None:
+    key = tuple(key)
     if key not in session.parts:
         raise ValueError(f"there is no part '{key[-1]}'")
     session.set_part(key)
@@ -119,8 +131,8 @@ def _set_partition(session, partition) -> None:
 def _apply_looks(session, state: dict, misfits: list) -> None:
     if state.get("color_by") in COLOUR_MODES:
         session.set_color_by(state["color_by"])
-    session.set_max_rays(int(state.get("max_rays", session.max_rays)))
-    session.set_dynamic_range(float(state.get("dynamic_range_db", session.dynamic_range_db)))
+    session.set_max_rays(state.get("max_rays", session.max_rays))
+    session.set_dynamic_range(state.get("dynamic_range_db", session.dynamic_range_db))
     number_of = {name: number for number, name in enumerate(session.mesh_names)}
     unknown = [name for name in state.get("hidden_meshes", []) if name not in number_of]
     misfits += [f"hidden mesh: there is no '{name}'" for name in unknown]

@@ -57,7 +57,8 @@ class SceneBuilder:
 
     def set_moving(self, is_moving: bool) -> None:
         """Fewer rays as long as the camera moves."""
-        self.rays.show_first(MAX_RAYS_MOVING if is_moving else None)
+        for layer in (self.rays, self.lit):
+            layer.show_first(MAX_RAYS_MOVING if is_moving else None)
 
     def look(self, view: str) -> None:
         """Turns the camera: a name of VIEWS."""

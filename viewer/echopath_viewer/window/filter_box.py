@@ -7,6 +7,7 @@ from .qt import QtCore, QtGui, QtWidgets, Signal
 
 TYPING_PAUSE_MS = 350
 COUNT_LINES = 3
+UNKNOWN_PATHS = "Which paths are behind this map is not known: its signal was given without selections."
 ERROR_WIDTH = 34  # letters
 EXAMPLE = "T .* 'wall*' .* R"
 EXPRESSION_HELP = """Path expression: T and R are the radar, between them each hit is . (any), a quoted mesh 'pedestrian/*',
@@ -136,6 +137,9 @@ class FilterBox(QtWidgets.QWidget):
         with QtCore.QSignalBlocker(self.colour_box), QtCore.QSignalBlocker(self.limit_box):
             self.colour_box.setCurrentText(session.color_by)
             self.limit_box.setValue(session.max_rays)
+        if not session.part.is_known:
+            self.count_label.setText(UNKNOWN_PATHS)
+            return
         text = f"{visible:,} of {session.paths.num_paths:,} paths"
         if session.box is not None:
             text += f", {int(session.lit.sum()):,} of them in the selected cells"

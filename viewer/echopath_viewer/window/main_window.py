@@ -4,6 +4,8 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
+import numpy as np
+
 import echopath as ep
 from echopath.files import written_whole
 
@@ -26,6 +28,7 @@ TITLE = "Echopath"
 SIZE = (1600, 960)
 VIEW_TITLES = {"radar": "Radar's eye", "top": "Top", "side": "Side", "fit": "Fit"}
 CONTENT_PAGE, EMPTY_PAGE = 0, 1
+SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: they may take longer than a step of a box
 
 
 class MainWindow(QtWidgets.QMainWindow):
@@ -41,7 +44,8 @@ class MainWindow(QtWidgets.QMainWindow):
         self.time_bar, self.map_area, self.table = TimeBar(), MapArea(), RayTable()
         self.banner, self.empty_page = Banner(), EmptyPage()
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
-        self._stale = set()
+        self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
+        self._stale, self._signal_of = set(), None
         self._arrange()
         self._add_actions()
         self._connect()
@@ -103,18 +107,35 @@ class MainWindow(QtWidgets.QMainWindow):
         if stale & {"rays", "selection", "colours"}:
             self.filter_box.show_counts()
         if stale & {"selection", "rays"}:
+            self._pause.start()
+
+    def _refresh_signals(self) -> None:
+        """What takes synthesis: the map of the selected mesh, and the slow-time signal where it is of other rays now."""
+        self._work_on_node(f"Map of {self.session.node}", self.session.refresh_node)
+        lit, channel, of = self.session.lit, self.session.channel, self._signal_of
+        if of is None or of[1] != channel or not _same_rays(of[0], lit):
             self._show_slow_time()
 
     def _show_slow_time(self) -> None:
         session = self.session
-        power = run_with_progress(self, "Signal of the selected rays", lambda progress: session.slow_time_power(progress))
+        self._signal_of = session.lit, session.channel
+        title = f"Power by chirp, {'everything' if session.box is None else 'the selected rays'}"
+        try:
+            power = run_with_progress(self, "Signal of the selected rays", session.slow_time_power)
+        except ValueError as error:
+            power, title = [], str(error)
         if power is not None:
-            what = "the selected rays" if session.box is not None else "everything"
-            self.time_bar.show_power(power, f"Power by chirp, {what}")
+            self.time_bar.show_power(power, title)
 
     def _choose_node(self, name: str) -> None:
         wanted = None if name == self.session.node else name
-        run_with_progress(self, f"Map of {name}", lambda progress: self.session.select_node(wanted, progress))
+        self._work_on_node(f"Map of {name}", lambda progress: self.session.select_node(wanted, progress))
+
+    def _work_on_node(self, title: str, work) -> None:
+        try:
+            run_with_progress(self, title, work)
+        except ValueError as error:
+            self.show_message(str(error))
 
     def _name_part(self, name: str) -> None:
         self.filter_box.apply()
@@ -297,6 +318,7 @@ class MainWindow(QtWidgets.QMainWindow):
 
     def _connect(self) -> None:
         self._listing.timeout.connect(self._refresh_lists)
+        self._pause.timeout.connect(self._refresh_signals)
         self.tree.node_clicked.connect(self._choose_node)
         self.tree.rays_wanted.connect(self._only_over)
         self.filter_box.part_named.connect(self._name_part)
@@ -330,10 +352,16 @@ class MainWindow(QtWidgets.QMainWindow):
     def closeEvent(self, event):  # noqa: N802
         self.time_bar.stop()
         self._listing.stop()
+        self._pause.stop()
         self.session = None
         self.view3d.builder = None
         self.view3d.close()
         super().closeEvent(event)
+
+
+def _same_rays(before, after) -> bool:
+    """bool [P] or None: none are chosen."""
+    return before is after or (before is not None and after is not None and np.array_equal(before, after))
 
 
 def _splitter(orientation, *widgets) -> QtWidgets.QSplitter:

@@ -76,7 +76,7 @@ class MapArea(QtWidgets.QWidget):
         for tx in range(len(radar.transmitters)):
             for rx in range(len(radar.receivers)):
                 self.channel_box.addItem(f"TX {tx}, RX {rx}", (tx, rx))
-        self.reach_box.setValue(int(session.spectrum_settings.get("zero_pad", 1)) // 2)
+        self.reach_box.setValue(int(session.signals.spectrum_settings.get("zero_pad", 1)) // 2)
         self._find_views()
         self.view = QtCore.QRectF(self.near_view)
         self.rebuild()

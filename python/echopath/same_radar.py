@@ -1,0 +1,36 @@
+"""Whether two radars would receive the same."""
+from __future__ import annotations
+
+import numpy as np
+
+from .frame_file.radar import WAVEFORM_KINDS, table_key
+
+_NUM_TIMES = 5  # at which motions are compared, over the frame
+
+
+def difference(radar, other, start_time: float = 0.0) -> str:
+    """The name of the first field in which two radars differ, "" where they receive the same.
+
+    start_time: s, of the frame: motions are compared by where they carry the radar during it.
+    """
+    if radar is other:
+        return ""
+    for name in WAVEFORM_KINDS:
+        if getattr(radar.waveform, name) != getattr(other.waveform, name):
+            return name
+    for name in ("transmit_power", "multiplexing"):
+        if getattr(radar, name) != getattr(other, name):
+            return name
+    for name in ("transmitters", "receivers"):
+        if list(map(_antenna_key, getattr(radar, name))) != list(map(_antenna_key, getattr(other, name))):
+            return name
+    times = start_time + np.linspace(0.0, radar.frame_duration, _NUM_TIMES)
+    moves_alike = all(np.array_equal(radar.world_from_radar(time), other.world_from_radar(time)) for time in times)
+    return "" if moves_alike else "motion"
+
+
+def _antenna_key(antenna) -> tuple:
+    pattern = antenna.pattern
+    table = table_key(pattern) if pattern.kind == "table" else None
+    vectors = (tuple(np.ravel(getattr(antenna, name))) for name in ("position", "orientation", "polarization"))
+    return *vectors, pattern.kind, pattern.peak_gain, pattern.exponent, table

@@ -1,0 +1,74 @@
+"""The signal of some of the paths, made as that of the frame was."""
+from __future__ import annotations
+
+import dataclasses
+
+import echopath as ep
+
+NO_WORDS = ("signal: this frame is traced anew within (retrace='{}'), so that its later paths are known by expressions alone; "
+            "rays chosen by power, by cells or by signals without selections have no signal of their own")
+
+
+@dataclasses.dataclass(frozen=True)
+class Signals:
+    """paths: of `trace`; spectrum_settings: of `range_doppler`; evaluate, retrace, keyframes: of `synthesize`."""
+
+    paths: object
+    spectrum_settings: dict
+    evaluate: str = "interpolated"
+    retrace: str = "never"
+    keyframes: int = 0
+
+    @property
+    def settings(self) -> dict:
+        """Keywords of `synthesize` and `decompose`."""
+        return {"evaluate": self.evaluate, "retrace": self.retrace, "keyframes": self.keyframes}
+
+    @property
+    def is_sum_over_paths(self) -> bool:
+        """Whether the paths of the record are all there are, in stretches that do not depend on which of them are taken."""
+        return self.retrace == "never" or (self.retrace == "invalid" and self.keyframes > 0)
+
+    def cube(self, mask, selection=None, progress=None):
+        """The signal of some paths, without noise: complex [tx, rx, chirp, sample], sqrt(W).
+
+        mask: bool [P]; selection: the same in words, None: there are none
+        Raises ValueError where the frame is traced anew and there are no words.
+        """
+        if self.is_sum_over_paths:
+            return ep.synthesize(self.paths.select(mask), progress=progress, **self.settings)
+        if selection is None:
+            raise ValueError(NO_WORDS.format(self.retrace))
+        return ep.decompose(self.paths, None, {"shown": selection}, progress=progress, **self.settings)["shown"]
+
+    def spectrum(self, mask, selection=None, progress=None):
+        """The map of the same, RangeDoppler."""
+        return self.map_of(self.cube(mask, selection, progress))
+
+    def map_of(self, cube):
+        """The map of a cube, RangeDoppler."""
+        return ep.range_doppler(cube, self.paths.radar, **self.spectrum_settings)
+
+
+def both(first, second):
+    """The selection of what two take; None where one of them has no words."""
+    return None if first is None or second is None else first & second
+
+
+def selections_of(group: dict) -> list:
+    """The selection of each part of a partition {name: selection}, where the first that takes a path has it, and of the
+    rest."""
+    taken, found = None, []
+    for selection in map(_selection, group.values()):
+        found.append(selection if taken is None else selection & ~taken)
+        taken = selection if taken is None else taken | selection
+    return [*found, all_paths() if taken is None else ~taken]
+
+
+def all_paths():
+    """The selection of every path."""
+    return ep.num_bounces >= 0
+
+
+def _selection(words):
+    return ep.parse_selection(words) if isinstance(words, str) else words

@@ -101,6 +101,15 @@ def test_sphere_has_its_vertices_on_the_surface_and_20_n2_triangles():
     assert np.linalg.norm(corners(by_edge) - np.roll(corners(by_edge), 1, axis=1), axis=-1).max() <= 0.3
 
 
+def test_round_bodies_have_their_vertices_on_the_surface():
+    axes = np.array([2.2, 0.9, 0.7])
+    mesh = ep.actors.ellipsoid(axes, edge=0.1)
+    np.testing.assert_allclose(np.sum((mesh.vertices / axes) ** 2, axis=1), 1.0, rtol=ROUNDING)
+    capsule = ep.actors.capsule(0.1, 1.0).vertices
+    from_axis = capsule - np.outer(np.clip(capsule[:, 2], -0.4, 0.4), [0, 0, 1])
+    np.testing.assert_allclose(np.linalg.norm(from_axis, axis=1), 0.1, rtol=ROUNDING)
+
+
 def test_ground_looks_up_and_wall_towards_the_street():
     ground = ep.actors.ground((4.0, 2.0), z=-0.3)
     np.testing.assert_allclose(normals(ground), [[0, 0, 1]] * 2, atol=ROUNDING)

@@ -131,14 +131,19 @@ def _ring_places(section, begin, end, edge):
 def _ring(value, edge, offset):
     """Points [M, 2] at equal distances on a superellipse, counter-clockwise; the first `offset` distances from +u."""
     angle = np.linspace(0.0, 2.0 * np.pi, RING_SAMPLES + 1)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    power = 2.0 / value[4]
-    curve = np.column_stack([value[0] + value[2] * np.sign(cosine) * np.abs(cosine) ** power,
-                             value[1] + value[3] * np.sign(sine) * np.abs(sine) ** power])
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
+    steps = np.diff(_superellipse(value, angle), axis=0)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     count = max(5, int(round(along[-1] / edge)))
     at = (np.arange(count) + offset) / count * along[-1]
-    return np.column_stack([np.interp(at, along, curve[:, 0]), np.interp(at, along, curve[:, 1])])
+    return _superellipse(value, np.interp(at, along, angle))
+
+
+def _superellipse(value, angle):
+    """Points [M, 2] of the section `value` [5] (see swept) at angles [M] in rad of its parameter."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    power = 2.0 / value[4]
+    return np.column_stack([value[0] + value[2] * np.sign(cosine) * np.abs(cosine) ** power,
+                            value[1] + value[3] * np.sign(sine) * np.abs(sine) ** power])
 
 
 def _band(num_lower, num_upper, lower_offset, upper_offset):

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.bench import closed_forms, targets
-from echopath.bench.physics import DEFAULT, Variant, _point
+from echopath.bench.physics import DEFAULT, Variant, _point, _slope, plate_pairs
 from echopath.bench.report import describe
 from echopath.cli import main
 
@@ -46,6 +46,19 @@ def test_target_is_its_closed_form(target):
     assert _point(target, DEFAULT, 2 ** 14, 3)["rms_db"] < LIMITS[target.name]
 
 
+def test_slope_is_that_of_errors_that_mean_something_and_are_not_settled():
+    rays = [2 ** exponent for exponent in range(6, 17)]
+    law = [{"num_rays": count, "rms_db": 200.0 / count if count > 64 else 40.0} for count in rays]
+    settled = [{**point, "rms_db": max(point["rms_db"], 0.006)} for point in law]
+    assert _slope(settled, "rms_db") == pytest.approx(-1.0, abs=0.01)
+    assert _slope(law[:2], "rms_db") is None
+
+
+def test_filter_costs_plates_nothing():
+    (pair,) = plate_pairs(5.0, [2 ** 14], 3)
+    assert abs(pair["margin_db"]) < 0.02 * pair["unfiltered_db"] and pair["shifts"] == 6
+
+
 @pytest.mark.parametrize("sampler", ["fibonacci", "r2", "random"])
 def test_every_sampler_finds_the_dihedral(sampler):
     dihedral = next(target for target in targets.all_targets() if target.name == "dihedral")
@@ -74,5 +87,11 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys):
     assert all(point["num_rays"] <= 1024 for target in results["targets"].values() for curve in target["curves"].values()
                for point in curve)
     printed = capsys.readouterr().out
+    assert len((tmp_path / "b" / "costs.csv").read_text().splitlines()) == 1 + len(results["costs"])
+    rows = (tmp_path / "b" / "physics.csv").read_text().splitlines()
+    assert len(rows) == 1 + sum(len(curve) for target in results["targets"].values() for curve in target["curves"].values())
+    sizes = {row["label"]: row["bytes_per_path"] for row in results["costs"]}
+    assert sizes["second-order footprint"] == sizes["diffuse"] == sizes["all off"]  # a term that is off is not stored
+    assert sizes["smooth"] == sizes["all off"] + 28 and sizes["jones"] == sizes["all off"] + 32
     assert "bytes per hit" in printed and "sphere, ka 161" in printed
     assert describe(results)[0] in printed

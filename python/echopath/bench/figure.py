@@ -6,47 +6,60 @@ from ..plots.style import new_figure, save_png
 SHOWN = ("sphere_161", "sphere_3228", "ellipsoid", "plate_5", "plate_20.3", "dihedral")
 # Okabe and Ito: told apart with any colour vision. Label of the curve: (text, colour, line, width).
 CURVES = {
-    "none lattice": ("no footprint", "#999999", "-", 1.6),
-    "first_order lattice": ("first-order footprint", "#e69f00", "-", 1.6),
-    "second_order lattice": ("second-order footprint (default)", "#0072b2", "-", 2.6),
-    "second_order fibonacci": ("second order, Fibonacci", "#009e73", "--", 1.2),
-    "second_order r2": ("second order, R2 sequence", "#cc79a7", "--", 1.2),
-    "second_order random": ("second order, random", "#d55e00", ":", 1.2),
+    "none lattice": ("no footprint", "#666666", "-", 1.8),
+    "first_order lattice": ("first-order footprint", "#e69f00", "-", 1.8),
+    "second_order lattice": ("second-order footprint: the default", "#0072b2", "-", 3.0),
+    "second_order fibonacci": ("second order, Fibonacci rays", "#009e73", "--", 1.1),
+    "second_order r2": ("second order, R2 rays", "#cc79a7", "--", 1.1),
+    "second_order random": ("second order, random rays", "#d55e00", ":", 1.1),
 }
+BEST = "second_order lattice"
 GOAL_DB = 0.1
-TIME_RANGE = (0.3, 1000.0)  # ms
+ERROR_RANGE = (1e-3, 60.0)         # dB
+TIME_RANGE = (0.4, 300.0)          # ms
+NAMED_RAYS = {2 ** 10: "1 k rays", 2 ** 13: "8 k", 2 ** 16: "65 k"}
 
 
 def draw_physics(results: dict, path) -> None:
-    """Writes a PNG: rms error against launched rays (above) and against time of trace and replay (below)."""
-    with new_figure(14.0, 6.2) as figure:
-        axes = figure.subplots(2, len(SHOWN), sharey=True)
-        for column, name in enumerate(SHOWN):
+    """Writes a PNG: rms error of the level against the time of trace and replay, a panel for each target."""
+    with new_figure(11.0, 6.4) as figure:
+        panels = figure.subplots(2, 3, sharex=True, sharey=True)
+        for axes, name in zip(panels.flat, SHOWN):
             target = results["targets"][name]
-            axes[0, column].set_title(target["title"].partition(", double")[0])
-            for row, quantity in enumerate(("num_rays", "seconds")):
-                _draw(axes[row, column], target["curves"], quantity)
-            axes[0, column].set_xlabel("rays launched")
-            axes[1, column].set_xlabel("trace and replay [ms]")
-        for row in range(2):
-            axes[row, 0].set_ylabel("error [dB rms]")
-        handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(CURVES), frameon=False)
+            axes.set_title(target["title"].partition(", double")[0])
+            _draw(axes, target["curves"])
+        panels[0, 0].text(TIME_RANGE[1] * 0.9, GOAL_DB * 0.8, "within 0.1 dB", fontsize=8, color="#2a6b2a",
+                          horizontalalignment="right", verticalalignment="top")
+        figure.suptitle("How far off the level is, by the time spent (lower and further left is better)", fontsize=12)
+        for axes in panels[-1]:
+            axes.set_xlabel("time of trace and replay in ms")
+        figure.supylabel("error of the level in dB (rms)", fontsize=9)
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
         save_png(figure, path)
 
 
-def _draw(axes, curves: dict, quantity: str) -> None:
-    scale = 1e3 if quantity == "seconds" else 1.0
+def _draw(axes, curves: dict) -> None:
+    axes.axhspan(ERROR_RANGE[0], GOAL_DB, color="#dff0d8", zorder=0)
     for label, (text, colour, line, width) in CURVES.items():
-        points = curves.get(label, [])
-        axes.plot([scale * point[quantity] for point in points], [max(point["rms_db"], 1e-3) for point in points], line,
-                  zorder=3 if width > 2.0 else 2, color=colour, linewidth=width, marker=".", markersize=3 + 1.5 * width, label=text)
-    axes.axhline(GOAL_DB, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
-    axes.set_xscale("log", base=2 if quantity == "num_rays" else 10)
-    if quantity == "seconds":
-        axes.set_xlim(TIME_RANGE)
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.minorticks_off()
+        points = [point for point in curves.get(label, []) if point["num_rays"] >= min(NAMED_RAYS)]
+        times = [1e3 * point["seconds"] for point in points]
+        errors = [max(point["rms_db"], ERROR_RANGE[0]) for point in points]
+        axes.plot(times, errors, line, color=colour, linewidth=width, label=text, zorder=4 if label == BEST else 3)
+        if label == BEST:
+            _name_rays(axes, points, times, errors, colour)
+    axes.set_xscale("log")
+    axes.set_xlim(TIME_RANGE)
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.set_yscale("log")
-    axes.set_ylim(1e-3, 60.0)
+    axes.set_ylim(ERROR_RANGE)
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.grid(alpha=0.25)
+
+
+def _name_rays(axes, points, times, errors, colour: str) -> None:
+    for point, time, error in zip(points, times, errors):
+        if point["num_rays"] in NAMED_RAYS:
+            axes.plot([time], [error], "o", color=colour, markersize=5, zorder=5)
+            axes.annotate(NAMED_RAYS[point["num_rays"]], (time, error), (5, 5), textcoords="offset points", fontsize=7,
+                          color=colour, zorder=6)

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import platform
 import time
 from pathlib import Path
@@ -11,14 +10,16 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import written_whole
+from . import report
 from .cost import measure_costs
-from .targets import Target, all_targets, radar
+from .targets import Target, all_targets, plate, radar
 
 EXPONENTS = (10, 11, 12, 13, 14, 15, 16, 18, 20)   # of two: numbers of rays
-NUM_SHIFTS, NUM_SHIFTS_ABOVE, MANY_RAYS = 20, 8, 2 ** 15
+FEW_EXPONENTS = (6, 7, 8, 9)         # before them, for the default: smooth targets converge there
+CONVERGED_RAYS = 2 ** 18             # of the level that the slope is measured from
+NUM_SHIFTS, NUM_SHIFTS_ABOVE, MANY_RAYS = 20, 8, 2 ** 16
 QUICK_SHIFTS, QUICK_RAYS = 6, 2 ** 12
-FLOOR_DB, FLOOR_MARGIN = 0.01, 1.5  # error that counts as settled: absolute, and over the least of the curve
+MEANINGFUL_DB = 3.0  # a slope is that of errors from here to report.SETTLED_DB
 LEAST_POWER = 1e-12  # of the truth: what a sum of nothing counts as
 
 
@@ -36,49 +37,87 @@ class Variant:
 
 DEFAULT = Variant("second_order", "lattice")
 FOOTPRINTS = (DEFAULT, Variant("first_order", "lattice"), Variant("none", "lattice"))
+UNFILTERED = FOOTPRINTS[2]
+PLATE_ANGLES, PLATE_RAYS = (0.0, 0.5, 1.7, 2.8, 5.0, 7.3, 10.6, 12.9, 15.7, 18.0, 20.3), 2 ** 14
 SAMPLERS = (Variant("second_order", "fibonacci"), Variant("second_order", "r2"), Variant("second_order", "random"))
 
 
 def run_physics(folder, *, rays_max: int = 2 ** 16, quick: bool = False, progress=None) -> dict:
-    """Runs all targets, writes physics.json and physics.png into `folder` and returns what the JSON holds.
+    """Runs all targets, writes physics.json, physics.csv, costs.csv and physics.png into `folder`; returns what the JSON holds.
 
     rays_max: most rays of a trace; quick: few shifts and rays, for a look; progress: callable (stage, fraction) or None
     """
     from .figure import draw_physics
-    from .report import verdicts
 
     most = min(rays_max, QUICK_RAYS) if quick else rays_max
     rays = [2 ** exponent for exponent in EXPONENTS if 2 ** exponent <= most]
     shifts = QUICK_SHIFTS if quick else NUM_SHIFTS
-    began = time.perf_counter()
-    targets = all_targets()
-    curves = {}
-    for index, target in enumerate(targets):
-        curves[target.name] = _curves(target, rays, shifts)
-        if progress:
-            progress("physics", (index + 1) / len(targets))
-    results = {"machine": _machine(), "shifts": shifts, "rays": rays, "targets": curves,
-               "costs": measure_costs(radar(), num_rays=min(rays_max, 2 ** 16))}
-    results["must_reach"] = verdicts(results)
-    results["seconds"] = time.perf_counter() - began
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    with written_whole(folder / "physics.json") as temporary:
-        Path(temporary).write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
-    draw_physics(results, folder / "physics.png")
+    began, used = time.perf_counter(), time.process_time()
+    advance = _Progress(progress)
+    results = {"machine": _machine(), "shifts": shifts, "rays": rays, "targets": {}}
+    advance.share(all_targets(), 0.0, 0.7, lambda target: results["targets"].update(
+        {target.name: _curves(target, rays, shifts, most)}))
+    results["plates"] = []
+    advance.share(PLATE_ANGLES, 0.7, 0.95, lambda angle: results["plates"].extend(plate_pairs(angle, rays, shifts)))
+    results["costs"] = measure_costs(radar(), num_rays=min(rays_max, 2 ** 16))
+    results["must_reach"] = report.verdicts(results)
+    results["seconds"], results["processor_seconds"] = time.perf_counter() - began, time.process_time() - used
+    report.write_results(results, Path(folder))
+    draw_physics(results, Path(folder) / "physics.png")
+    advance(1.0)
     return results
 
 
-def _curves(target: Target, rays: list[int], shifts: int) -> dict:
+class _Progress:
+    """Passes the share of the work that is done to a callable (stage, fraction) or to nobody."""
+
+    def __init__(self, progress):
+        self._progress = progress
+
+    def __call__(self, fraction: float) -> None:
+        if self._progress:
+            self._progress("physics", fraction)
+
+    def share(self, items, begin: float, end: float, work) -> None:
+        """Does `work` for each item, from the share `begin` to the share `end`."""
+        items = list(items)
+        for index, item in enumerate(items):
+            self(begin + (end - begin) * index / len(items))
+            work(item)
+
+
+def _curves(target: Target, rays: list[int], shifts: int, most: int) -> dict:
+    """Errors of one target: {variant: [one dict per number of rays]}, and the slopes of the default's."""
     variants = (*FOOTPRINTS, *SAMPLERS) if target.compares_footprints else (DEFAULT, *SAMPLERS)
-    curves = {variant.label: [_point(target, variant, count, shifts) for count in rays] for variant in variants}
-    return {"title": target.title, "truth": target.truth, "curves": curves,
-            "slopes": {label: _slope(points) for label, points in curves.items()}}
+    few = [2 ** exponent for exponent in FEW_EXPONENTS] if most > QUICK_RAYS else []
+    curves = {}
+    for variant in variants:
+        counts = [*few, *rays] if variant == DEFAULT else rays
+        curves[variant.label] = [_point(target, variant, count, shifts) for count in counts]
+    converged = float(np.mean(_errors(target, DEFAULT, CONVERGED_RAYS, NUM_SHIFTS_ABOVE)[0])) if few else 0.0
+    for points in curves.values():
+        for point in points:
+            errors = np.array(point.pop("errors"))
+            point["rms_from_converged_db"] = _rms(errors - converged)
+    return {"title": target.title, "truth": target.truth, "converged_db": converged, "curves": curves,
+            "slopes": {label: _slope(points, "rms_db") for label, points in curves.items()},
+            "slopes_from_converged": {label: _slope(points, "rms_from_converged_db") for label, points in curves.items()}}
+
+
+def _rms(values) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def _point(target: Target, variant: Variant, num_rays: int, shifts: int) -> dict:
     """Error over shifts of the rays: a seed moves all sets of directions."""
     count = shifts if num_rays < MANY_RAYS else min(shifts, NUM_SHIFTS_ABOVE)
+    errors, seconds = _errors(target, variant, num_rays, count)
+    return {"num_rays": num_rays, "shifts": count, "rms_db": _rms(errors), "mean_db": float(errors.mean()),
+            "worst_db": float(np.abs(errors).max()), "seconds": min(seconds), "errors": errors.tolist()}
+
+
+def _errors(target: Target, variant: Variant, num_rays: int, count: int):
+    """Errors [S] in dB and times [S] in s of trace and replay, one for each shift."""
     errors, seconds = [], []
     for seed in range(1, count + 1):
         began = time.perf_counter()
@@ -87,24 +126,35 @@ def _point(target: Target, variant: Variant, num_rays: int, shifts: int) -> dict
         value = target.value(paths)
         seconds.append(time.perf_counter() - began)
         errors.append(10.0 * np.log10(max(value / target.truth, LEAST_POWER)))
-    errors = np.array(errors)
-    return {"num_rays": num_rays, "shifts": count, "rms_db": float(np.sqrt(np.mean(errors ** 2))),
-            "mean_db": float(errors.mean()), "worst_db": float(np.abs(errors).max()),
-            "seconds": min(seconds)}
+    return np.array(errors), seconds
 
 
-def _slope(points: list[dict]) -> float | None:
-    """Of log error over log rays, least squares, until the error reaches what mesh and closed form leave, not the rays.
+def plate_pairs(angle_deg: float, rays: list[int], shifts: int) -> list[dict]:
+    """Plates with and without the filter over the same shifts: errors, and the margin with its standard error, in dB."""
+    target, rows = plate(angle_deg), []
+    for num_rays in [count for count in rays if count >= PLATE_RAYS]:
+        filtered, unfiltered = (_errors(target, variant, num_rays, 2 * shifts)[0] for variant in (DEFAULT, UNFILTERED))
+        squares = filtered ** 2 - unfiltered ** 2
+        with_filter, without = _rms(filtered), _rms(unfiltered)
+        error = squares.std(ddof=1) / np.sqrt(len(squares)) / max(with_filter + without, 1e-12)
+        rows.append({"angle_deg": angle_deg, "num_rays": num_rays, "shifts": len(squares), "filtered_db": with_filter,
+                     "unfiltered_db": without, "margin_db": with_filter - without, "margin_error_db": float(error)})
+    return rows
 
-    None for fewer than three numbers of rays.
+
+def _slope(points: list[dict], quantity: str) -> float | None:
+    """Of log error over log rays, least squares: from the first error below 3 dB to the first below 0.01 dB.
+
+    None for fewer than three numbers of rays there.
     """
-    errors = np.array([max(point["rms_db"], 1e-9) for point in points])
-    floor = max(FLOOR_DB, FLOOR_MARGIN * errors.min())
-    used = int(np.argmax(errors <= floor)) + 1 if np.any(errors <= floor) else len(errors)
-    if len(points) < 3 or used < 3:
+    errors = np.array([max(point[quantity], 1e-9) for point in points])
+    meant, settled = errors < MEANINGFUL_DB, errors < report.SETTLED_DB
+    begin = int(np.argmax(meant)) if meant.any() else len(errors)
+    end = int(np.argmax(settled)) + 1 if settled.any() else len(errors)
+    if end - begin < 3:
         return None
-    rays = [point["num_rays"] for point in points[:used]]
-    return float(np.polyfit(np.log(rays), np.log(errors[:used]), 1)[0])
+    rays = [point["num_rays"] for point in points[begin:end]]
+    return float(np.polyfit(np.log(rays), np.log(errors[begin:end]), 1)[0])
 
 
 def _machine() -> dict:

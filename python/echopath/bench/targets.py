@@ -43,7 +43,7 @@ def radar() -> ep.Radar:
 
 
 def all_targets() -> list[Target]:
-    return [*_spheres(), _ellipsoid(), *_plates(), _dihedral(), _trihedral(), _lambert_plate(), _two_ray(),
+    return [*_spheres(), _ellipsoid(), *map(plate, (0.0, 5.0, 20.3)), _dihedral(), _trihedral(), _lambert_plate(), _two_ray(),
             _wall_ghost()]
 
 
@@ -62,12 +62,12 @@ def _ellipsoid():
                          smooth=True, to_radar=to_radar)
 
 
-def _plates():
-    for angle_deg in (0.0, 5.0, 20.3):
-        angle = np.radians(angle_deg)
-        turned = np.array([-np.cos(angle), np.sin(angle), 0.0])
-        yield _in_far_field(f"plate_{angle_deg:g}", f"plate 0.1 m, {angle_deg:g} deg", shapes.plate(0.1, 0.1), 2e3,
-                            exact.plate_rcs(0.1, angle), to_radar=turned)
+def plate(angle_deg: float) -> Target:
+    """A metal plate of 0.1 m turned by `angle_deg` about an edge."""
+    angle = np.radians(angle_deg)
+    turned = np.array([-np.cos(angle), np.sin(angle), 0.0])
+    return _in_far_field(f"plate_{angle_deg:g}", f"plate 0.1 m, {angle_deg:g} deg", shapes.plate(0.1, 0.1), 2e3,
+                         exact.plate_rcs(0.1, angle), to_radar=turned)
 
 
 def _dihedral():

@@ -26,6 +26,7 @@ from .tessellation import TessellationWarning, rcs, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part
+from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .selection_text import parse_selection
@@ -67,6 +68,6 @@ __all__ = [
     "angle_fft", "beamform", "boltzmann", "compensate_tdm", "decompose", "effects", "estimate_angles", "hits",
     "load_antenna", "load_frame", "load_mesh",
     "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells",
-    "plot_rays", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
-    "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
+    "plot_rays", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame",
+    "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
 ]

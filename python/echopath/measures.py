@@ -5,6 +5,7 @@ import numpy as np
 
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
 EXTENT_BELOW_PEAK_DB = 30.0
+SMALLEST_POWER = 1e-300   # W, stands for zero on a logarithmic scale
 
 
 def power_dbm(cube) -> float:
@@ -15,9 +16,20 @@ def power_dbm(cube) -> float:
     return in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
 
 
-def in_dbm(power: float) -> float:
-    """A power in W in dB re 1 mW; -inf for none."""
-    return 10.0 * np.log10(power * 1e3) if power > 0.0 else -np.inf
+def in_dbm(power, least: float = 0.0):
+    """A power in W, or an array of them, in dB re 1 mW; -inf for none unless `least` W stand for all that is smaller."""
+    with np.errstate(divide="ignore"):
+        return 10.0 * np.log10(np.maximum(power, least) * 1e3)
+
+
+def power_by_chirp(cube, *, tx=0, rx=0):
+    """Mean power over the samples of each chirp: the slow-time signal of a channel.
+
+    cube: [tx, rx, chirp, sample] in sqrt(W); tx, rx: indices of the channel's antennas
+    Returns the powers in dBm, [chirps], -2970 dBm for zeros. Raises IndexError for antennas that are not there.
+    """
+    channel = np.asarray(cube)[tx, rx]
+    return in_dbm(np.mean(channel.real ** 2 + channel.imag ** 2, axis=-1), SMALLEST_POWER)
 
 
 def with_error(power) -> str:

@@ -120,6 +120,7 @@ def changes(session) -> dict:
         "colour": lambda n: session.set_color_by(modes[n % len(modes)]),
         "step in time": lambda n: session.set_chirp(100 + n),
         "cell": lambda n: session.select_cells(CellBox.around(*cells[n % len(cells)], 1)),
+        "filter, cell selected": lambda n: session.set_filters(Filters(max_bounces=3 + n % 2)),
         "no cell": lambda n: session.select_cells(None),
     }
 
@@ -149,6 +150,7 @@ def bench_drawing(window) -> None:
 def settle(window) -> None:
     """Forgets what waits for the next turn of the event loop: it has been done, or is drawing."""
     window._listing.stop()
+    window._pause.stop()
     window.view3d._render_timer.stop()
 
 

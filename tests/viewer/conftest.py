@@ -10,7 +10,7 @@ import pytest
 import echopath as ep
 from support import shapes
 
-NEEDS_SCREEN = ("test_window.py",)
+NEEDS_SCREEN = "test_window_"  # how their files' names begin
 
 
 def pytest_collection_modifyitems(items):
@@ -19,7 +19,7 @@ def pytest_collection_modifyitems(items):
         return
     skip = pytest.mark.skip(reason="needs a screen: xvfb-run -a -s '-screen 0 1600x1000x24' python -m pytest tests/viewer")
     for item in items:
-        if item.path.name in NEEDS_SCREEN:
+        if item.path.name.startswith(NEEDS_SCREEN):
             item.add_marker(skip)
 
 
@@ -45,9 +45,40 @@ def frame():
 def close_plotters(request):
     """VTK keeps plotters that were not closed; windows close their own."""
     yield
-    if request.path.name in NEEDS_SCREEN:
+    if request.path.name.startswith(NEEDS_SCREEN):
         return
     pyvista = sys.modules.get("pyvista")
     if pyvista is not None:
         pyvista.close_all()
         gc.collect()
+
+
+@pytest.fixture(scope="module")
+def shared_window(qapp):
+    """One window for all tests of a file: what a window costs is mostly its first picture."""
+    from echopath_viewer.window import MainWindow
+
+    window = MainWindow()
+    window.resize(1100, 700)
+    window.show()
+    window.activateWindow()
+    yield window
+    window.close()
+
+
+@pytest.fixture
+def window(qtbot, shared_window, frame):
+    """Fresh, as far as it shows."""
+    from echopath_viewer.model import from_frame
+    from support.window import Qt, open_on_screen
+
+    window = shared_window
+    window.show_input(from_frame(frame, title="frame"))
+    window.map_area.show_one(False)
+    window.map_area.set_view(window.map_area.whole_view)
+    window.filter_box.hits_check.setChecked(False)
+    window.filter_box.name_edit.clear()
+    window.filter_box.show_name_error("")
+    window.table.view.sortByColumn(3, Qt.SortOrder.DescendingOrder)
+    open_on_screen(qtbot, window)
+    return window

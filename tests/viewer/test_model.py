@@ -4,6 +4,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -14,6 +15,7 @@ from echopath_viewer.model import (
 from echopath_viewer.model.picking import nearest_segment
 
 ROUNDING = 1e-9
+BORDER = 0.01    # of a colour of 256: single precision
 SINGLE = 2e-6    # relative, of positions kept in single precision
 
 
@@ -286,6 +288,8 @@ def test_a_cell_shows_its_power_from_chirp_to_chirp(session, frame):
     cube = ep.synthesize(frame.paths.select(session.lit))[0, 0]
     slow = [10 * np.log10(np.mean(np.abs(chirp) ** 2) * 1e3) for chirp in cube]
     assert session.slow_time_power() == pytest.approx(slow, abs=1e-6)
+    assert ep.power_by_chirp(cube[None, None]) == pytest.approx(slow, abs=1e-9)
+    assert np.all(ep.power_by_chirp(np.zeros((1, 1, 3, 4))) == pytest.approx(-2970.0))
 
 
 # --- colours ---
@@ -303,8 +307,19 @@ def test_every_segment_has_the_colour_of_its_legend(session, mode):
         elif mode == "mesh":
             assert dict(colouring.legend.rows)[session.mesh_names[segments.mesh_id[row]]] == tuple(colouring.rgb[row])
         else:
-            low, high = colouring.legend.clim
-            assert low < high
+            value = {"power": session.columns.power_dbm, "range": session.columns.cells.range,
+                     "speed": session.columns.cells.velocity}[mode][path]
+            assert_colour_of_scale(colouring.rgb[row], value, colouring.legend)
+
+
+def assert_colour_of_scale(rgb, value: float, legend) -> None:
+    """One look-up in matplotlib's own way; a value at the border of two of the 256 colours may have either."""
+    low, high = legend.clim
+    assert low < high
+    colours = matplotlib.colormaps[legend.cmap]
+    shares = [(value - low) / (high - low) * 255 + off for off in (-BORDER, BORDER)]
+    rows = [int(np.clip(np.floor(share), 0, 255)) for share in shares]
+    assert tuple(rgb) in [tuple(colours(row, bytes=True)[:3]) for row in rows]
 
 
 def test_a_scale_of_ones_own_is_taken(session):

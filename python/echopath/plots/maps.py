@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from ..measures import STATIC_SPEED, with_error
+from ..measures import SMALLEST_POWER, STATIC_SPEED, in_dbm, with_error
 from .style import MAP_COLOURS, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
@@ -14,13 +14,12 @@ NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells i
 RANGE_MARGIN = 0.8           # m, shown around the signal
 VELOCITY_MARGIN = 0.5        # m/s
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
-SMALLEST_POWER = 1e-300      # W, stands for zero on a logarithmic scale
 
 
 def power_dbm(spectrum):
     """Mean power of the channels, [velocity, range] in dB re 1 mW."""
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
-    return 10.0 * np.log10(np.maximum(power, SMALLEST_POWER) * 1e3)
+    return in_dbm(power, SMALLEST_POWER)
 
 
 def colour_limits(spectrum) -> tuple[float, float]:

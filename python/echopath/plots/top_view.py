@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 
-from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB, SMALLEST_POWER
+from ..measures import SMALLEST_POWER, in_dbm
+from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB
 from .style import MAP_COLOURS, new_figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
@@ -52,7 +53,7 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
 
 
 def _in_dbm(power):
-    return 10.0 * np.log10(np.maximum(power, SMALLEST_POWER) * 1e3)
+    return in_dbm(power, SMALLEST_POWER)
 
 
 def _colour_limits(one) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.plots.maps import SMALLEST_POWER
+from echopath.measures import SMALLEST_POWER, in_dbm
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,7 +51,6 @@ class Columns:
 def read_columns(paths, spectrum, tx: int = 0, rx: int = 0) -> Columns:
     """The columns of a record at a channel; spectrum: any map of the radar, for its axes."""
     power = np.abs(paths.amplitudes([paths.frame.trace_time], tx, rx)[0]) ** 2
-    power_dbm = 10.0 * np.log10(np.maximum(power, SMALLEST_POWER) * 1e3)
-    return Columns(paths=paths, tx=tx, rx=rx, power=power, power_dbm=power_dbm,
+    return Columns(paths=paths, tx=tx, rx=rx, power=power, power_dbm=in_dbm(power, SMALLEST_POWER),
                    cells=ep.path_cells(paths, spectrum, tx=tx, rx=rx), offsets=np.asarray(paths.offsets),
                    num_bounces=np.asarray(paths.num_bounces), mesh_id=np.ascontiguousarray(paths.mesh_id))

@@ -8,6 +8,7 @@ import numpy as np
 
 import echopath as ep
 
+from .antennas import world_from_antenna
 from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays, mesh_palette
 from .columns import read_columns
@@ -15,7 +16,6 @@ from .filters import Filters
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
 from .segments import ray_segments
 from .signals import both
-from .slow_time import power_by_chirp
 
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 MAX_LISTED = 100_000     # rows of the table
@@ -94,9 +94,8 @@ class Session:
 
     def antennas_at(self, time: float) -> tuple:
         """World positions [3] of transmitter and receiver of the channel at a time in s."""
-        world_from_radar = np.asarray(self.radar.world_from_radar(time))
         antennas = self.radar.transmitters[self.columns.tx], self.radar.receivers[self.columns.rx]
-        return tuple(world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3] for antenna in antennas)
+        return tuple(world_from_antenna(self.radar, antenna, time)[:3, 3] for antenna in antennas)
 
     # --- which paths are shown ---
 
@@ -331,7 +330,8 @@ class Session:
         """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole. Raises ValueError where those
         rays have no signal of their own."""
         cube = self.cube if self.box is None else self.signals.cube(self.lit, progress=progress)
-        return power_by_chirp(cube, *self.channel)
+        tx, rx = self.channel
+        return ep.power_by_chirp(cube, tx=tx, rx=rx)
 
     def explain(self, path: int) -> list[tuple]:
         """What a path is, in (label, text) lines."""

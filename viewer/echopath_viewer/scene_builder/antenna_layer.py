@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.antennas import world_from_antenna
 from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
 
 AXIS_COLOURS = np.array([[204, 51, 17], [0, 136, 85], [0, 102, 204]], np.uint8)  # x (boresight), y, z
@@ -42,18 +43,3 @@ class AntennaLayer:
         transmitters = [TRANSMITTER_COLOUR if index == tx else IDLE_COLOUR for index in range(len(self._radar.transmitters))]
         receivers = [RECEIVER_COLOUR if index == rx else IDLE_COLOUR for index in range(len(self._radar.receivers))]
         return np.array(transmitters + receivers, np.uint8)
-
-
-def world_from_antenna(radar, antenna, time: float):
-    """[4, 4], translation in m."""
-    local = np.eye(4)
-    local[:3, :3], local[:3, 3] = rotation_of(antenna.orientation), antenna.position
-    return np.asarray(radar.world_from_radar(time)) @ local
-
-
-def rotation_of(quaternion):
-    """[3, 3] of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = quaternion
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .antenna_layer import AntennaLayer, world_from_antenna
+from ..model.antennas import world_from_antenna
+from .antenna_layer import AntennaLayer
 from .camera import look
 from .legend import LegendLayer
 from .mesh_layer import MeshLayer

@@ -20,7 +20,7 @@ class MapArea(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session = None
+        self.session = self._before_pick = None
         self.panels: dict[tuple, MapPanel] = {}
         self.view, self.near_view, self.whole_view = (QtCore.QRectF() for _ in range(3))
         self.layout_box, self.part_box, self.partition_box = (QtWidgets.QComboBox() for _ in range(3))
@@ -144,6 +144,7 @@ class MapArea(QtWidgets.QWidget):
     def _new_panel(self, key: tuple) -> MapPanel:
         panel = MapPanel()
         panel.cell_clicked.connect(lambda *cell: self._pick(key, CellBox.around(*cell, self.reach_box.value())))
+        panel.click_undone.connect(self._undo_pick)
         panel.box_dragged.connect(lambda box: self._pick(key, box))
         panel.hovered.connect(lambda *at: self._read(key, *at))
         panel.left.connect(lambda: self.read_out.setText(HINT))
@@ -152,9 +153,18 @@ class MapArea(QtWidgets.QWidget):
         return panel
 
     def _pick(self, key: tuple, box: CellBox) -> None:
+        self._before_pick = self.session, self.session.part_key, self.session.box, self.session.ray
         if key != self.session.part_key:
             self.session.set_part(key)
         self.session.select_cells(box)
+
+    def _undo_pick(self) -> None:
+        session, key, box, ray = self._before_pick
+        if session is not self.session or key not in session.parts:
+            return
+        session.set_part(key)
+        session.select_cells(box)
+        session.select_ray(ray)
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key])

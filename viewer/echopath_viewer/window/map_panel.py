@@ -21,6 +21,7 @@ class MapPanel(QtWidgets.QWidget):
     """Paints power in dBm over range and velocity and tells what is clicked, dragged and hovered."""
 
     cell_clicked = Signal(int, int)      # range index, velocity index
+    click_undone = Signal()              # the last one was the first half of a double click
     box_dragged = Signal(object)         # CellBox
     hovered = Signal(float, float, float)  # m, m/s, dBm
     left = Signal()
@@ -37,6 +38,7 @@ class MapPanel(QtWidgets.QWidget):
         self.range_axis = self.velocity_axis = np.zeros(1)
         self.view = QtCore.QRectF()
         self._press = self._pan_from = self._drag = None
+        self._is_clicked = False
 
     def show_map(self, title: str, level, spectrum, limits, view: QtCore.QRectF, *, is_current: bool) -> None:
         """level: dBm [velocity, range]; spectrum: for its axes; limits: of the colours in dBm; view: what is seen of it."""
@@ -151,7 +153,8 @@ class MapPanel(QtWidgets.QWidget):
     # --- mouse ---
 
     def mousePressEvent(self, event):  # noqa: N802
-        if self.image is None:
+        self._is_clicked = False
+        if self.image is None or not self.plot_rect().contains(event.position()):
             return
         if event.button() == Qt.MouseButton.LeftButton:
             self._press = event.position()
@@ -166,6 +169,9 @@ class MapPanel(QtWidgets.QWidget):
         elif self._press is not None and self._is_drag(event.position()):
             self._drag = event.position()
             self.update()
+        if not self.plot_rect().contains(event.position()):
+            self.left.emit()
+            return
         range_index, velocity_index = self.cell_at(event.position())
         self.hovered.emit(float(self.range_axis[range_index]), float(self.velocity_axis[velocity_index]),
                           float(self.level[velocity_index, range_index]))
@@ -175,15 +181,20 @@ class MapPanel(QtWidgets.QWidget):
         if press is None or self.image is None:
             return
         if (event.position() - press).manhattanLength() <= CLICK_REACH:
+            self._is_clicked = True
             self.cell_clicked.emit(*self.cell_at(press))
             return
         first, last = self.cell_at(press), self.cell_at(event.position())
         (near, far), (slow, fast) = sorted((first[0], last[0])), sorted((first[1], last[1]))
         self.box_dragged.emit(CellBox(near, far, slow, fast))
 
-    def mouseDoubleClickEvent(self, _event):  # noqa: N802
+    def mouseDoubleClickEvent(self, event):  # noqa: N802
+        """Its first click has selected a cell at once, as no click waits for a second one: that is taken back."""
         self._press = None
-        self.view_reset.emit()
+        if self._is_clicked:
+            self.click_undone.emit()
+        if self.plot_rect().contains(event.position()):
+            self.view_reset.emit()
 
     def leaveEvent(self, _event):  # noqa: N802
         self.left.emit()

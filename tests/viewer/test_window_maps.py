@@ -1,0 +1,121 @@
+"""Maps and the time bar by real clicks."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from echopath_viewer.model import WHOLE, CellBox
+from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
+from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
+
+
+# --- maps ---
+
+def test_all_maps_share_one_colour_scale(qtbot, window):
+    window.map_area.range_slider.setValue(45)
+    limits = {panel.limits for panel in window.map_area.panels.values()}
+    assert limits == {window.map_area.colour_bar.limits} and len(window.map_area.panels) == 4
+    low, high = limits.pop()
+    assert high - low == 45
+    level = window.session.parts.whole.level(0, 0)
+    panel = panel_of(window, WHOLE, WHOLE)
+    for velocity, distance in [(0, 0), (20, 30), np.unravel_index(level.argmax(), level.shape)]:
+        shade = panel.image.pixelIndex(int(distance), level.shape[0] - 1 - int(velocity))
+        assert shade == int(np.clip((level[velocity, distance] - low) / (high - low) * 255, 0, 255))
+
+
+def test_one_large_map_or_all(qtbot, window):
+    qtbot.keyClick(window, Qt.Key.Key_M)
+    assert list(window.map_area.panels) == [(WHOLE, WHOLE)]
+    window.map_area.partition_box.setCurrentText("count")
+    window.map_area.partition_box.activated.emit(1)
+    qtbot.keyClick(window, Qt.Key.Key_M)
+    assert [key[1] for key in window.map_area.panels] == ["whole", "one", "other"]
+
+
+def test_the_cursor_reads_metres_and_speed_and_power(qtbot, window):
+    panel, whole = panel_of(window, WHOLE, WHOLE), window.session.parts.whole
+    distance, velocity = strongest_cell(window, (WHOLE, WHOLE))
+    at = panel.to_pixel(whole.spectrum.range[distance], whole.spectrum.velocity[velocity])
+    no_button = Qt.MouseButton.NoButton  # sent, as the real cursor of the virtual screen is somewhere else
+    move = QtGui.QMouseEvent(QtCore.QEvent.Type.MouseMove, at, panel.mapToGlobal(at), no_button, no_button,
+                             Qt.KeyboardModifier.NoModifier)
+    QtWidgets.QApplication.sendEvent(panel, move)
+    text = window.map_area.read_out.text()
+    for word in (f"{whole.spectrum.range[distance]:.2f} m", f"{whole.spectrum.velocity[velocity]:+.2f} m/s",
+                 f"{whole.level(0, 0)[velocity, distance]:.1f} dBm"):
+        assert word in text
+
+
+def test_a_channel_is_chosen(qtbot, window, frame):
+    window.map_area.channel_box.setCurrentIndex(3)
+    window.map_area.channel_box.activated.emit(3)
+    settle(qtbot)
+    assert window.session.channel == (1, 1)
+    level = 10 * np.log10(np.abs(frame.spectrum.values[1, 1]) ** 2 * 1e3)
+    assert panel_of(window, WHOLE, WHOLE).level == pytest.approx(level, abs=1e-3)
+
+
+def test_the_wheel_zooms_about_the_cursor_and_a_double_click_resets(qtbot, window):
+    panel, before = panel_of(window, WHOLE, WHOLE), QtCore.QRectF(window.map_area.view)
+    at = QtCore.QPointF(panel.plot_rect().center())
+    value = panel.to_value(at)
+    turn = QtGui.QWheelEvent(at, panel.mapToGlobal(at), QtCore.QPoint(), QtCore.QPoint(0, 120), Qt.MouseButton.NoButton,
+                             Qt.KeyboardModifier.NoModifier, Qt.ScrollPhase.NoScrollPhase, False)
+    QtWidgets.QApplication.sendEvent(panel, turn)
+    assert window.map_area.view.width() < before.width() and panel.to_value(at) == pytest.approx(value)
+    qtbot.mouseDClick(panel, LEFT, pos=at.toPoint())
+    moving = QtCore.QRectF(window.map_area.view)
+    qtbot.mouseDClick(panel, LEFT, pos=at.toPoint())
+    assert window.map_area.view == before and moving.width() < before.width()
+    time = window.session.paths.frame.trace_time
+    walker = window.session.scene.world_vertices(0, time).mean(axis=0)
+    assert moving.left() < np.linalg.norm(walker) < moving.right()
+
+
+def test_a_press_on_title_or_axes_selects_no_cell(qtbot, window):
+    panel = panel_of(window, "route", "ghost")
+    inside = panel.plot_rect().center().toPoint()
+    for at in (QtCore.QPoint(inside.x(), 5), QtCore.QPoint(10, inside.y()), QtCore.QPoint(inside.x(), panel.height() - 4)):
+        qtbot.mouseClick(panel, LEFT, pos=at)
+        assert window.session.box is None and window.session.part_key == (WHOLE, WHOLE)
+
+
+def test_a_double_click_leaves_part_and_selection_as_they_were(qtbot, window):
+    window.session.select_cells(CellBox(3, 4, 5, 6))
+    panel = panel_of(window, "route", "ghost")
+    at = panel.plot_rect().center().toPoint()
+    qtbot.mouseClick(panel, LEFT, pos=at)  # what a screen sends: a click, and in place of the next press a double click
+    assert window.session.part_key == ("route", "ghost")
+    qtbot.mouseDClick(panel, LEFT, pos=at)
+    assert window.session.part_key == (WHOLE, WHOLE) and window.session.box == CellBox(3, 4, 5, 6)
+
+
+# --- time ---
+
+def test_the_slider_moves_scene_and_rays_to_their_replayed_places(qtbot, window, frame):
+    window.time_bar.slider.setValue(2)
+    session, builder = window.session, window.view3d.builder
+    time = frame.radar.chirp_time(0, 2)
+    assert session.time == time and "chirp 3 of 32" in window.time_bar.label.text()
+    vertices = frame.scene.world_vertices(0, time)
+    assert builder.meshes._polys[0].points == pytest.approx(vertices, abs=1e-5)
+    ray = int(builder.rays.segments.rays[0])
+    hit = frame.paths.points(time)[frame.paths.offsets[ray]]
+    assert builder.rays.segments.points[1] == pytest.approx(hit, abs=1e-5)
+
+
+def test_play_runs_through_the_frame(qtbot, window):
+    window.time_bar.slider.setValue(0)
+    qtbot.mouseClick(window.time_bar.play_button, LEFT)
+    qtbot.waitUntil(lambda: window.session.chirp >= 3, timeout=PATIENCE_MS)
+    qtbot.mouseClick(window.time_bar.play_button, LEFT)
+    chirp = window.session.chirp
+    qtbot.wait(200)
+    assert window.session.chirp == chirp
+
+
+def test_a_click_in_the_slow_time_signal_goes_to_its_chirp(qtbot, window):
+    strip = window.time_bar.strip
+    qtbot.mouseClick(strip, LEFT, pos=QtCore.QPoint(round(strip.x_of(25)), 30))
+    assert window.session.chirp == 25

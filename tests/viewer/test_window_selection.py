@@ -1,0 +1,163 @@
+"""Cells, rays and meshes selected by real clicks, under a virtual screen."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters
+from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
+from support.window import LEFT, PATIENCE_MS, click_cell, panel_of, project, settle, strongest_cell
+
+EDGE = 0.01          # of a cell: paths that close to its edge may fall to either side
+
+
+def cells_from_phases(frame):
+    """Range and velocity of each path in cells, from the exact IF phase at neighbouring samples and chirps."""
+    waveform = frame.radar.waveform
+    chirp, half = 0.5 * (waveform.num_chirps - 1), 0.5
+
+    def cycles(n: float, j: float):
+        within = n / waveform.sampling_rate
+        slot = j * len(frame.radar.transmitters) * waveform.chirp_interval
+        delay = frame.paths.lengths([slot + within], 0, 0)[0] / ep.speed_of_light
+        return waveform.start_frequency * delay + waveform.slope * within * delay - 0.5 * waveform.slope * delay ** 2
+
+    middle = 0.5 * (waveform.num_samples - 1)
+    per_sample = cycles(middle + half, chirp) - cycles(middle - half, chirp)
+    per_chirp = cycles(middle, chirp + half) - cycles(middle, chirp - half)
+    return per_sample * waveform.num_samples, per_chirp * waveform.num_chirps + waveform.num_chirps // 2
+
+
+def offset_in_turns(value, index: int, count: int):
+    """Cells from `index`, the shorter way round."""
+    return (value - index + 0.5 * count) % count - 0.5 * count
+
+
+# --- cell -> rays ---
+
+def test_a_clicked_cell_lights_exactly_the_rays_that_the_phases_say(qtbot, window, frame):
+    key = ("route", "ghost")
+    distance, velocity = strongest_cell(window, key)
+    window.map_area.reach_box.setValue(1)
+    click_cell(qtbot, window, key, distance, velocity)
+    session, waveform = window.session, frame.radar.waveform
+    assert session.part_key == key and session.box == CellBox.around(distance, velocity, 1)
+    ranges, velocities = cells_from_phases(frame)
+    off = np.maximum(np.abs(offset_in_turns(ranges, distance, waveform.num_samples)),
+                     np.abs(offset_in_turns(velocities, velocity, waveform.num_chirps)))
+    is_ghost = frame.part_of_path["route"] == list(frame.parts["route"]).index("ghost")
+    surely, perhaps = is_ghost & (off < 1.5 - EDGE), is_ghost & (off < 1.5 + EDGE)
+    assert surely.sum() > 20
+    assert np.all(session.lit[surely]) and not np.any(session.lit & ~perhaps)
+    assert set(window.table.model.rays) == set(np.flatnonzero(session.lit))
+    assert set(window.view3d.builder.lit.segments.rays) == set(np.flatnonzero(session.lit))
+    assert f"{session.lit.sum():,}" in window.filter_box.count_label.text()
+
+
+def test_a_dragged_rectangle_lights_its_rays(qtbot, window):
+    panel, spectrum = panel_of(window, WHOLE, WHOLE), window.session.parts.whole.spectrum
+    distance, velocity = strongest_cell(window, (WHOLE, WHOLE))
+    begin = panel.to_pixel(spectrum.range[distance] - 0.6, spectrum.velocity[velocity] - 0.8).toPoint()
+    end = panel.to_pixel(spectrum.range[distance] + 0.6, spectrum.velocity[velocity] + 0.8).toPoint()
+    qtbot.mousePress(panel, LEFT, pos=begin)
+    qtbot.mouseMove(panel, QtCore.QPoint((begin.x() + end.x()) // 2, (begin.y() + end.y()) // 2))
+    qtbot.mouseMove(panel, end)
+    qtbot.mouseRelease(panel, LEFT, pos=end)
+    session = window.session
+    assert session.box.first_range < distance < session.box.last_range
+    cells = session.columns.cells
+    assert np.array_equal(session.lit, cells.within((session.box.first_range, session.box.last_range),
+                                                    (session.box.first_velocity, session.box.last_velocity)))
+    qtbot.keyClick(window, Qt.Key.Key_Escape)
+    assert session.box is None
+
+
+# --- ray -> hits and cell ---
+
+@pytest.mark.parametrize("leg", [0, 1])
+def test_a_click_on_a_projected_ray_selects_it(qtbot, window, leg):
+    window.session.set_part(("route", "ghost"))
+    window.session.set_filters(Filters(expression="T 'wall_*' 'walker' R"))  # without the same rays the other way round
+    window.session.set_max_rays(3)
+    settle(qtbot)
+    segments = window.view3d.builder.rays.segments
+    row = np.flatnonzero((segments.ray == 1) & (segments.bounce == leg))[0]
+    begin, end = segments.points[segments.ends[row]].astype(float)
+    # where the pictures of the other rays are farthest away
+    spots = [project(window, begin + share * (end - begin)) for share in np.linspace(0.2, 0.8, 13)]
+    others = [project(window, point) for other in np.flatnonzero(segments.ray != 1)
+              for point in np.linspace(*segments.points[segments.ends[other]].astype(float), 60)]
+    spot = max(spots, key=lambda at: min((at - other).manhattanLength() for other in others))
+    qtbot.mouseClick(window.view3d, LEFT, pos=spot)
+    settle(qtbot)
+    path = int(segments.rays[1])
+    assert window.session.ray == path
+    assert window.view3d.builder.chosen.segments.rays.tolist() == [path]
+    for mesh in window.session.columns.meshes_of(path):
+        assert window.session.mesh_names[mesh] in window.table.details.text()
+    assert panel_of(window, "route", "ghost").ray_cell == window.session.cell_of(path)
+    assert window.table.model.rays[window.table.view.currentIndex().row()] == path
+
+
+def test_a_row_of_the_table_selects_its_ray(qtbot, window):
+    window.table.view.selectRow(4)
+    assert window.session.ray == window.table.model.rays[4]
+
+
+def test_a_click_beside_everything_selects_nothing(qtbot, window):
+    window.session.select_ray(3)
+    qtbot.mouseClick(window.view3d, LEFT, pos=QtCore.QPoint(3, 3))
+    assert window.session.ray is None
+
+
+# --- mesh -> its spectrum ---
+
+def test_a_click_on_a_body_shows_its_own_spectrum(qtbot, window, frame):
+    window.session.set_max_rays(1)
+    head = frame.scene.meshes[0]
+    centre = frame.scene.world_vertices(0, window.session.time).mean(axis=0)
+    window.look_radar()  # no wall in between
+    settle(qtbot)
+    qtbot.mouseClick(window.view3d, LEFT, Qt.KeyboardModifier.ControlModifier, pos=project(window, centre + [0, 0.2, 0.2]))
+    settle(qtbot)
+    assert window.session.node == head.name == "walker/head"
+    assert ("mesh", "walker/head") in window.map_area.panels
+    qtbot.keyClick(window, Qt.Key.Key_Escape)
+    assert window.session.node is None and ("mesh", "walker/head") not in window.map_area.panels
+
+
+def test_the_check_boxes_of_the_tree_hide_meshes(qtbot, window):
+    walker = window.tree.topLevelItem(0)
+    walker.setCheckState(0, Qt.CheckState.Unchecked)
+    settle(qtbot)
+    actors = window.view3d.builder.meshes.actors
+    assert [bool(actor.GetVisibility()) for actor in actors] == [False, False, True, True]
+    assert walker.child(0).checkState(0) == Qt.CheckState.Unchecked
+    counts = [walker.child(row).text(1) for row in range(2)]
+    assert counts == [f"{count:,}" for count in window.session.mesh_counts()[:2]]
+
+
+def test_the_map_of_a_mesh_is_made_anew_when_the_filters_have_come_to_rest(qtbot, window):
+    window.session.select_node("walker/head")
+    key = (MESH_GROUP, "walker/head")
+    before = window.session.parts[key]
+    window.filter_box.from_box.setValue(2)
+    qtbot.waitUntil(lambda: window.session.parts[key] is not before, timeout=PATIENCE_MS)
+    session = window.session
+    shown = session.visible & np.asarray(ep.hits("walker/head").matches(session.paths))
+    wanted = ep.range_doppler(ep.synthesize(session.paths.select(shown)), session.radar).values
+    assert np.abs(session.parts[key].spectrum.values - wanted).max() <= 1e-9 * np.abs(wanted).max()  # rounding
+
+
+# --- table ---
+
+def test_the_table_is_sorted_and_copied(qtbot, window):
+    window.table.view.sortByColumn(1, Qt.SortOrder.AscendingOrder)
+    ranges = window.session.columns.cells.range[window.table.model.rays]
+    assert np.all(np.diff(ranges) >= 0.0)
+    window.table.view.selectRow(1)
+    window.table.view.setFocus()
+    qtbot.keyClick(window.table.view, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
+    heading, row = QtWidgets.QApplication.clipboard().text().split("\n")
+    assert heading.split("\t")[0] == "Bounces" and row.split("\t")[1] == f"{ranges[1]:.3f}"

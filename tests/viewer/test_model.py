@@ -207,6 +207,18 @@ def test_the_map_of_a_mesh_follows_the_filters(session):
     assert session.part is before
 
 
+def test_a_map_of_a_mesh_that_is_not_made_anew_is_taken_away(session):
+    def stop(_stage, _fraction):
+        raise InterruptedError
+
+    session.select_node("walker/head")
+    session.set_part(("mesh", "walker/head"))
+    session.set_filters(Filters(min_bounces=2))
+    with pytest.raises(InterruptedError):
+        session.refresh_node(stop)
+    assert not session.parts.of_group("mesh") and session.node == "walker/head" and session.part_key == (WHOLE, WHOLE)
+
+
 @pytest.mark.parametrize("hide", [lambda session: session.set_filters(Filters(min_bounces=3)),
                                   lambda session: session.set_part(("count", "other"))])
 def test_a_chosen_ray_that_is_hidden_is_chosen_no_more(session, hide):

@@ -146,9 +146,9 @@ def test_plot_rays_draws_what_is_asked_for(frame):
 @pytest.mark.parametrize("keywords, error, word", [
     ({"colour_by": "mesh"}, TypeError, "color_by"), ({"color_by": "mood"}, ValueError, "color_by"),
     ({"cmap": "rainbows", "color_by": "power"}, ValueError, "cmap"), ({"view": "back"}, ValueError, "view"),
-    ({"selection": "T nonsense"}, ValueError, "^"), ({"tx": 2}, ValueError, "tx: must"), ({"rx": -1}, ValueError, "rx: must"),
-    ({"num_rays": -1}, ValueError, "num_rays: must"), ({"chirp": 32}, ValueError, "chirp: must"),
-    ({"chirp": -1}, ValueError, "chirp: must"),
+    ({"selection": "T nonsense"}, ValueError, "^"), ({"tx": 2}, ValueError, "tx: must"),
+    ({"rx": -1}, ValueError, "rx: must"), ({"num_rays": -1}, ValueError, "num_rays: must"),
+    ({"chirp": 32}, ValueError, "chirp: must"), ({"chirp": -1}, ValueError, "chirp: must"),
 ])
 def test_bad_keywords_are_named(frame, keywords, error, word):
     with pytest.raises(error) as caught:

@@ -14,7 +14,7 @@ GHOSTS = "T .* 'walker' .* R"
 
 
 def simulated_anew(frame, **settings):
-    """The scene of the frame with few rays, in so long a frame that those traced anew differ; keyframes stand in the frame."""
+    """The scene of the frame with few rays, in so long a frame that those traced anew differ."""
     radar = radar_like(frame.radar, waveform={"chirp_interval": SLOW_CHIRPS})
     parts = {"route": {"direct": "T 'walker' R", "ghost": GHOSTS}}
     made = ep.simulate(frame.scene, radar, num_rays=400, max_bounces=2, seed=3, noise_seed=None, parts=parts, **settings)

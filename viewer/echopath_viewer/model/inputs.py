@@ -16,7 +16,10 @@ from .signals import Signals, all_paths, selections_of
 
 @dataclasses.dataclass
 class ViewInput:
-    """Paths and parts; signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window."""
+    """Paths and parts.
+
+    signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
+    """
 
     paths: object
     parts: PartSet

@@ -234,7 +234,11 @@ class Session:
         if self.node is None or not self.is_node_stale:
             return
         was_shown = self._is_node_shown
-        self._make_node(self.node, self.node_base, progress)
+        try:
+            self._make_node(self.node, self.node_base, progress)
+        finally:
+            if self.is_node_stale:  # stopped: rather no map than one of other filters
+                self._replace_node(self.node, self.node_base, None)
         if was_shown:
             self.set_part((MESH_GROUP, self.node))
 

@@ -5,8 +5,8 @@ import dataclasses
 
 import echopath as ep
 
-NO_WORDS = ("signal: this frame is traced anew within (retrace='{}'), so that its later paths are known by expressions alone; "
-            "rays chosen by power, by cells or by signals without selections have no signal of their own")
+NO_WORDS = ("signal: this frame is traced anew within (retrace='{}'), so that its later paths are known by expressions "
+            "alone; rays chosen by power, by cells or by signals without selections have no signal of their own")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -28,7 +28,7 @@ TITLE = "Echopath"
 SIZE = (1600, 960)
 VIEW_TITLES = {"radar": "Radar's eye", "top": "Top", "side": "Side", "fit": "Fit"}
 CONTENT_PAGE, EMPTY_PAGE = 0, 1
-SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: they may take longer than a step of a box
+SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: longer work than a step of a box
 
 
 class MainWindow(QtWidgets.QMainWindow):

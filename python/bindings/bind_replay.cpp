@@ -6,6 +6,7 @@
 #include <string>
 
 #include "array.h"
+#include "choice.h"
 #include "echopath/replay/renewal.h"
 #include "echopath/replay/validity.h"
 #include "keywords.h"
@@ -16,12 +17,13 @@ namespace {
 
 using ValidityPtr = std::shared_ptr<Validity>;
 
-ValidityPtr check_validity(const Paths& paths, const Radar* radar, const py::object& times, bool arrays,
-                           const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "validity", {"times", "arrays", "progress"});
+ValidityPtr check_validity(const Paths& paths, const Radar* radar, const std::string& replay, const py::object& times,
+                           bool arrays, const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "validity", {"replay", "times", "arrays", "progress"});
   ValiditySettings settings;
   if (!times.is_none()) settings.times = as_vector<double>(times, "times");
   settings.arrays = arrays;
+  settings.specular = kSpecularPoints.value_of(replay);
   return run_job("validity", progress, [&](Job& job) {
     return std::make_shared<Validity>(validity(paths, radar ? *radar : paths.radar, settings, &job));
   });
@@ -46,7 +48,7 @@ std::string repr_of(const Validity& self) {
 void bind_shares(py::module_& m) {
   py::class_<ValidityShares>(m, "ValidityShares", "What one trace does not serve, as shares of the power of some paths.")
       .def_readonly("power", &ValidityShares::power, "W, what the shares are of")
-      .def_readonly("slid", &ValidityShares::slid, "share: phase error of frozen points of reflection above 0.3 rad")
+      .def_readonly("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad")
       .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
       .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
       .def_readonly("turned", &ValidityShares::turned,
@@ -71,7 +73,7 @@ the trace time and the times of the check; physical-optics paths are scaled to t
       .def_readonly("times", &Validity::times, "[T] s, of the check")
       .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
       .def_property_readonly("phase_error_share", share(&ValidityShares::slid),
-                             "share of the power whose frozen points of reflection make an error above 0.3 rad")
+                             "share of the power whose points of reflection make an error above 0.3 rad")
       .def_property_readonly("occluded_share", share(&ValidityShares::blocked), "share of the power that something blocks")
       .def_property_readonly("left_share", share(&ValidityShares::left),
                              "share of the power whose points of reflection leave the surface around their hit")
@@ -79,6 +81,8 @@ the trace time and the times of the check; physical-optics paths are scaled to t
                              "share of the power of surfaces that turn to or away from the rays")
       .def_property_readonly("new_surface_share", share(&ValidityShares::new_surface),
                              "share of single echoes of all that is seen: of what was hidden from the trace")
+      .def_property_readonly("replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
+                             "\"material\" or \"fermat\": the replay that was certified")
       .def_readonly("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power")
       .def_readonly("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas")
       .def_readonly("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas")
@@ -151,16 +155,17 @@ void bind_replay(py::module_& m) {
   bind_shares(m);
   bind_report(m);
   m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("times") = py::none(), py::arg("arrays") = false, py::arg("progress") = py::none(),
+        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false, py::arg("progress") = py::none(),
         R"(Whether one trace serves the whole frame and the whole array: a report with warnings.
 
 Checks all paths at the ends of the frame, for the antennas of the trace and those at the rim of the array: phase errors of
-frozen points of reflection, whether these still lie on their surface, shadow rays of all legs, cosines; and looks for
+points of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and looks for
 surface that was hidden from the trace with rays of its own. Exact parts of the replay (single bounces, images in mirrors)
 have no phase error.
 
 paths: of a trace, all or a selection of them, which asks about these alone
 radar: another waveform, array or motion than that of the trace, or None
+replay: of the replay that is to be certified, as in synthesize
 times: [T] s, of the check, or None: the centres of the first and the last chirp
 arrays: keep what is found of each path, [P] each
 progress: callable(stage, fraction) or None

@@ -13,16 +13,17 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {"tolerance", "method", "evaluate", "phase_tolerance",
+const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "evaluate", "phase_tolerance",
                                             "retrace", "keyframes", "progress"};
 
 enum class Evaluation { kInterpolated, kChirps, kSamples };
 constexpr auto kEvaluation = choice<Evaluation>("evaluate", "interpolated", "chirps", "samples");
 constexpr auto kRetrace = choice<Retrace>("retrace", "never", "invalid", "always");
 
-CubeSettings settings_of(double tolerance, const std::string& method, const std::string& evaluate, double phase_tolerance,
-                         const std::string& retrace, int keyframes) {
+CubeSettings settings_of(double tolerance, const std::string& method, const std::string& replay, const std::string& evaluate,
+                         double phase_tolerance, const std::string& retrace, int keyframes) {
   CubeSettings settings;
+  settings.replay.specular = kSpecularPoints.value_of(replay);
   const Evaluation evaluation = kEvaluation.value_of(evaluate);
   settings.synthesis = {tolerance, kMethod.value_of(method), evaluation == Evaluation::kSamples};
   settings.replay.phase_tolerance = phase_tolerance;
@@ -39,11 +40,10 @@ py::array cube_array(Cube&& cube) {
 const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
-                          const std::string& evaluate, double phase_tolerance, const std::string& retrace, int keyframes,
-                          const py::object& progress,
-                          const py::kwargs& unknown) {
+                          const std::string& replay, const std::string& evaluate, double phase_tolerance,
+                          const std::string& retrace, int keyframes, const py::object& progress, const py::kwargs& unknown) {
   refuse_unknown(unknown, "synthesize", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, evaluate, phase_tolerance, retrace, keyframes);
+  const CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   return cube_array(run_job("synthesize", progress, [&](Job& job) {
     return synthesize(paths, radar_or_own(paths, radar), settings, &job);
   }));
@@ -65,10 +65,11 @@ bool is_nested(const py::dict& parts) {
 }
 
 py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict& parts, double tolerance,
-                         const std::string& method, const std::string& evaluate, double phase_tolerance,
-                         const std::string& retrace, int keyframes, const py::object& progress, const py::kwargs& unknown) {
+                         const std::string& method, const std::string& replay, const std::string& evaluate,
+                         double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
+                         const py::kwargs& unknown) {
   refuse_unknown(unknown, "decompose", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, evaluate, phase_tolerance, retrace, keyframes);
+  const CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   const bool nested = is_nested(parts);
   std::vector<std::string> names;
   std::vector<std::vector<NamedSelection>> partitions;
@@ -98,13 +99,16 @@ py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict&
 
 void bind_sim(py::module_& m) {
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("evaluate") = "interpolated",
-        py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
+        py::arg("keyframes") = 0, py::arg("progress") = py::none(),
         R"(The noise-free IF signal of paths.
 
 radar: another waveform, array or motion than that of the trace, or None
 tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
 method: "auto", "direct" (the reference), "recurrence" or "nufft"
+replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with their
+    triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
 evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of each path), "chirps" (in every chirp: the
     reference), or "samples" (interpolated, and moving echoes with the delay of every sample: for fast rotors, a sine and a
     cosine per path and sample)
@@ -114,13 +118,15 @@ keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` sugges
 progress: callable(stage, fraction) or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar") = py::none(), py::arg("parts") = py::dict(),
-        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("evaluate") = "interpolated",
-        py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
+        py::arg("keyframes") = 0, py::arg("progress") = py::none(),
         R"(The signals of parts of the paths, in one pass.
 
 parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at once
 Returns {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; one such mapping
-per view for several views. radar, tolerance, method, evaluate, phase_tolerance, retrace, keyframes and progress are as in synthesize.)");
+per view for several views. radar, tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes and progress are
+as in synthesize.)");
 }
 
 }  // namespace echopath::bindings

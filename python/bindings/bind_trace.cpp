@@ -171,12 +171,14 @@ struct Series {
 
 // Of all paths. Runs beside Python, so that Ctrl-C is answered.
 Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
-                            const Antenna& receiver) {
+                            const Antenna& receiver, SpecularPoints specular = SpecularPoints::kMaterial) {
   return run_job("replay", py::none(), [&](Job& job) {
     Radar radar = paths.radar;
     radar.transmitters = {transmitter};
     radar.receivers = {receiver};
-    const Replayer replayer(paths, radar);
+    ReplaySettings settings;
+    settings.specular = specular;
+    const Replayer replayer(paths, radar, settings);
     const std::vector<int64_t> indices = path_range(0, paths.num_paths());
     Series series;
     std::vector<double> lengths;
@@ -194,11 +196,13 @@ Shape series_shape(const Paths& paths, const std::vector<double>& times) {
   return {static_cast<py::ssize_t>(times.size()), static_cast<py::ssize_t>(paths.num_paths())};
 }
 
-py::array amplitudes_of(const Paths& paths, const py::object& times, const py::object& tx, const py::object& rx) {
+py::array amplitudes_of(const Paths& paths, const py::object& times, const py::object& tx, const py::object& rx,
+                        const std::string& replay) {
+  const SpecularPoints specular = kSpecularPoints.value_of(replay);
   const std::vector<double> at = as_vector<double>(times, "times");
   const Antenna transmitter = paths.radar.transmitters[antenna_index(tx, "tx", paths.radar.transmitters.size())];
   const Antenna receiver = paths.radar.receivers[antenna_index(rx, "rx", paths.radar.receivers.size())];
-  return numpy_take(evaluate_one_channel(paths, at, transmitter, receiver).amplitudes, series_shape(paths, at));
+  return numpy_take(evaluate_one_channel(paths, at, transmitter, receiver, specular).amplitudes, series_shape(paths, at));
 }
 
 py::array amplitude_of(const Paths& paths) {
@@ -226,11 +230,13 @@ py::array path_power_of(const Paths& paths) {
   }));
 }
 
-py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver) {
+py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver,
+                     const std::string& replay) {
+  const SpecularPoints specular = kSpecularPoints.value_of(replay);
   const std::vector<double> at = as_vector<double>(times, "times");
   const Antenna from = antenna_of(transmitter, "transmitter", paths.radar.transmitters);
   const Antenna to = antenna_of(receiver, "receiver", paths.radar.receivers);
-  return numpy_take(evaluate_one_channel(paths, at, from, to).lengths, series_shape(paths, at));
+  return numpy_take(evaluate_one_channel(paths, at, from, to, specular).lengths, series_shape(paths, at));
 }
 
 py::array points_of(const Paths& paths, double time) {
@@ -424,9 +430,13 @@ share hits; selections share all hits of their trace.)")
                              "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length")
       .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
       .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
-           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices).")
+           py::arg("replay") = "material",
+           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); "
+           "replay as in synthesize.")
       .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
-           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame.")
+           py::arg("replay") = "material",
+           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's "
+           "frame; replay as in synthesize.")
       .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
       .def("select", &select_paths, py::arg("selection"), "The paths that `selection`, a path expression or a Selection, takes.")
       .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")

@@ -8,6 +8,7 @@
 
 #include "echopath/em/footprint.h"
 #include "echopath/em/jones.h"
+#include "echopath/replay/specular_slide.h"
 #include "echopath/signal/synthesizer.h"
 #include "echopath/trace/sampler.h"
 
@@ -44,6 +45,7 @@ constexpr Choice<Enum, sizeof...(Names)> choice(const char* argument, Names... n
 inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first_order", "second_order");
 inline constexpr auto kMethod = choice<Method>("method", "auto", "direct", "recurrence", "nufft");
 inline constexpr auto kPolarization = choice<PolarizationModel>("polarization", "scalar", "jones");
+inline constexpr auto kSpecularPoints = choice<SpecularPoints>("replay", "material", "fermat");
 inline constexpr auto kSampler = choice<Sampler>("sampler", "lattice", "fibonacci", "r2", "random");
 
 }  // namespace echopath::bindings

@@ -23,7 +23,8 @@ def decompose(paths, radar=None, parts=None, **settings):
     paths: of `trace`; radar: another waveform, array or motion than that of the trace, or None
     parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at
         once
-    settings: tolerance (relative rms), method, evaluate, phase_tolerance (rad), retrace, keyframes and progress, as in `synthesize`
+    settings: tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes and progress, as in
+        `synthesize`
     Returns Parts, {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; for
     several views {view: Parts}. Raises ValueError for bad names and selections.
     """

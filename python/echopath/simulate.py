@@ -89,14 +89,14 @@ class Frame:
 
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
-             parts=None, tolerance=1e-7, method="auto", evaluate="interpolated", retrace="never", keyframes=0, noise_seed=1,
-             window="hann", zero_pad=1, angles=None, progress=None) -> Frame:
+             parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
+             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
         max_rays: as in `trace`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
-    tolerance, method, evaluate, retrace, keyframes: as in `synthesize`; window, zero_pad: as in `range_doppler`
+    tolerance, method, replay, evaluate, retrace, keyframes: as in `synthesize`; window, zero_pad: as in `range_doppler`
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
     progress: callable (stage, fraction) or None
@@ -109,7 +109,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
                          polarization=polarization, footprint=footprint, sampler=sampler,
                          batches=batches, target_error_db=target_error_db, max_rays=max_rays, progress=progress)
     with clock("synthesis"):
-        settings = {"tolerance": tolerance, "method": method, "evaluate": evaluate, "retrace": retrace,
+        settings = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate, "retrace": retrace,
                     "keyframes": keyframes, "progress": progress}
         cubes, whole = _cubes(paths, radar, partitions, settings)
     with clock("labels"):

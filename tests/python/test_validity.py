@@ -3,95 +3,17 @@ from importlib.resources import as_file
 
 import numpy as np
 import pytest
-from scipy.optimize import root
 
 import echopath as ep
 from echopath.materials import data_folder
 from support import shapes
+from support.slides import TARGET, TRANSMITTER, ROUGH, Ball, Plane, bisector, excess_by_search, frozen
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
-TRANSMITTER, TARGET = np.zeros(3), np.array([20.0, 0.0, 0.0])
 MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of transmitter and target, 3 m aside
 NOTE_TOLERANCE = 0.012       # relative: the formulas of the note are second order in the slide and have two or three digits
 EXCESS_TOLERANCE = 0.01      # relative, up to 1 rad: e = g H^-1 g / 2 is second order in the slide
 GRAZING_SHARE = 1e-6         # of the power: rays within single precision of a facet's horizon
-ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
-
-
-class Ball:
-    """Part of a sphere around `top`, where the unit vector `normal` stands on it; radius in m, negative: hollow."""
-
-    def __init__(self, top, normal, radius):
-        self.top, self.normal, self.radius = np.asarray(top, float), np.asarray(normal, float), radius
-        first = np.cross(self.normal, [0.0, 0.6, 0.8])
-        self.axes = np.stack([first / np.linalg.norm(first), np.cross(self.normal, first / np.linalg.norm(first))])
-
-    def at(self, offsets):
-        """Points of the surface over tangential offsets [..., 2] in m."""
-        centre = self.top - self.radius * self.normal
-        outward = np.asarray(offsets) @ self.axes + self.radius * self.normal
-        return centre + abs(self.radius) * outward / np.linalg.norm(outward, axis=-1, keepdims=True)
-
-    def mesh(self, cells=40):
-        width = 0.8 * min(abs(self.radius), 1.0)
-        steps = np.linspace(-width / 2, width / 2, cells + 1)
-        vertices = self.at(np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2))
-        first = np.arange(cells * (cells + 1)).reshape(cells, cells + 1)[:, :-1].ravel()
-        return ep.Mesh(vertices, np.concatenate([np.stack([first, first + 1, first + cells + 2], axis=1),
-                                                 np.stack([first, first + cells + 2, first + cells + 1], axis=1)]))
-
-
-class Plane(Ball):
-    def __init__(self, top, normal):
-        super().__init__(top, normal, np.inf)
-
-    def at(self, offsets):
-        return self.top + np.asarray(offsets) @ self.axes
-
-    def mesh(self):
-        return ep.Mesh(self.at([[-9, -9], [9, -9], [9, 9], [-9, 9]]), [[0, 1, 2], [0, 2, 3]])
-
-
-def hit_near(mesh, point):
-    """(triangle, u, v) of the point of the mesh next to `point`, which lies over one of its triangles or near an edge."""
-    corners = mesh.vertices[mesh.triangles]
-    edge_u, edge_v, along = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], point - corners[:, 0]
-    cross = np.cross(edge_u, edge_v)
-    area = np.sum(cross**2, axis=1)
-    u, v = np.sum(cross * np.cross(along, edge_v), axis=1) / area, np.sum(cross * np.cross(edge_u, along), axis=1) / area
-    size = np.sqrt(np.sqrt(area))
-    is_close = np.linalg.norm(corners.mean(axis=1) - point, axis=1) < 2 * size
-    triangle = int(np.argmax(np.where(is_close, np.min([u, v, 1 - u - v], axis=0), -np.inf)))
-    return triangle, max(u[triangle], 0.0), max(v[triangle], 0.0)
-
-
-def one_path(scene, radar, points, flags=0):
-    """A record of one path over the meshes of the scene in their order, diffuse at the last of `points` [N, 3]."""
-    hits = np.zeros(len(points), dtype=[("mesh_id", "u4"), ("triangle_id", "u4"), ("u", "f4"), ("v", "f4")])
-    for k, (mesh, point) in enumerate(zip(scene.meshes, points)):
-        hits[k] = (mesh.id, *hit_near(mesh.mesh, np.asarray(point, float)))
-    mean = [np.mean([antenna.position for antenna in side], axis=0) for side in (radar.transmitters, radar.receivers)]
-    stratum = ep.Stratum(axis=[1, 0, 0], versine=2.0, num_rays=1, ray_density=1.0, name="all")
-    middle = 0.5 * (radar.waveform.num_chirps * radar.waveform.chirp_interval)
-    frame = ep.TraceFrame(start_time=0.0, trace_time=middle, transmitter=mean[0], receiver=mean[1], strata=[stratum], seed=1,
-                          max_bounces=4, polarization="scalar", footprint="none", statistics=ep.TraceStatistics())
-    last = 1 << (len(points) - 1)
-    columns = {"offsets": np.array([0]), "num_bounces": np.array([len(points)], np.uint8), "diffuse": np.array([last], np.uint64),
-               "weight": np.array([1], np.complex64), "stratum": np.zeros(1, np.uint8), "batch": np.zeros(1, np.uint8),
-               "flags": np.array([flags], np.uint32)}
-    return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
-
-
-def scene_with(mirrors, at=TARGET):
-    """Smooth metal mirrors, and a small rough plate `at`."""
-    objects = {f"mirror{k}": (mirror.mesh(), shapes.METAL, True) for k, mirror in enumerate(mirrors)}
-    return shapes.scene_of(**objects, target=(shapes.plate(at, (-1.0, 0.3, 0.0), 0.02), ROUGH))
-
-
-def frozen(mirrors, slides, at=TARGET, **keywords):
-    """The path over points of the mirrors that lie tangential `slides` [N, 2] in m off their tops."""
-    points = [mirror.at(slide) for mirror, slide in zip(mirrors, slides)]
-    return one_path(scene_with(mirrors, at), shapes.make_radar(TRANSMITTER), [*points, at], **keywords)
 
 
 def phase_error(paths):
@@ -115,27 +37,6 @@ def test_a_point_on_a_column_has_the_phase_error_of_the_note(radius, slide, expe
     along = mirror.axes @ [slide, 0.0, 0.0]
     next_order = (slide / radius) ** 2  # of the note's formula
     assert phase_error(frozen([mirror], [along])) == pytest.approx(expected, rel=max(NOTE_TOLERANCE, next_order))
-
-
-def length_over(points):
-    return np.sum(np.linalg.norm(np.diff(points, axis=0), axis=1))
-
-
-def excess_by_search(mirrors, slides, at):
-    """How much longer the path over the slid points is than the one over the points where the length is stationary, m."""
-    def length(offsets):
-        return length_over([TRANSMITTER, *(m.at(o) for m, o in zip(mirrors, offsets.reshape(-1, 2))), at])
-
-    def gradient(offsets, step=1e-5):
-        return np.array([length(offsets + e) - length(offsets - e) for e in step * np.eye(len(offsets))]) / (2 * step)
-
-    found = root(gradient, np.zeros(2 * len(mirrors)), tol=1e-12).x
-    return length(np.ravel(slides)) - length(found)
-
-
-def bisector(point, before, behind):
-    both = (before - point) / np.linalg.norm(before - point) + (behind - point) / np.linalg.norm(behind - point)
-    return both / np.linalg.norm(both)
 
 
 DIRECTIONS = {"in": (1.0, 0.0), "across": (0.0, 1.0), "oblique": (0.6, -0.8)}
@@ -288,7 +189,7 @@ def test_a_near_mirror_and_a_wide_array_are_a_warning():
     """A mirror 0.8 m away: an aperture of 4 mm is harmless, 20 cm are not."""
     wide, narrow = (radar_of(transmitters=[(0, -a, 1), (0, a, 1)]) for a in (0.1, 0.002))
     report = report_of(near_mirror(), wide, "'bumper' 'ball'")
-    assert "array is too wide" in only_warning(report)
+    assert "too wide for one trace" in only_warning(report)
     assert report.motion_phase_error < 0.01 < 0.3 < report.largest_phase_error and report.keyframes == 1
     assert report_of(near_mirror(), narrow, "'bumper' 'ball'").ok
 

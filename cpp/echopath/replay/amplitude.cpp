@@ -1,5 +1,6 @@
 #include "echopath/replay/amplitude.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "echopath/base/constants.h"
@@ -117,6 +118,37 @@ void evaluate_mirrors_only(const LocalPath& path, const PosedHit* hits, const In
   }
 }
 
+PosedHit* moved_hits(const LocalPath& path, const Vec3& start, EvaluationScratch& scratch) {
+  std::copy_n(scratch.hits.begin(), path.count, scratch.moved.begin());
+  step_to_fermat(path, start, scratch.slide, scratch.moved.data());
+  return scratch.moved.data();
+}
+
+// Channels of one antenna at the start with all at the end.
+ChannelValues channels_of(const LocalPath& path, size_t start, size_t num_starts, size_t num_ends, const ChannelValues& all) {
+  const size_t first = path.is_reversed ? start : start * num_ends, step = path.is_reversed ? num_starts : 1;
+  const auto offset = all.stride * static_cast<int64_t>(first);
+  return {all.length + offset, all.amplitude + offset, all.stride * static_cast<int64_t>(step)};
+}
+
+// From one antenna to all at the other end, whose legs are `receive`.
+void evaluate_start(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const PosedAntenna& start,
+                    const std::vector<PosedAntenna>& ends, const std::vector<AntennaLeg>& receive, const RadioConstants& radio,
+                    const ChannelValues& out) {
+  const AntennaLeg in = transmit_leg(path, hits, start);
+  for (size_t end = 0; end < ends.size(); ++end) {
+    const AntennaLeg& back = receive[end];
+    const int64_t at = out.stride * static_cast<int64_t>(end);
+    out.length[at] = in.length + inner.length + back.length;
+    const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
+    if (near) out.amplitude[at] = 0.0;
+    else if (path.diffuse == 0) out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio);
+    else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
+    if (path.jones) out.amplitude[at] *= polarization_factor(*path.jones, start, in.at_antenna, ends[end], back.at_antenna);
+    turn(out.amplitude[at], in.gain.phase + back.gain.phase);
+  }
+}
+
 }  // namespace
 
 RadioConstants radio_constants(const Paths& paths, const Radar& radar) {
@@ -137,27 +169,20 @@ void evaluate_path(const LocalPath& path, const Instant& instant, const RadioCon
     evaluate_mirrors_only(path, hits, instant, radio, out);
     return;
   }
-  const InnerPart inner = inner_part(path, hits);
+  const bool is_fixed = path.sliding == 0 || radio.specular == SpecularPoints::kMaterial;
   const std::vector<PosedAntenna>& starts = path.is_reversed ? instant.receivers : instant.transmitters;
   const std::vector<PosedAntenna>& ends = path.is_reversed ? instant.transmitters : instant.receivers;
   scratch.receive.clear();
   for (const PosedAntenna& antenna : ends) scratch.receive.push_back(receive_leg(path, hits, antenna));
+  InnerPart inner;
+  if (is_fixed) inner = inner_part(path, hits);
   for (size_t start = 0; start < starts.size(); ++start) {
-    const AntennaLeg in = transmit_leg(path, hits, starts[start]);
-    for (size_t end = 0; end < ends.size(); ++end) {
-      const AntennaLeg& back = scratch.receive[end];
-      const size_t channel = path.is_reversed ? end * starts.size() + start : start * ends.size() + end;
-      const int64_t at = out.stride * static_cast<int64_t>(channel);
-      out.length[at] = in.length + inner.length + back.length;
-      const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
-      if (near) out.amplitude[at] = 0.0;
-      else if (path.diffuse == 0) out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio);
-      else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
-      if (path.jones) {
-        out.amplitude[at] *= polarization_factor(*path.jones, starts[start], in.at_antenna, ends[end], back.at_antenna);
-      }
-      turn(out.amplitude[at], in.gain.phase + back.gain.phase);
+    if (!is_fixed) {
+      hits = moved_hits(path, starts[start].position, scratch);
+      inner = inner_part(path, hits);
     }
+    evaluate_start(path, hits, inner, starts[start], ends, scratch.receive, radio,
+                   channels_of(path, start, starts.size(), ends.size(), out));
   }
 }
 

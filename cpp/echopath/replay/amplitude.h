@@ -13,16 +13,20 @@
 // Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}.
 // A path whose surface is seen from opposite sides has amplitude 0. The phase of the length is not part of the amplitude.
 #include "echopath/em/footprint.h"
-#include "echopath/replay/path_geometry.h"
+#include "echopath/replay/specular_slide.h"
 
 namespace echopath {
 
+// All that the formula knows of sliding hits (specular_slide.h) is where they stand: with SpecularPoints::kFermat the lengths,
+// cosines, gains and spreading are those over the moved points, for each antenna at which the path begins; reflection
+// coefficients and launch cells stay those of the trace.
 struct RadioConstants {
   double transmit_power;  // W
   double wavelength;      // m, at the start frequency
   double wavenumber;      // rad/m
   Footprint footprint = Footprint::kSecondOrder;
   double spread = 0.65;  // of a launch cell (trace/sampler.h)
+  SpecularPoints specular = SpecularPoints::kMaterial;
 };
 
 // Those of a record played back with `radar`.
@@ -30,8 +34,11 @@ RadioConstants radio_constants(const Paths& paths, const Radar& radar);
 
 // Work space of one thread.
 struct EvaluationScratch {
-  std::vector<PosedHit> hits;        // at least as many as the path's hits
+  std::vector<PosedHit> hits, moved;  // at least as many as the path's hits
   std::vector<AntennaLeg> receive;
+  SpecularSlide slide;
+
+  explicit EvaluationScratch(int longest) : hits(static_cast<size_t>(longest) + 1), moved(hits.size()) {}
 };
 
 struct ChannelValues {
@@ -41,7 +48,7 @@ struct ChannelValues {
 };
 
 // Lengths and amplitudes of one path at one instant for all channels [tx * num_rx + rx]; N + M antenna legs are computed for
-// N x M channels.
+// N x M channels, and all that lies between once for each of the N where hits have to be moved for them.
 void evaluate_path(const LocalPath& path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch,
                    const ChannelValues& out);
 

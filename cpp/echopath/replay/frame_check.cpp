@@ -17,11 +17,15 @@ std::vector<uint8_t> moving_meshes(const Scene& scene) {
   return moves;
 }
 
+void merge(const LengthError& at, LengthError& worst) {
+  worst.motion = std::max(worst.motion, at.motion);
+  worst.largest = std::max(worst.largest, at.largest);
+}
+
 // The worse of two times.
 void merge(const PathState& at, PathState& worst) {
-  worst.excess = std::max(worst.excess, at.excess);
-  worst.largest_excess = std::max(worst.largest_excess, at.largest_excess);
-  worst.stepped_excess = std::max(worst.stepped_excess, at.stepped_excess);
+  merge(at.frozen, worst.frozen);
+  merge(at.stepped, worst.stepped);
   worst.left |= at.left;
   worst.blocked |= at.blocked;
   worst.is_receiver_blocked |= at.is_receiver_blocked;
@@ -31,12 +35,7 @@ void merge(const PathState& at, PathState& worst) {
 
 }  // namespace
 
-FrameCheck::Scratch::Scratch(int longest) {
-  const auto size = static_cast<size_t>(std::max(longest, 1));
-  probe.hits.resize(size);
-  probe.moved.resize(size);
-  evaluation.hits.resize(size);
-}
+FrameCheck::Scratch::Scratch(int longest) : probe(longest), evaluation(longest) {}
 
 // One time of the frame.
 struct FrameCheck::View {
@@ -50,10 +49,11 @@ struct FrameCheck::View {
         probe(*check.paths_.scene, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
-FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times, Job* job)
+FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times, SpecularPoints specular, Job* job)
     : paths_(paths), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)), localise_(paths),
       walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)),
       mesh_moves_(moving_meshes(*paths.scene)) {
+  radio_.specular = specular;
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
   if (is_still_ && times.size() > 1) times.erase(times.begin() + 1, times.end());

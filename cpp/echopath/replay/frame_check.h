@@ -28,7 +28,8 @@ class FrameCheck {
 
   // Amplitudes are those between the first antennas of `radar`. Paths and radar must outlive it. Where nothing moves, one time
   // stands for all. Raises invalid_argument when a motion does not cover a time, Cancelled.
-  FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times, Job* job = nullptr);
+  FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times,
+             SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
   ~FrameCheck();
 
   LocalPaths localise(std::span<const int64_t> indices) const { return localise_(indices); }
@@ -36,6 +37,10 @@ class FrameCheck {
   PathFinding check(const LocalPath& path, Scratch& scratch) const;
   // What is seen at the times of the check, by about `num_rays` rays in all.
   SurfaceSeen look(int64_t num_rays, Job* job = nullptr) const;
+  // How far the length is off where specular hits stand as chosen.
+  const LengthError& error_of(const PathState& state) const {
+    return radio_.specular == SpecularPoints::kFermat ? state.stepped : state.frozen;
+  }
   bool has_array() const { return probe_radar_.transmitters.size() + probe_radar_.receivers.size() > 2; }
   double wavenumber() const { return radio_.wavenumber; }
 

@@ -9,6 +9,7 @@ namespace echopath {
 namespace {
 
 constexpr double kConfirmed = 0.03;   // rad: a step beyond the triangles around a hit counts where it leaves no more
+constexpr double kLost = 1.0;          // rad: a step that leaves more has not come near the point of reflection
 constexpr double kTurned = 2.0;       // factor
 constexpr double kOnePlace = 1e-9;    // m
 
@@ -77,8 +78,8 @@ PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch) const 
 
 // What one antenna sees of the points of reflection.
 struct FrameProbe::Slides {
-  uint64_t left = 0;  // bits in the order of the trace
-  double excess = 0.0, stepped = 0.0;  // m
+  uint64_t left = 0;                  // bits in the order of the trace
+  double frozen = 0.0, stepped = 0.0;  // m, errors of the length
 };
 
 FrameProbe::Slides FrameProbe::slides_from(const LocalPath& path, const Vec3& start, ProbeScratch& scratch) const {
@@ -87,22 +88,33 @@ FrameProbe::Slides FrameProbe::slides_from(const LocalPath& path, const Vec3& st
     found.left = path.sliding;
     return found;
   }
-  const double frozen_length = scratch.slide.length();
-  std::copy_n(scratch.hits.begin(), path.count, scratch.moved.begin());
+  const uint64_t far = find_stepped(path, scratch, found.left);
+  if (found.left) return found;
+  const bool is_solved = scratch.check.solve(path, scratch.found.data(), start);
+  const double rest = scratch.check.excess(), length = scratch.check.length() - rest;
+  const double rest_phase = wavenumber_ * std::abs(rest);
+  if (!is_solved || rest_phase > kLost) found.left = path.sliding;
+  else if (rest_phase > kConfirmed) found.left = far;
+  found.frozen = std::abs(scratch.slide.length() - length);
+  scratch.check.solve(path, scratch.stepped.data(), start);
+  found.stepped = std::abs(scratch.check.length() - length);
+  return found;
+}
+
+// Fills scratch.stepped with hits one Newton step farther and scratch.found with what the meshes have there; sets the bits of
+// hits that have left their surface. Returns those that lie beyond the triangles around their hit.
+uint64_t FrameProbe::find_stepped(const LocalPath& path, ProbeScratch& scratch, uint64_t& left) const {
+  std::copy_n(scratch.hits.begin(), path.count, scratch.stepped.begin());
+  std::copy_n(scratch.hits.begin(), path.count, scratch.found.begin());
   uint64_t far = 0;
   for (size_t i = 0; i < scratch.slide.size(); ++i) {
     const auto k = static_cast<size_t>(scratch.slide.hit(i));
     bool is_near = true;
-    const Vec3 point = surface_point(scratch.hits[k], scratch.slide.step(i));
-    if (!move_hit(path.hits[k], point, scratch.moved[k], is_near)) found.left |= uint64_t{1} << k;
+    scratch.stepped[k].point = surface_point(scratch.hits[k], scratch.slide.step(i));
+    if (!move_hit(path.hits[k], scratch.stepped[k].point, scratch.found[k], is_near)) left |= uint64_t{1} << k;
     if (!is_near) far |= uint64_t{1} << k;
   }
-  if (found.left) return found;
-  const bool is_solved = scratch.slide.solve(path, scratch.moved.data(), start);
-  found.stepped = std::abs(scratch.slide.excess());
-  found.excess = std::abs(frozen_length - scratch.slide.length() + scratch.slide.excess());
-  if (!is_solved || wavenumber_ * found.stepped > kConfirmed) found.left = is_solved ? far : path.sliding;
-  return found;
+  return far;
 }
 
 // Poses the point of the hit's mesh over which `point` lies; false where the way there leaves the surface.
@@ -124,9 +136,11 @@ void FrameProbe::check_slides(const LocalPath& path, ProbeScratch& scratch, Path
     const Slides found = slides_from(path, start.position, scratch);
     left |= found.left;
     if (found.left) continue;
-    if (&start == &starts(path).front()) state.excess = found.excess;
-    state.largest_excess = std::max(state.largest_excess, found.excess);
-    state.stepped_excess = std::max(state.stepped_excess, found.stepped);
+    const bool is_own = &start == &starts(path).front();
+    for (auto [error, value] : {std::pair(&state.frozen, found.frozen), std::pair(&state.stepped, found.stepped)}) {
+      if (is_own) error->motion = value;
+      error->largest = std::max(error->largest, value);
+    }
   }
   state.left = recorded_order(path, left);
 }

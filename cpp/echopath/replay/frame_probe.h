@@ -10,14 +10,18 @@
 
 namespace echopath {
 
+// How far a length is off, m. The true one is that over the points of the mesh one Newton step farther, less what e
+// (specular_slide.h) estimates of the rest.
+struct LengthError {
+  double motion = 0.0;   // for the trace's own antennas, carried along by the radar's motion
+  double largest = 0.0;  // over them and the rim of the array
+};
+
 // Hits are counted in the order of the record, TX -> RX.
 struct PathState {
-  // m: how far the length over the frozen points of reflection is off, by one Newton step and what e (specular_slide.h)
-  // estimates of the rest; for the trace's own antennas, carried along by the radar's motion, and largest over them and the
-  // rim of the array.
-  double excess = 0.0, largest_excess = 0.0;
-  double stepped_excess = 0.0;  // m, what a Newton step to the moved point of reflection leaves, largest
-  uint64_t left = 0;            // bit per hit: its point of reflection leaves the surface around it, for some antenna
+  LengthError frozen;           // over the hits where they were recorded (SpecularPoints::kMaterial)
+  LengthError stepped;          // one Newton step from there (SpecularPoints::kFermat)
+  uint64_t left = 0;            // bit per hit: its point of reflection leaves the surface or is lost, for some antenna
   uint64_t blocked = 0;         // bit per hit: something blocks the leg that arrives there, for some antenna
   bool is_receiver_blocked = false;
   bool is_turned = false;       // some cosine changes by more than a factor of two, or its sign
@@ -28,10 +32,12 @@ struct PathState {
 Radar probe_radar(const Paths& paths, const Radar& radar);
 
 struct ProbeScratch {
-  std::vector<PosedHit> hits, moved;  // at least as many as the path's hits
-  std::vector<double> reference;      // [2 * hits] cosines at the trace time
+  std::vector<PosedHit> hits, stepped, found;  // at least as many as the path's hits
+  std::vector<double> reference;               // [2 * hits] cosines at the trace time
   std::vector<double> cosines;
-  SpecularSlide slide;
+  SpecularSlide slide, check;
+
+  explicit ProbeScratch(int longest) : hits(static_cast<size_t>(longest) + 1), stepped(hits.size()), found(hits.size()) {}
 };
 
 class FrameProbe {
@@ -48,6 +54,7 @@ class FrameProbe {
  private:
   struct Slides;
   void check_slides(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
+  uint64_t find_stepped(const LocalPath& path, ProbeScratch& scratch, uint64_t& left) const;
   Slides slides_from(const LocalPath& path, const Vec3& start, ProbeScratch& scratch) const;
   bool move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const;
   void check_shadows(const LocalPath& path, const PosedHit* hits, PathState& state) const;

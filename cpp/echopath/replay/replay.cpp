@@ -49,6 +49,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   require(settings.phase_tolerance > 0, "phase_tolerance", "must be positive", settings.phase_tolerance);
   paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
   radio_ = radio_constants(paths, radar);
+  radio_.specular = settings.specular;
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) mesh_moves_.push_back(paths.scene->is_moving(id));
   set_mesh_levels();
 }
@@ -97,8 +98,7 @@ Replayer::NodeValues Replayer::evaluate_level(const LocalPaths& block, const Lev
   const size_t num_paths = block.paths.size(), channels = static_cast<size_t>(num_channels());
   const size_t num_nodes = level.instants.size(), node_stride = channels * num_paths;
   NodeValues values{std::vector<double>(num_nodes * node_stride), std::vector<std::complex<double>>(num_nodes * node_stride)};
-  EvaluationScratch scratch;
-  scratch.hits.resize(static_cast<size_t>(std::max(block.longest, 1)));
+  EvaluationScratch scratch(block.longest);
   for (size_t node = 0; node < num_nodes; ++node) {
     for (size_t p = 0; p < num_paths; ++p) {
       const ChannelValues out{values.lengths.data() + node * node_stride + p, values.amplitudes.data() + node * node_stride + p,

@@ -2,7 +2,8 @@
 // Replay: what the recorded paths look like at other times and to other antennas, without tracing.
 //
 // Material points (diffuse hits and the physical-optics hit) move with their triangles, exactly; hits on flagged mirrors are
-// replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide).
+// replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move with
+// the point of reflection by one Newton step (specular_slide.h).
 #include <memory>
 #include <mutex>
 #include <span>
@@ -16,6 +17,7 @@ namespace echopath {
 struct ReplaySettings {
   double phase_tolerance = 1e-5;  // rad: aim for the interpolated phase, see Replayer::interpolated
   double amplitude_tolerance = 1e-4;  // likewise, of the interpolated amplitude relative to the largest of the path
+  SpecularPoints specular = SpecularPoints::kMaterial;  // where specular hits stand that are not replayed by images
   bool exact = false;             // evaluate in every chirp instead of interpolating
   bool per_sample = false;        // for signals with the delay of every sample (signal/per_sample.h)
 };

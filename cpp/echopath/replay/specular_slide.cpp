@@ -105,8 +105,17 @@ bool SpecularSlide::eliminate() {
 Vec3 SpecularSlide::step(size_t i) const {
   const Point& at = points_[i];
   const Vec3 step = at.slide[0] * at.axis[0] + at.slide[1] * at.axis[1];
-  const double length = step.norm();
-  return length > at.reach ? Vec3(step * (at.reach / length)) : step;
+  // Far beyond the legs the expansion says nothing. Fading is smooth, so that lengths remain smooth in time.
+  const double share = step.squaredNorm() / (at.reach * at.reach);
+  return step / (1.0 + share * share);
+}
+
+void step_to_fermat(const LocalPath& path, const Vec3& start, SpecularSlide& scratch, PosedHit* hits) {
+  if (!scratch.solve(path, hits, start)) return;
+  for (size_t i = 0; i < scratch.size(); ++i) {
+    PosedHit& hit = hits[scratch.hit(i)];
+    hit.point = surface_point(hit, scratch.step(i));
+  }
 }
 
 Vec3 surface_point(const PosedHit& hit, const Vec3& step) {

@@ -15,6 +15,12 @@
 
 namespace echopath {
 
+// Where sliding hits stand in a replay.
+enum class SpecularPoints {
+  kMaterial,  // where the trace found them, moving with their triangles
+  kFermat,    // one Newton step from there, on the plane or the circle of curvature along the step
+};
+
 class SpecularSlide {
  public:
   // For the path as posed in `hits`, begun at the antenna position `start` (m, relative to the origin; a reversed path begins
@@ -27,7 +33,7 @@ class SpecularSlide {
   double length() const { return length_; }
   size_t size() const { return points_.size(); }
   int hit(size_t i) const { return points_[i].hit; }  // ascending
-  // Tangential step of sliding hit i to Fermat's point, m; at most as long as its shorter leg.
+  // Tangential step of sliding hit i to Fermat's point, m; faded out where it is longer than the shorter leg.
   Vec3 step(size_t i) const;
 
  private:
@@ -46,6 +52,10 @@ class SpecularSlide {
   std::vector<Point> points_;
   double excess_ = 0.0, length_ = 0.0;  // m
 };
+
+// Moves the sliding hits of a path as posed in `hits` by one Newton step, as seen from `start` (see SpecularSlide::solve);
+// their normals stay. Where H is singular nothing moves.
+void step_to_fermat(const LocalPath& path, const Vec3& start, SpecularSlide& scratch, PosedHit* hits);
 
 // The point that a tangential step from a hit leads to on its surface: on the plane, or where the line from the centre of
 // curvature meets the circle of curvature along the step; exact on spheres, to third order in the step otherwise.

@@ -92,14 +92,16 @@ bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_mat
 
 class Certificate {
  public:
-  Certificate(const Paths& paths, const Radar& radar, const std::vector<double>& times, bool keeps_arrays, Job* job)
-      : paths_(paths), check_(paths, radar, times, job), keeps_arrays_(keeps_arrays), job_(job) {
+  Certificate(const Paths& paths, const Radar& radar, const std::vector<double>& times, const ValiditySettings& settings,
+              Job* job)
+      : paths_(paths), check_(paths, radar, times, settings.specular, job), keeps_arrays_(settings.arrays), job_(job) {
     const ChirpSequence& waveform = radar.waveform;
     first_wavenumber_ = kTwoPi * (waveform.start_frequency + 0.5 * waveform.bandwidth / kNumFrequencies) / kSpeedOfLight;
     wavenumber_step_ = kTwoPi * waveform.bandwidth / kNumFrequencies / kSpeedOfLight;
     report_.num_paths = paths.num_paths();
     report_.times = times;
     report_.has_array = check_.has_array();
+    report_.specular = settings.specular;
   }
 
   Validity run() {
@@ -138,10 +140,11 @@ class Certificate {
     }
   }
 
-  double phase(double excess) const { return check_.wavenumber() * excess; }
+  double phase(double length) const { return check_.wavenumber() * length; }
+  LengthError error_of(const PathFinding& found) const { return check_.error_of(found.state); }
 
   void count(const LocalPath& path, const PathFinding& found, Tally& tally) const {
-    const double slid = phase(found.state.largest_excess);
+    const double slid = phase(error_of(found).largest);
     const bool adds_as_field = is_field(path);
     const LocalHit& hit = path.hits[std::max(path.last_material, 0)];
     KindSums& object = tally.of_object[static_cast<size_t>(paths_.scene->meshes()[hit.mesh_id].object)];
@@ -150,8 +153,8 @@ class Certificate {
     if (adds_as_field) add_field(found, tally);
     if (!(found.power > 0)) return;
     tally.largest = std::max(tally.largest, slid);
-    tally.motion = std::max(tally.motion, phase(found.state.excess));
-    tally.stepped = std::max(tally.stepped, phase(found.state.stepped_excess));
+    tally.motion = std::max(tally.motion, phase(error_of(found).motion));
+    tally.stepped = std::max(tally.stepped, phase(found.state.stepped.largest));
     tally.cosine_change = std::max(tally.cosine_change, found.state.cosine_change);
   }
 
@@ -175,8 +178,8 @@ class Certificate {
   void keep(size_t path, const PathFinding& found) {
     ValidityArrays& arrays = report_.arrays;
     arrays.power[path] = found.power;
-    arrays.phase_error[path] = static_cast<float>(phase(found.state.largest_excess));
-    arrays.stepped_phase_error[path] = static_cast<float>(phase(found.state.stepped_excess));
+    arrays.phase_error[path] = static_cast<float>(phase(error_of(found).largest));
+    arrays.stepped_phase_error[path] = static_cast<float>(phase(found.state.stepped.largest));
     arrays.left[path] = found.state.left;
     arrays.blocked[path] = found.state.blocked;
     arrays.receiver_blocked[path] = found.state.is_receiver_blocked;
@@ -232,7 +235,7 @@ Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings
   paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
   for (const double time : settings.times) require(std::isfinite(time), "times", "must be finite", time);
   const std::vector<double> times = settings.times.empty() ? ends_of_frame(paths, radar) : settings.times;
-  return Certificate(paths, radar, times, settings.arrays, job).run();
+  return Certificate(paths, radar, times, settings, job).run();
 }
 
 }  // namespace echopath

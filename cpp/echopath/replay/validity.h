@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
+#include "echopath/replay/specular_slide.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
@@ -12,6 +13,7 @@ namespace echopath {
 struct ValiditySettings {
   std::vector<double> times;  // s, at which paths are checked; empty: at the centres of the first and the last chirp
   bool arrays = false;        // keep what is found of each path
+  SpecularPoints specular = SpecularPoints::kMaterial;  // of the replay that is to be certified
 };
 
 // Shares of the power that the replay carries, of a set of paths. The power of a path is the mean of |a|^2 between the first
@@ -19,7 +21,7 @@ struct ValiditySettings {
 // in common to the power of their sum, averaged over the band: else their share would depend on the number of rays.
 struct ValidityShares {
   double power = 0.0;        // W, what the shares are of
-  double slid = 0.0;         // phase error of frozen points of reflection above kPhaseLimit
+  double slid = 0.0;         // phase error of points of reflection above kPhaseLimit
   double left = 0.0;         // points of reflection that leave the surface around their hit
   double blocked = 0.0;      // something comes in the way of a leg
   double turned = 0.0;       // a cosine of incidence or departure changes its sign or by more than a factor of two
@@ -50,6 +52,7 @@ struct Validity {
   int64_t num_paths = 0;
   std::vector<double> times;          // s, of the check
   bool has_array = false;             // some antenna stands elsewhere than those of the trace
+  SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
   // rad: weighted by power, and largest over the paths that carry any; the largest by motion alone (for the trace's own
   // antennas), and the largest that a Newton step leaves.
@@ -67,7 +70,7 @@ struct Validity {
 };
 
 // Checks paths at the given times (by default the ends of the frame) for the trace's own antennas and those at the rim of the
-// array of `radar`: the excess e of frozen points of reflection (specular_slide.h, exact image hits left out), whether
+// array of `radar`: the error of the length by points of reflection that slide (specular_slide.h; images are exact), whether
 // they still lie on their surface, shadow rays of all legs, cosines; and, with rays of its own, surface that was hidden from the
 // trace. Memory does not grow with the paths unless `arrays` is set. The same bits for any number of threads. Raises
 // invalid_argument for a bad radar, motions that do not cover the times or the frame, Cancelled.

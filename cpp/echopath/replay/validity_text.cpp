@@ -29,14 +29,13 @@ const char* where(const Validity& report) {
 }
 
 std::string slide_warning(const Validity& report) {
-  std::string text = percent(report.shares.slid) + " of the power is off by more than " + radians(kPhaseLimit) +
-                     " of phase (at most " + radians(report.largest_phase_error) + "): its points of reflection slide. ";
-  if (report.motion_phase_error > kPhaseLimit) {
-    text += "Trace each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
-  } else {
-    text += "The array is too wide for one trace: trace parts of it by themselves.";
-  }
-  return text;
+  const std::string found = percent(report.shares.slid) + " of the power is off by more than " + radians(kPhaseLimit) +
+                            " of phase (at most " + radians(report.largest_phase_error) + "): its points of reflection slide. ";
+  const bool helps = report.specular == SpecularPoints::kMaterial && report.stepped_phase_error < 0.5 * report.largest_phase_error;
+  const std::string step = "replay=\"fermat\" leaves at most " + radians(report.stepped_phase_error) + "; or trace ";
+  const std::string advice = found + (helps ? step : "Trace ");
+  if (report.motion_phase_error <= kPhaseLimit) return advice + "parts of the array by themselves: it is too wide for one trace.";
+  return advice + "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
 }
 
 // What of an object is affected by more than the limit.
@@ -103,7 +102,7 @@ std::string Validity::text() const {
   if (has_array) text += " and this array";
   for (const std::string& warning : found) text += "\n* " + warning;
   const std::string sizes = radians(rms_phase_error) + " rms, " + radians(largest_phase_error) + " at most";
-  text += line("reflection slides", sizes + ", more than " + radians(kPhaseLimit) + " for " + percent(shares.slid) + " of the power");
+  text += line(specular == SpecularPoints::kMaterial ? "reflection slides" : "slides, one Newton step", sizes + ", more than " + radians(kPhaseLimit) + " for " + percent(shares.slid) + " of the power");
   text += line("reflection leaves its surface", percent(shares.left));
   text += line("something comes in the way", percent(shares.blocked));
   text += line("surfaces turn", percent(shares.turned));

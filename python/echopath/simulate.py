@@ -21,7 +21,7 @@ class Frame:
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     noise_seed: of the thermal noise, None: no noise
-    evaluate, retrace: how the signal follows moving echoes, as in `synthesize`
+    replay, evaluate, retrace: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     stages: time and peak memory of each stage
@@ -39,6 +39,7 @@ class Frame:
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
+    replay: str = "material"
     evaluate: str = "interpolated"
     retrace: str = "never"
     stages: list[Stage] = dataclasses.field(default_factory=list)
@@ -51,7 +52,8 @@ class Frame:
     @property
     def effects(self) -> list:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
-        return of_paths(self.paths, evaluate=self.evaluate, retrace=self.retrace, noise_seed=self.noise_seed)
+        return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
+                        noise_seed=self.noise_seed)
 
     @cached_property
     def path_power(self):
@@ -117,7 +119,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=labels, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
-                  angle_settings=angle_settings, evaluate=evaluate, retrace=retrace,
+                  angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
                   stages=clock.stages)
     with clock("spectra"):
         with_spectra(frame)

@@ -75,6 +75,7 @@ CASES = {
     "both orders of diffuse chains": (dict(scene=make_scene(ROUGH)), "share their phases", {}),
     "motion over chirps": (dict(radar=make_radar(motion=MOVING)), "the radar moves", {}),
     "motion within chirps": (dict(scene=make_scene(motion=MOVING), evaluate="samples"), "at every sample", {}),
+    "points of reflection that move": (dict(replay="fermat"), "Newton", {}),
     "records renewed at keyframes": (dict(retrace="invalid"), "shadows", {}),
     "deforming meshes": (dict(scene=deforming()), "plate", {}),
     "paths at rest evaluated once": ({}, "1 of 1", dict(scene=make_scene(motion=MOVING))),

@@ -43,10 +43,13 @@ std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int cou
   return stretches;
 }
 
-int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings, Job* job) {
+int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings, SpecularPoints specular,
+                  Job* job) {
   require(settings.keyframes >= 0, "keyframes", "must not be negative", settings.keyframes);
   if (settings.keyframes > 0) return settings.keyframes;
-  const Validity found = validity(paths, radar, {}, job);
+  ValiditySettings asked;
+  asked.specular = specular;
+  const Validity found = validity(paths, radar, asked, job);
   const bool is_occluded = std::max({found.shares.blocked, found.shares.left, found.shares.new_surface}) > kValidityLimit;
   return std::clamp(std::max(found.keyframes(), is_occluded ? kOcclusionKeyframes : 1), 1, radar.waveform.num_chirps);
 }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/trace/paths.h"
+#include "echopath/replay/specular_slide.h"
 
 namespace echopath {
 
@@ -30,7 +30,8 @@ std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int cou
 
 // The number of stretches to use: that of the settings, or what validity suggests for moving points of reflection, and
 // kOcclusionKeyframes at least where more of the power than kValidityLimit is blocked or comes into view.
-int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings, Job* job = nullptr);
+int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings,
+                  SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
 inline constexpr int kOcclusionKeyframes = 8;
 
 // The record of a stretch. Its frame starts with the stretch.

@@ -132,7 +132,8 @@ Cube empty_like(const Radar& radar) {
 
 // Stretches of a frame with the settings for each.
 std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
-  return stretches_of(radar, paths.frame.start_time, num_keyframes(paths, radar, settings.keyframes, job));
+  const int count = num_keyframes(paths, radar, settings.keyframes, settings.replay.specular, job);
+  return stretches_of(radar, paths.frame.start_time, count);
 }
 
 CubeSettings within_stretch(CubeSettings settings) {

@@ -51,7 +51,7 @@ def certify(frame: Frame, *, progress=None):
     """The ep.Validity of a frame's replay; adds its stage to those of the frame."""
     clock = StageClock()
     with clock("validity"):
-        certificate = ep.validity(frame.paths, frame.radar, progress=progress)
+        certificate = ep.validity(frame.paths, frame.radar, replay=frame.replay, progress=progress)
     frame.stages += clock.stages
     return certificate
 

@@ -17,15 +17,16 @@ OUT_OF_SCOPE = [
 
 def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "scalar",
             sampler: str = "lattice", batches: int = 1, target_error_db: float | None = None,
-            evaluate: str = "interpolated", retrace: str = "never", noise_seed: int | None = None) -> list[Effect]:
+            replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
+            noise_seed: int | None = None) -> list[Effect]:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; evaluate, retrace: as
-    in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects that nothing
-    can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; replay, evaluate,
+    retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
+    that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
-    case = Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db, evaluate,
-                                       retrace, noise_seed))
+    case = Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db, replay,
+                                       evaluate, retrace, noise_seed))
     found = [rule(case) for rule in RULES]
     return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
 

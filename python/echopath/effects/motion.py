@@ -22,6 +22,13 @@ def _within_chirps(case: Case):
     return True, 'at every sample; evaluate = "samples"' if exact else "linear; with motion over chirps"
 
 
+@rule("points of reflection that move", "synthesize.replay")
+def _moved_points(case: Case):
+    if case.settings.replay == "fermat":
+        return True, 'one Newton step; replay = "fermat"'
+    return False, 'frozen where the trace found them, but on mirrors; replay = "material"'
+
+
 @rule("records renewed at keyframes", "synthesize.retrace")
 def _renewed(case: Case):
     what = {"never": "one record serves the frame", "invalid": "shadows and points of reflection",

@@ -30,6 +30,7 @@ class Settings:
     sampler: str
     batches: int
     target_error_db: float | None
+    replay: str
     evaluate: str
     retrace: str
     noise_seed: int | None

@@ -19,6 +19,7 @@ from .scene import read_scene, write_scene
 
 FORMAT = "echopath frame"
 SCHEMA_VERSION = 1  # grows when a reader of the old layout would misread the new one
+SIGNAL_SETTINGS = ("replay", "evaluate", "retrace")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -137,8 +138,8 @@ def _write_signal(file, frame: Frame) -> None:
     group = file.create_group("signal")
     write_array(group, "cube", frame.cube, unit="sqrt(W)")
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
-    group.attrs["evaluate"] = frame.evaluate
-    group.attrs["retrace"] = frame.retrace
+    for name in SIGNAL_SETTINGS:
+        group.attrs[name] = getattr(frame, name)
     if frame.noise_seed is not None:
         group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
 
@@ -181,7 +182,7 @@ def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
-    for name in ("evaluate", "retrace"):
+    for name in SIGNAL_SETTINGS:
         setattr(frame, name, read_attribute(group, name, str) if name in group.attrs else getattr(Frame, name))
     frame.spectrum_settings = _read_settings(read_group(file, "spectra"))
     if "range_azimuth" in file:

@@ -49,7 +49,7 @@ class SceneFile:
         return settings
 
     def replay_settings(self) -> dict:
-        """Keywords of `ep.synthesize`: evaluate, retrace, keyframes."""
+        """Keywords of `ep.synthesize`: replay, evaluate, retrace, keyframes."""
         return self.replay.model_dump()
 
     def spectrum_settings(self) -> dict:

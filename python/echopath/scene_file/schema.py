@@ -226,6 +226,8 @@ class TraceTable(Table):
 
 
 class ReplayTable(Table):
+    replay: Literal["material", "fermat"] = Field(
+        "material", description="points of reflection on surfaces that are no mirrors: frozen, or moved by a Newton step")
     evaluate: Literal["interpolated", "chirps", "samples"] = Field(
         "interpolated", description="polynomials over the frame, every chirp, or every sample of fast rotors")
     retrace: Literal["never", "invalid", "always"] = Field(

@@ -6,6 +6,7 @@
 
 #include "array.h"
 #include "choice.h"
+#include "echopath/sim/replay_stream.h"
 #include "echopath/sim/synthesize.h"
 #include "keywords.h"
 #include "run_job.h"
@@ -98,6 +99,12 @@ py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict&
 }  // namespace
 
 void bind_sim(py::module_& m) {
+  m.def("replay_only", [](const Paths& paths, const Radar& radar, double phase_tolerance) {
+    ReplaySettings settings;
+    settings.phase_tolerance = phase_tolerance;
+    return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
+  }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = 1e-5,
+        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels and returns how many that were.");
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",

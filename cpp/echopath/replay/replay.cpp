@@ -136,11 +136,11 @@ bool Replayer::follows(const FrameNodes& nodes, const NodeValues& values, size_t
   const size_t node_stride = static_cast<size_t>(num_channels()) * num_paths;
   for (size_t at = p; at < node_stride; at += num_paths) {
     double largest = 0.0;
-    for (size_t i = at; i < values.amplitudes.size(); i += node_stride) largest = std::max(largest, std::abs(values.amplitudes[i]));
+    for (size_t i = at; i < values.amplitudes.size(); i += node_stride) largest = std::max(largest, std::norm(values.amplitudes[i]));
     for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
       const size_t first = static_cast<size_t>(piece * nodes.order) * node_stride + at;
       if (radio_.wavenumber * tail_of(nodes, &values.lengths[first], node_stride) > settings_.phase_tolerance) return false;
-      if (tail_of(nodes, &values.amplitudes[first], node_stride) > settings_.amplitude_tolerance * largest) return false;
+      if (tail_of(nodes, &values.amplitudes[first], node_stride) > settings_.amplitude_tolerance * std::sqrt(largest)) return false;
     }
   }
   return true;

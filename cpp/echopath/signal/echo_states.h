@@ -1,5 +1,5 @@
 #pragma once
-// Echoes at the window centre of one chirp. Internal to the module.
+// Echoes at the window centre of one chirp.
 #include <cstdint>
 
 #include "echopath/signal/echoes.h"

@@ -1,4 +1,5 @@
-"""Benchmarks against closed forms: `run_physics(folder)`."""
+"""Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces."""
 from .physics import run_physics
+from .replay import run_replay
 
-__all__ = ["run_physics"]
+__all__ = ["run_physics", "run_replay"]

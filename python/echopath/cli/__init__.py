@@ -55,12 +55,13 @@ def _parser() -> argparse.ArgumentParser:
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
     info.set_defaults(command=_info)
 
-    bench = commands.add_parser("bench", help="measure error and speed against closed forms")
-    bench.add_argument("what", choices=["physics"], help="physics: levels of canonical targets")
-    bench.add_argument("--out", required=True, metavar="DIR", help="folder of physics.json and physics.png")
+    bench = commands.add_parser("bench", help="measure error and speed side by side")
+    bench.add_argument("what", choices=["physics", "replay"],
+                       help="physics: levels of canonical targets; replay: one record against tracing every chirp and antenna")
+    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its JSON file and figure")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
-                       help="most rays of a trace (default: %(default)s)")
+                       help="physics: most rays of a trace (default: %(default)s)")
     bench.set_defaults(command=_bench)
     return parser
 
@@ -141,10 +142,12 @@ def _info(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import run_physics
-    from ..bench.report import describe
+    from ..bench import replay, report, run_physics, run_replay
     from .progress import progress_bars
 
     with progress_bars() as progress:
-        results = run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress)
-    print("\n".join(describe(results)))
+        if options.what == "physics":
+            lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress))
+        else:
+            lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
+    print("\n".join(lines))

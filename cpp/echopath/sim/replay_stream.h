@@ -1,0 +1,40 @@
+#pragma once
+// Blocks of paths on their way through replay.
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "echopath/replay/replay.h"
+
+namespace echopath {
+
+// Hands the echoes of all paths over, block by block, in an order and in blocks that depend on the paths alone.
+class ReplayStream {
+ public:
+  // Echoes by channel, and the indices of their paths; a path may come again with amplitude 0.
+  using Sink = std::function<void(std::vector<Echoes>&, std::span<const int64_t>)>;
+
+  // Paths and radar must outlive the stream. Raises what Replayer does.
+  ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
+      : num_paths_(paths.num_paths()), replayer_(paths, radar, settings), job_(job) {}
+
+  int num_channels() const { return replayer_.num_channels(); }
+  // Memory is bounded by blocks. `sink` is called from one thread at a time. Raises Cancelled.
+  void run(const Sink& sink) const;
+
+ private:
+  using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<int64_t>&)>;
+  void add_still(const std::vector<int64_t>& paths, const Sink& sink) const;
+  void add_moving(const std::vector<int64_t>& paths, const Sink& sink) const;
+  std::vector<int64_t> run_blocks(const std::vector<int64_t>& paths, int64_t size, const Replay& replay, const Sink& sink) const;
+
+  int64_t num_paths_;
+  Replayer replayer_;
+  Job* job_;
+};
+
+// Replays all paths at every chirp and for every channel, without synthesis, to see what that costs. Returns the number of
+// path-chirps, static paths once.
+int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
+
+}  // namespace echopath

@@ -120,7 +120,7 @@ evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in 
     reference), or "samples" (interpolated, and moving echoes with the delay of every sample: for fast rotors, a sine and a
     cosine per path and sample)
 retrace: "never" (one record serves the frame), "invalid" (shadow rays and points of reflection are renewed, see `renew`) or
-    "always" (the scene is traced anew: phases of rough surfaces begin anew too), for each of `keyframes` stretches of chirps
+    "always" (the scene is traced anew by the same rays, to which phases of rough surfaces then belong: for coherent echoes), for each of `keyframes` stretches of chirps
 keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
 progress: callable(stage, fraction) or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");

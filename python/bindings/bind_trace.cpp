@@ -51,16 +51,17 @@ void bind_frame(py::module_& m) {
       });
 
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
-      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t near, int64_t grazing, int64_t small,
+      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing, int64_t small,
                        int64_t false_hits) {
-             return TraceStatistics{rays, queries, hits, near, grazing, small, false_hits};
+             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits};
            }),
-           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
+           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0, py::arg("num_paths") = 0,
            py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
            py::arg("num_false_hits") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
+      .def_readonly("num_paths", &TraceStatistics::num_paths, "recorded; selections have fewer")
       .def_readonly("num_near_antenna", &TraceStatistics::num_near_antenna, "dropped: within 1 mm of an antenna")
       .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
       .def_readonly("num_small_mirrors", &TraceStatistics::num_small_mirrors,

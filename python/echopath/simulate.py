@@ -21,7 +21,7 @@ class Frame:
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     noise_seed: of the thermal noise, None: no noise
-    replay, evaluate, retrace: how the signal follows moving echoes, as in `synthesize`
+    replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     stages: time and peak memory of each stage
@@ -42,6 +42,7 @@ class Frame:
     replay: str = "material"
     evaluate: str = "interpolated"
     retrace: str = "never"
+    keyframes: int = 0
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -120,6 +121,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
                   part_of_path=labels, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
                   angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
+                  keyframes=keyframes,
                   stages=clock.stages)
     with clock("spectra"):
         with_spectra(frame)

@@ -147,6 +147,13 @@ def test_bits_do_not_depend_on_threads():
     assert np.array_equal(*cubes)
 
 
+def test_a_new_trace_refuses_selections():
+    radar = radar_of(num_chirps=4)
+    paths = ep.trace(hidden_target(), radar, num_rays=2000)
+    with pytest.raises(ValueError, match="retrace: 'always' takes all paths of a trace"):
+        ep.synthesize(paths.select("T 'target' R"), radar, retrace="always", keyframes=2)
+
+
 @pytest.mark.parametrize("keywords, text", [
     ({"retrace": "sometimes"}, "retrace: must be"),
     ({"retrace": "invalid", "keyframes": 17}, "keyframes: must lie in"),

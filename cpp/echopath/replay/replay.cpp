@@ -51,7 +51,6 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   radio_ = radio_constants(paths, radar);
   radio_.specular = settings.specular;
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) mesh_moves_.push_back(paths.scene->is_moving(id));
-  set_mesh_levels();
 }
 
 Replayer::~Replayer() = default;
@@ -81,13 +80,7 @@ const Replayer::Level& Replayer::level(int index) const {
   if (index == kStaticLevel) made->nodes = static_nodes(radar_, paths_.frame.trace_time);
   else if (index == kExactLevel) made->nodes = exact_nodes(radar_, start, exact_order());
   else {
-    std::vector<double> breakpoints = paths_.scene->breakpoints();
-    if (radar_.motion) {
-      const std::vector<double> own = radar_.motion->breakpoints();
-      breakpoints.insert(breakpoints.end(), own.begin(), own.end());
-      std::sort(breakpoints.begin(), breakpoints.end());
-    }
-    made->nodes = chebyshev_nodes(radar_, start, breakpoints, kOrders[static_cast<size_t>(index - 1)]);
+    made->nodes = chebyshev_nodes(radar_, start, breakpoints(), kOrders[static_cast<size_t>(index - 1)]);
   }
   for (const double time : made->nodes.times) made->instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
   slot = std::move(made);
@@ -146,12 +139,22 @@ bool Replayer::follows(const FrameNodes& nodes, const NodeValues& values, size_t
   return true;
 }
 
-// Levels that cost less than evaluation in every chirp.
-int Replayer::count_levels() const {
+std::vector<double> Replayer::breakpoints() const {
+  std::vector<double> times = paths_.scene->breakpoints();
+  if (!radar_.motion) return times;
+  const std::vector<double> own = radar_.motion->breakpoints();
+  times.insert(times.end(), own.begin(), own.end());
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+// Levels that cost no more than evaluation in every chirp; nothing is posed for the others.
+int Replayer::num_levels() const {
   if (settings_.exact) return 0;
-  int count = 0;
-  while (count + 1 < kExactLevel && std::ssize(level(count + 1).nodes.times) <= num_exact_nodes()) ++count;
-  return count;
+  const double begin = paths_.frame.start_time, end = begin + radar_.frame_duration();
+  const std::vector<double> cuts = breakpoints();
+  const int64_t pieces = 1 + std::count_if(cuts.begin(), cuts.end(), [&](double t) { return t > begin && t < end; });
+  return static_cast<int>(std::count_if(kOrders.begin(), kOrders.end(), [&](int order) { return pieces * order <= num_exact_nodes(); }));
 }
 
 // The distances of a mesh's outermost vertices from the transmitters tell how many nodes its motion needs: an echo's length
@@ -173,18 +176,19 @@ bool Replayer::fits(const Level& level, uint32_t mesh_id) const {
   return true;
 }
 
-void Replayer::set_mesh_levels() {
-  num_levels_ = count_levels();
+void Replayer::find_mesh_levels() const {
+  const int most = num_levels();
   for (uint32_t id = 0; id < mesh_moves_.size(); ++id) {
     int& needed = mesh_level_.emplace_back(1);
     if (mesh_moves_[id] == 0 && !radar_.motion) continue;
-    while (needed <= num_levels_ && !fits(level(needed), id)) ++needed;
+    while (needed <= most && !fits(level(needed), id)) ++needed;
   }
 }
 
 int Replayer::first_level(int64_t path) const {
+  std::call_once(mesh_levels_made_, [&] { find_mesh_levels(); });
   const Hit* hits = paths_.hits_of(path);
-  int needed = std::min(1, num_levels_ + 1);
+  int needed = 1;
   for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, mesh_level_[hits[k].mesh_id]);
   return needed;
 }

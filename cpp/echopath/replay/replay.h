@@ -40,7 +40,7 @@ class Replayer {
   // coefficients exceed a tolerance, of length or amplitude, has amplitude 0 here and is added to `failed`.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, int level, std::vector<int64_t>& failed) const;
   // Levels are 1 to num_levels(); none where fewer chirps than nodes would make `exact` cheaper, or where that was asked for.
-  int num_levels() const { return num_levels_; }
+  int num_levels() const;
   // Where to begin with a path, from the motion of the meshes that it touches; num_levels() + 1 where none will do.
   int first_level(int64_t path) const;
   // At nodes in every chirp, num_exact_nodes() in all.
@@ -59,8 +59,8 @@ class Replayer {
   NodeValues evaluate_level(const LocalPaths& block, const Level& level) const;
   std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const NodeValues& values) const;
   bool follows(const FrameNodes& nodes, const NodeValues& values, size_t num_paths, size_t p) const;
-  int count_levels() const;
-  void set_mesh_levels();
+  std::vector<double> breakpoints() const;
+  void find_mesh_levels() const;
   bool fits(const Level& level, uint32_t mesh_id) const;
 
   const Paths& paths_;
@@ -69,8 +69,8 @@ class Replayer {
   RadioConstants radio_;
   std::vector<uint8_t> mesh_moves_;       // by mesh ID
   Localiser localise_;
-  std::vector<int> mesh_level_;           // by mesh ID: the first that follows its motion
-  int num_levels_ = 0;
+  mutable std::once_flag mesh_levels_made_;
+  mutable std::vector<int> mesh_level_;   // by mesh ID: the first that follows its motion
   mutable std::mutex levels_mutex_;
   mutable std::vector<std::unique_ptr<const Level>> levels_;
 };

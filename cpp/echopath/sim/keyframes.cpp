@@ -55,7 +55,12 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
 }
 
 Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job) {
-  if (retrace == Retrace::kAlways) return trace(*paths.scene, stretch.radar, settings_of(paths.frame, stretch.start_time), job);
+  if (retrace == Retrace::kAlways) {
+    // A new trace knows nothing of a selection.
+    require(paths.num_paths() == paths.frame.statistics.num_paths, "retrace",
+            "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
+    return trace(*paths.scene, stretch.radar, settings_of(paths.frame, stretch.start_time), job);
+  }
   Paths record = retrace == Retrace::kInvalid ? renew(paths, stretch.radar, stretch.middle, job).paths : paths;
   record.frame.start_time = stretch.start_time;
   return record;

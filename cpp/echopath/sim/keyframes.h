@@ -10,7 +10,9 @@ namespace echopath {
 enum class Retrace {
   kNever,    // one record serves the frame
   kInvalid,  // hits stay, shadow rays and points of reflection are renewed (replay/renewal.h)
-  kAlways,   // the scene is traced anew, with rays that know nothing of each other: phases of rough surfaces begin anew too
+  // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so that
+  // their echoes have wrong Doppler: a reference for coherent echoes.
+  kAlways,
 };
 
 struct KeyframeSettings {
@@ -34,7 +36,7 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
                   SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
 inline constexpr int kOcclusionKeyframes = 8;
 
-// The record of a stretch. Its frame starts with the stretch.
+// The record of a stretch. Its frame starts with the stretch. Raises invalid_argument for kAlways with a selection of paths.
 Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr);
 
 }  // namespace echopath

@@ -14,11 +14,10 @@ constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend
 constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
 constexpr int64_t kLargestBlock = 8192;
-constexpr int64_t kSmallestBlock = 64;
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);
-  return std::clamp(kEchoesInFlight / (kBlocksInFlight * values), kSmallestBlock, kLargestBlock);
+  return std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
 }
 
 // Indices of the paths on which nothing moves, and of the others.

@@ -137,6 +137,7 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
   if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
   if (!paths.jones.empty()) paths.jones.resize(num_paths);
   paths.hits = std::move(hits);
+  paths.frame.statistics.num_paths = paths.num_paths();
   give_back_free_memory();
 }
 

@@ -46,6 +46,7 @@ struct TraceStatistics {
   int64_t num_rays = 0;        // launched
   int64_t num_queries = 0;     // closest-hit and shadow queries
   int64_t num_hits = 0;        // surface points found
+  int64_t num_paths = 0;       // recorded; selections have fewer
   int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
   int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
   int64_t num_small_mirrors = 0;  // rays ended behind an unflagged mirror smaller than its Fresnel zone

@@ -15,7 +15,7 @@ from ..simulate import Frame, simulate
 from ..stages import StageClock
 
 RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
-PATH_BYTES, HIT_BYTES = 31, 16
+PATH_BYTES, HIT_BYTES, JONES_BYTES, CURVED_CELL_BYTES = 31, 16, 32, 28
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,7 +77,9 @@ def min_power_of_budget(frame: Frame, record_bytes: float = RECORD_BYTES) -> flo
     """Power in W that a path must have so that the strongest paths that fit into `record_bytes` are kept."""
     if frame.paths.num_paths == 0:
         return 0.0
-    bytes_per_path = PATH_BYTES + HIT_BYTES * float(frame.paths.num_bounces.mean())
+    paths = frame.paths
+    columns = JONES_BYTES * (len(paths.jones) > 0) + CURVED_CELL_BYTES * (len(paths.curved_cell) > 0)
+    bytes_per_path = PATH_BYTES + columns + HIT_BYTES * float(paths.num_bounces.mean())
     return power_of_strongest(frame.path_power, int(record_bytes / bytes_per_path))
 
 

@@ -5,6 +5,8 @@ from .. import _core
 from . import surfaces, motion, radar, sampling  # noqa: F401, I001  each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
+TARGET_ERROR_BATCHES = 8  # of `trace` with a target unless it is told
+
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("transmission through sheets", False, "not modelled"),
@@ -16,7 +18,7 @@ OUT_OF_SCOPE = [
 
 
 def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "scalar",
-            sampler: str = "lattice", batches: int = 1, target_error_db: float | None = None,
+            sampler: str = "lattice", batches: int | None = None, target_error_db: float | None = None,
             replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
             noise_seed: int | None = None) -> list[Effect]:
     """Which effects a run of `scene` with `radar` models, and why.
@@ -25,6 +27,7 @@ def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_orde
     retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
     that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
+    batches = batches or (TARGET_ERROR_BATCHES if target_error_db else 1)
     case = Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db, replay,
                                        evaluate, retrace, noise_seed))
     found = [rule(case) for rule in RULES]

@@ -38,7 +38,7 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
     below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
     """
     with _new_file(path) as file:
-        return _write_record(file, paths, min_power)[0]
+        return _write_record(file, paths, paths.effects, min_power)[0]
 
 
 def load_paths(path):
@@ -53,7 +53,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     The cubes hold all paths, also those that the record leaves out.
     """
     with _new_file(path) as file:
-        missing, is_kept = _write_record(file, frame.paths, min_power, frame.path_power)
+        missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         _write_signal(file, frame)
         _write_spectra(file, frame)
         _write_range_azimuth(file, frame)
@@ -105,13 +105,13 @@ def _our_file(path):
         yield file
 
 
-def _write_record(file, paths, min_power: float, power=None):
+def _write_record(file, paths, effects, min_power: float, power=None):
     if not min_power >= 0.0:
         raise ValueError(f"min_power: must be at least 0 W, got {min_power}")
     write_scene(file.create_group("scene"), paths.scene)
     write_radar(file.create_group("radar"), paths.radar)
     group = file.create_group("record")
-    _write_effects(group.create_group("effects"), paths.effects)
+    _write_effects(group.create_group("effects"), effects)
     is_kept = write_paths(group, paths, min_power, power)
     return _left_out(group), is_kept
 
@@ -140,6 +140,7 @@ def _write_signal(file, frame: Frame) -> None:
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
     for name in SIGNAL_SETTINGS:
         group.attrs[name] = getattr(frame, name)
+    group.attrs["keyframes"] = frame.keyframes
     if frame.noise_seed is not None:
         group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
 
@@ -184,6 +185,7 @@ def _read_signal(file, frame: Frame) -> None:
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
     for name in SIGNAL_SETTINGS:
         setattr(frame, name, read_attribute(group, name, str) if name in group.attrs else getattr(Frame, name))
+    frame.keyframes = read_attribute(group, "keyframes", int) if "keyframes" in group.attrs else Frame.keyframes
     frame.spectrum_settings = _read_settings(read_group(file, "spectra"))
     if "range_azimuth" in file:
         frame.angle_settings = _read_settings(read_group(file, "range_azimuth"))

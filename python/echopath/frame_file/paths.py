@@ -17,7 +17,7 @@ _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "num_batches",
                 "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
-STATISTICS = ("num_rays", "num_queries", "num_hits", "num_near_antenna", "num_grazing", "num_small_mirrors",
+STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits")
 
 

@@ -168,8 +168,9 @@ TEST(Capon, OneWaveInNoiseHasItsClosedForm) {
     const double expected = noise / (count * (1.0 - share * overlap * overlap));
     EXPECT_NEAR(mean, expected, 1e-6 * expected);  // the loading moves it by its own share
   }
-  const double at_wave = noise / (count * (1.0 - count * wave / (noise + count * wave)));
-  EXPECT_NEAR(at_wave, wave + noise / count, kRounding);
+  double at_wave = 0.0;
+  for (int r = 0; r <= count; ++r) at_wave += power_at(beams, 0, 2, r) / (count + 1);
+  EXPECT_NEAR(at_wave, wave + noise / count, 1e-6 * wave);
 }
 
 TEST(Capon, ResolvesTwoWavesThatBartlettDoesNot) {

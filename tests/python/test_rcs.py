@@ -9,8 +9,7 @@ from support.shapes import FREQUENCY, METAL, decibel, lambert, plate, rectangle,
 
 MIE_TOLERANCE = 1e-6             # of sigma / (pi a^2): the digits of the table
 PLATE_TOLERANCE_DB = 0.1         # the promise for plates at broadside
-MAIN_LOBE_TOLERANCE_DB = 0.3
-SIDELOBE_TOLERANCE = 0.05        # of the amplitude of the main lobe: beyond the first null edges are what is sampled
+PLATE_ANGLE_TOLERANCE_DB = 0.3
 MIE_BY_RAYS_TOLERANCE_DB = 0.5   # creeping waves, which physical optics has not, at ka = 20
 SMOOTH_TOLERANCE_DB = 0.1
 PO_SPHERE_TOLERANCE = 0.01       # relative
@@ -28,6 +27,8 @@ PO_SPHERE_TABLE = {1: .79878, 5: 1.14559, 10: .91167, 50: 1.01015}
 PLATE_TABLE_DBSM = {.05: 7.144, .1: 19.185, .2: 31.227}       # by side in m
 TILTED_PLATE_DBSM = {0: 19.185, .5: 16.096, 1: .277, 2: -.183, 3: -.980, 5: -3.833, 10: -21.996, 20: -16.400}  # by deg
 DIHEDRAL_TOTAL_DBSM, DIHEDRAL_DOUBLE_DBSM, TRIHEDRAL_TOTAL_DBSM = 22.162, 22.196, 14.294
+
+every_polarization = pytest.mark.parametrize("polarization", [(0, 0, 1), "vv", "hh"])  # scalar model, field vectors
 
 RADIUS = 0.1  # m
 RIGHT_ANGLE_HALF = math.sqrt(0.5)
@@ -103,20 +104,31 @@ def test_mie_rcs_refuses_what_has_no_meaning(keywords):
 
 # --- Targets with closed forms ---
 
+@every_polarization
 @pytest.mark.parametrize("side", PLATE_TABLE_DBSM)
-def test_plate_at_broadside(side):
-    found = ep.rcs(plate_scene(side), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 12)
+def test_plate_at_broadside(side, polarization):
+    found = ep.rcs(plate_scene(side), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 12, polarization=polarization)
     assert abs(decibel(found) - PLATE_TABLE_DBSM[side]) < PLATE_TOLERANCE_DB
 
 
-def test_plate_over_angle():
-    found = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=in_plane(list(TILTED_PLATE_DBSM)), num_rays=1 << 16)
-    expected = np.array(list(TILTED_PLATE_DBSM.values()))
-    lobe = np.abs(np.array(list(TILTED_PLATE_DBSM))) <= 0.5
-    assert np.all(np.abs(decibel(found) - expected)[lobe] < MAIN_LOBE_TOLERANCE_DB)
-    off = np.sqrt(found) - 10 ** (expected / 20)
-    assert np.all(np.abs(off) < SIDELOBE_TOLERANCE * 10 ** (TILTED_PLATE_DBSM[0] / 20))
-    assert np.all(np.abs(decibel(found) - expected)[:-1] < MAIN_LOBE_TOLERANCE_DB)  # reached up to 10 degrees
+@every_polarization
+def test_plate_over_angle(polarization):
+    found = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=in_plane(list(TILTED_PLATE_DBSM)), num_rays=1 << 17,
+                   polarization=polarization)
+    assert decibel(found) == pytest.approx(list(TILTED_PLATE_DBSM.values()), abs=PLATE_ANGLE_TOLERANCE_DB)
+
+
+@pytest.mark.parametrize("incidence_deg, observation_deg", [(60, -30), (30, -60), (0, 40), (70, -70)])
+def test_bistatic_plate_has_the_obliquity_of_its_polarization(incidence_deg, observation_deg):
+    # Currents 2 n x H: across the plane of incidence they radiate by the cosine of incidence, in it by that of observation.
+    side, wavelength = 0.005, ep.speed_of_light / FREQUENCY
+    incidence, observation = in_plane([incidence_deg, observation_deg])
+    vv, hh = ep.rcs(plate_scene(side), frequency=FREQUENCY, incidence=incidence, observation=observation, num_rays=1 << 13,
+                    polarization=["vv", "hh"])
+    turns = side / wavelength * (math.sin(math.radians(incidence_deg)) + math.sin(math.radians(observation_deg)))
+    full = 4 * math.pi * side**4 / wavelength**2 * np.sinc(turns) ** 2
+    assert abs(decibel(vv / full) - 20 * math.log10(math.cos(math.radians(incidence_deg)))) < PLATE_TOLERANCE_DB
+    assert abs(decibel(hh / full) - 20 * math.log10(math.cos(math.radians(observation_deg)))) < PLATE_TOLERANCE_DB
 
 
 def test_plate_turned_by_both_angles_of_a_bistatic_pair_mirrors_at_full_strength():
@@ -127,9 +139,11 @@ def test_plate_turned_by_both_angles_of_a_bistatic_pair_mirrors_at_full_strength
     assert abs(decibel(found) - expected) < PLATE_TOLERANCE_DB
 
 
+@every_polarization
 @pytest.mark.parametrize("ka", [20, 50, 100, 161.379])
-def test_smooth_sphere_against_mie(ka):
-    found = ep.rcs(smooth_sphere(), frequency=frequency_of(ka), incidence=(1, .2, .3), num_rays=1 << 14)
+def test_smooth_sphere_against_mie(ka, polarization):
+    found = ep.rcs(smooth_sphere(), frequency=frequency_of(ka), incidence=(1, .2, .3), num_rays=1 << 14,
+                   polarization=polarization)
     tolerance = MIE_BY_RAYS_TOLERANCE_DB if ka < 50 else SMOOTH_TOLERANCE_DB
     assert abs(decibel(found / ep.mie_rcs(RADIUS, frequency_of(ka)))) < tolerance
 
@@ -142,38 +156,46 @@ def test_bistatic_smooth_sphere_against_mie(bistatic_deg):
     assert abs(decibel(found / ep.mie_rcs(RADIUS, FREQUENCY, angle))) < SMOOTH_TOLERANCE_DB
 
 
-@pytest.mark.parametrize("ka", PO_SPHERE_TABLE)
-def test_sphere_by_physical_optics(ka):
-    # Without the footprint filter, which takes away the wave that physical optics sends from the shadow's edge.
+# The footprint filter takes away the wave that physical optics sends from the shadow's edge: 1 % at ka = 50 for any number of
+# rays in reach, while at smaller ka 2^18 rays resolve the edge.
+@pytest.mark.parametrize("ka, footprint", [(1, "none"), (5, "none"), (10, "none"), (50, "none"), (1, "second_order"),
+                                           (5, "second_order"), (10, "second_order")])
+@every_polarization
+def test_sphere_by_physical_optics(ka, footprint, polarization):
     found = ep.rcs(smooth_sphere(), frequency=frequency_of(ka), incidence=(1, .2, .3), num_rays=1 << 18, max_bounces=1,
-                   footprint="none")
+                   footprint=footprint, polarization=polarization)
     assert found / (math.pi * RADIUS**2) == pytest.approx(PO_SPHERE_TABLE[ka], rel=PO_SPHERE_TOLERANCE)
 
 
-def test_dihedral_with_all_orders():
-    found = ep.rcs(dihedral(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 16)
+@every_polarization
+def test_dihedral_with_all_orders(polarization):
+    found = ep.rcs(dihedral(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 16, polarization=polarization)
     assert abs(decibel(found) - DIHEDRAL_TOTAL_DBSM) < DIHEDRAL_TOLERANCE_DB
 
 
 def test_trihedral_with_all_orders():
+    # Of the scalar model: how double bounces interfere with the triple one depends on the polarisation, by .2 dB.
     edge = 0.1
     corner = ep.Mesh([[0, 0, 0], [edge, 0, 0], [0, edge, 0], [0, 0, edge]], [[0, 1, 2], [0, 2, 3], [0, 3, 1]])
     found = ep.rcs(scene_of(corner=(corner, METAL)), frequency=FREQUENCY, incidence=(1, 1, 1), num_rays=1 << 16)
     assert abs(decibel(found) - TRIHEDRAL_TOTAL_DBSM) < TRIHEDRAL_TOLERANCE_DB
 
 
-def test_rough_plate_follows_lambert():
+@every_polarization
+def test_rough_plate_follows_lambert(polarization):
     scene = plate_scene(1.0, lambert(0.3))
-    found = ep.rcs(scene, frequency=FREQUENCY, incidence=in_plane([0, 45, 60]), num_rays=1 << 12, components=True)
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=in_plane([0, 45, 60]), num_rays=1 << 12, components=True,
+                   polarization=polarization)
     assert np.all(found["coherent"] == 0)
     assert found["diffuse"] == pytest.approx(4 * 0.3 * np.cos(np.radians([0, 45, 60])) ** 2, rel=LAMBERT_TOLERANCE)
 
 
-def test_rough_dihedral_keeps_half_the_field():
+@every_polarization
+def test_rough_dihedral_keeps_half_the_field(polarization):
     # Half of the power is diffuse at each face, so the field of the double bounce halves: -6.02 dB.
     half = ep.Material(reflectivity=1.0, scattering=math.sqrt(0.5))
     parts = [ep.rcs(dihedral(half), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 13, max_bounces=2,
-                    seed=seed, components=True) for seed in range(32)]
+                    seed=seed, components=True, polarization=polarization) for seed in range(32)]
     mean = np.mean([part["coherent"] for part in parts])
     assert abs(decibel(mean) - DIHEDRAL_DOUBLE_DBSM + 20 * math.log10(2)) < WEIGHT_RULE_TOLERANCE_DB
     assert all(part["diffuse"] > 0 for part in parts)

@@ -14,7 +14,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kPolarizedGrazing = 0.05;  // cosine of incidence that bounds the quotient of coherent_matrix
+constexpr double kPolarizedGrazing = 0.05;  // cosine of incidence over that of radiation, below which coherent_matrix stays bounded
 
 // Fields behind a mirror or specular bounce of the given specular share of power.
 void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const Material& material, double frequency,
@@ -93,8 +93,9 @@ JonesMatrix RayShooter::received_over(const Leg& leg, const FieldPair& fields) c
 
 JonesMatrix RayShooter::coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
   const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, surface.cos_incidence);
-  // Replay multiplies by cos_i; a conductor's TM part does not vanish with it, so the quotient is bounded.
-  const double scale = surface.response.coherent / std::max(surface.cos_incidence, kPolarizedGrazing);
+  // Replay multiplies by cos_i; a conductor's TM part goes with the cosine of radiation instead, so the quotient is bounded.
+  const double bound = kPolarizedGrazing * surface.point.normal.dot(leg.to_antenna);
+  const double scale = surface.response.coherent / std::max(surface.cos_incidence, bound);
   FieldPair fields;
   for (size_t launch = 0; launch < 2; ++launch) {
     fields[launch] = scale * radiated_field(ray.polarized[launch], ray.direction, surface.point.normal, leg.to_antenna, modes);

@@ -63,6 +63,45 @@ def test_wall_ghosts_have_their_lengths():
         assert np.abs(np.array(found[sequence]) - expected).max() < 1e-3, sequence
 
 
+def test_the_two_way_ghost_comes_from_its_image():
+    """20 m away, wall 3 m aside: bearing atan(2 w / R) = 16.699 deg, wall hit at x = 10 m."""
+    scene = ep.Scene()
+    scene.add(small_triangle(1e-4), name="target", material=ROUGH, position=(20, 0, 0))
+    scene.add(wall_mesh(), name="wall", material=mirror())
+    radar = make_radar(num_chirps=1, transmitters=[(0, 0, 0)], receivers=[(0, 0, 0)])
+    ghost = ep.trace(scene, radar, num_rays=2000).select("T 'wall' 'target' 'wall' R")
+    time, step = ghost.frame.trace_time, 1e-3
+    left, right = (ghost.lengths([time], receiver=(0, y, 0))[0] for y in (step, -step))
+    bearing = np.degrees(np.arcsin((right - left) / (2 * step)))
+    assert ghost.num_paths > 0 and np.abs(bearing - 16.699).max() < 1e-3
+    assert np.abs(ghost.points(time)[ghost.offsets][:, 0] - 10.0).max() < 1e-3
+
+
+def test_a_pendulum_swings_at_its_speed_and_period():
+    """1 m, released at 30 deg: sqrt(2 g l (1 - cos)) = 1.62129 m/s, 838.25 Hz; period by elliptic integral, 2.0410 s."""
+    gravity, step = 9.81, 5e-4
+    angle, rate, angles = np.radians(30.0), 0.0, []
+    for _ in range(5000):  # leapfrog
+        angles.append(angle)
+        rate -= 0.5 * step * gravity * np.sin(angle)
+        angle += step * rate
+        rate -= 0.5 * step * gravity * np.sin(angle)
+    angles = np.array(angles[::20])
+    keys = np.stack([np.sin(angles), 0 * angles, -np.cos(angles)], axis=1)
+    motion = ep.KeyframeMotion(times=20 * step * np.arange(len(angles)), translations=keys)
+    scene = ep.Scene()
+    scene.add(small_triangle(1e-4), name="bob", material=ROUGH, motion=motion, position=(50, 0, 1))
+    radar = make_radar(num_chirps=3, transmitters=[(0, 0, 0)], receivers=[(0, 0, 0)])
+    path = ep.trace(scene, radar, num_rays=500, start_time=0.1).select("T 'bob' R")
+    times = np.linspace(0.01, 2.4, 4000)
+    speed = np.gradient(path.lengths(times)[:, 0] / 2, times)
+    wavelength = ep.speed_of_light / radar.waveform.centre_frequency
+    assert np.abs(speed).max() == pytest.approx(1.62129, rel=0.01)
+    assert 2 * np.abs(speed).max() / wavelength == pytest.approx(838.25, rel=0.01)
+    turns = times[:-1][np.diff(np.sign(speed)) != 0]  # at rest every half period
+    assert 2 * np.diff(turns).mean() == pytest.approx(2.0410, rel=0.01)
+
+
 def test_wall_ghosts_stand_in_the_map():
     scene = ep.Scene()
     scene.add(ep.actors.sphere(0.1), name="target", material=ROUGH, position=(20, 0, 0), motion=ep.LinearMotion(velocity=(-5, 0, 0)))

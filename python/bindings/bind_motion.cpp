@@ -9,7 +9,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/base/errors.h"
-#include "echopath/motion/motion.h"
+#include "echopath/motion/deformation.h"
 #include "keywords.h"
 
 namespace echopath::bindings {
@@ -111,24 +111,29 @@ Between two keys a rotation goes the shorter way. Raises ValueError naming the a
       });
 }
 
+void bind_deformation(py::module_& m) {
+  py::class_<Deformation, std::shared_ptr<Deformation>>(
+      m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.")
+      .def("at", [](const Deformation& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
+           "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
+      .def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
+      .def_property_readonly("breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
+                             "Times [N] in s, ascending, where it is not smooth.")
+      .def_property_readonly("span", [](const Deformation& self) { return as_tuple(self.span()); },
+                             "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+}
+
 void bind_sequence(py::module_& m) {
-  py::class_<VertexSequence, std::shared_ptr<VertexSequence>>(m, "VertexSequence", R"(Deforming mesh: time -> vertices.
+  py::class_<VertexSequence, Deformation, std::shared_ptr<VertexSequence>>(m, "VertexSequence", R"(Deforming mesh: time -> vertices.
 
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
 interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
 Raises ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)")
       .def(py::init(&vertex_sequence), py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
-      .def("at", [](const VertexSequence& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
-           "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
       .def_property_readonly("times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly("vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); },
                              "[T, V, 3] in m, a copy")
-      .def_property_readonly("num_vertices", &VertexSequence::num_vertices, "V, of each instant")
-      .def_property_readonly("breakpoints", [](const VertexSequence& self) { return to_numpy(self.breakpoints()); },
-                             "Times [N] in s, ascending, where the motion is not smooth.")
-      .def_property_readonly("span", [](const VertexSequence& self) { return as_tuple(self.span()); },
-                             "(begin, end) in s of the times it is defined on.")
       .def_property_readonly("interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
                              "\"cubic\" or \"linear\"")
       .def("__repr__", [](const VertexSequence& self) {
@@ -142,6 +147,7 @@ Raises ValueError naming the argument. Cubic sequences take twice the memory of 
 void bind_motion(py::module_& m) {
   bind_motions(m);
   bind_keyframes(m);
+  bind_deformation(m);
   bind_sequence(m);
 }
 

@@ -152,6 +152,20 @@ auto view_of(Getter getter) {
   return [getter](const py::object& self) { return numpy_view((self.cast<const Mesh&>().*getter)(), self); };
 }
 
+std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::object& triangles) {
+  const py::array given = py::array::ensure(triangles);
+  if (!given || given.dtype().kind() != 'b') {
+    return shared(Mesh::part(self, as_vector<uint32_t>(triangles, "triangles")));
+  }
+  const std::vector<Triangle>& all = self->triangles();
+  const auto mask = checked_array<bool>(given, "triangles", "[" + std::to_string(all.size()) + "]");
+  std::vector<uint32_t> taken;
+  for (uint32_t t = 0; t < all.size(); ++t) {
+    if (mask.data()[t]) taken.push_back(t);
+  }
+  return shared(Mesh::part(self, std::move(taken)));
+}
+
 void bind_mesh(py::module_& m) {
   py::class_<Mesh, std::shared_ptr<Mesh>>(m, "Mesh", R"(One labelled surface. Cannot be changed; its arrays are views.
 
@@ -166,11 +180,19 @@ out. Raises ValueError for indices out of range and where no face has an area.)"
       .def_property_readonly("triangles", view_of(&Mesh::triangles), "[F, 3] indices of vertices")
       .def_property_readonly("original_triangle", view_of(&Mesh::original_triangle), "[F] face of the input or file")
       .def_property_readonly("original_vertex", view_of(&Mesh::original_vertex), "[V] vertex of the input")
-      .def_property_readonly("num_input_vertices", &Mesh::num_input_vertices, "what a VertexSequence must have")
+      .def_property_readonly("num_input_vertices", &Mesh::num_input_vertices, "what a Deformation must have")
       .def_property_readonly("num_removed_triangles", &Mesh::num_removed_triangles, "faces without area, left out")
       .def_property_readonly("num_duplicated_vertices", &Mesh::num_duplicated_vertices, "added where sheets meet")
       .def_property_readonly("is_closed", &Mesh::is_closed, "no boundary edge, no duplicated vertex")
       .def_property_readonly("area", &Mesh::area, "m^2")
+      .def_property_readonly("whole", [](const Mesh& self) { return shared(self.whole()); },
+                             "the Mesh that this is a part of, None for a whole")
+      .def_property_readonly("whole_triangle", view_of(&Mesh::whole_triangle), "[F] triangle of `whole`, [0] for a whole")
+      .def("part", &part_of, py::arg("triangles"), R"(Some triangles as a mesh of their own, to be labelled.
+
+triangles: [N] indices of triangles, or a mask [F] of bool
+Returns a Mesh of these in their order. A smooth surface keeps its vertex normals across the cut, and a deformation of the
+whole deforms each part. Raises ValueError for none or one out of range.)")
       .def("__repr__", &mesh_text);
 }
 
@@ -207,7 +229,7 @@ out. Raises FileError naming the file, and the line where it is text.)");
 // --- Scene ---
 
 Node node(std::string name, int parent, const py::object& placement, std::shared_ptr<Motion> motion,
-          std::shared_ptr<Mesh> mesh, std::shared_ptr<VertexSequence> sequence, std::shared_ptr<Material> material,
+          std::shared_ptr<Mesh> mesh, std::shared_ptr<Deformation> deformation, std::shared_ptr<Material> material,
           std::string material_name, bool smooth) {
   Node made;
   made.name = std::move(name);
@@ -215,7 +237,7 @@ Node node(std::string name, int parent, const py::object& placement, std::shared
   if (!placement.is_none()) made.placement = as_transform(placement, "transform");
   made.motion = std::move(motion);
   made.mesh = std::move(mesh);
-  made.sequence = std::move(sequence);
+  made.deformation = std::move(deformation);
   made.material = std::move(material);
   made.material_name = std::move(material_name);
   made.smooth = smooth;
@@ -267,7 +289,7 @@ std::string scene_text(const Scene& self) {
 void bind_nodes(py::module_& m) {
   py::class_<Node>(m, "Node", "A node of a scene; cannot be changed.")
       .def(py::init(&node), py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
-           py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("sequence") = py::none(),
+           py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
            py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false)
       .def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
@@ -279,7 +301,7 @@ void bind_nodes(py::module_& m) {
       .def_property_readonly(
           "mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
       .def_property_readonly(
-          "sequence", [](const Node& self) { return shared(self.sequence); }, "a VertexSequence or None")
+          "deformation", [](const Node& self) { return shared(self.deformation); }, "a VertexSequence, a Skin or None")
       .def_property_readonly(
           "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")

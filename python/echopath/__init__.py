@@ -12,12 +12,12 @@ answer_ctrl_c_while_loading()
 
 from . import _core
 from ._core import (
-    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, ChirpSequence, CosinePower, DeviceError,
-    FileError, GainTable, Isotropic, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths, Radar, RangeAzimuth,
-    RangeDoppler, ReceivedPower, Renewal, Selection, Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares,
-    VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann, compensate_tdm,
-    estimate_angles, hits, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads, range_azimuth, range_doppler,
-    received_power, renew, set_num_threads, speed_of_light, synthesize, validity, virtual_array,
+    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, ChirpSequence, CosinePower, Deformation,
+    DeviceError, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
+    Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
+    Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
+    compensate_tdm, estimate_angles, hits, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads, range_azimuth,
+    range_doppler, received_power, renew, set_num_threads, speed_of_light, synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
 from .materials import materials
@@ -60,14 +60,14 @@ def _viewer():
 
 
 __all__ = [
-    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "ChirpSequence", "CosinePower",
-    "DeviceError", "Effect", "FileError", "Frame", "GainTable", "Isotropic", "KeyframeMotion", "LinearMotion",
-    "Material", "Mesh", "Motion", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler",
-    "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Stratum", "TessellationWarning", "TraceFrame",
-    "TraceStatistics", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise",
-    "angle_fft", "beamform", "boltzmann", "compensate_tdm", "decompose", "effects", "estimate_angles", "hits",
-    "load_antenna", "load_frame", "load_mesh",
-    "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells",
-    "plot_rays", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame",
-    "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
+    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "ChirpSequence",
+    "CosinePower", "Deformation", "DeviceError", "Effect", "FileError", "Frame", "GainTable", "Isotropic", "Joint",
+    "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Parts", "PathCells", "Paths", "Radar",
+    "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Skin", "Stratum",
+    "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
+    "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "compensate_tdm", "decompose",
+    "effects", "estimate_angles", "hits", "load_antenna", "load_frame", "load_mesh", "load_meshes", "load_scene",
+    "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays", "power_by_chirp",
+    "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
+    "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
 ]

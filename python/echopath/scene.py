@@ -28,7 +28,9 @@ class Scene(_core.Scene):
         name: without '/', '*', '?' and quotes, unique among its siblings
         material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given
             here replaces them)
-        motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence; None: at rest
+        motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence or a Skin; None: at rest. A mesh with a Skin
+            becomes a node with a child for each joint that dominates any of its triangles, named after the joint
+            (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart
         position [3] in m, yaw in rad about z (left positive): placement at rest relative to the parent
         transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
         parent: full name of a node; None: the root
@@ -66,7 +68,7 @@ class _Batch:
 
     def add_object(self, content, name, material, motion, placement) -> None:
         if content is None or isinstance(content, _core.Mesh):
-            self._add(name, self._parent, placement, motion, content, material)
+            self._add_mesh(name, self._parent, placement, motion, content, material)
             return
         parts = _parts_of(content, material)
         if motion is None:
@@ -75,7 +77,16 @@ class _Batch:
         groups = {(): self._first}
         for part_name, mesh, part_material, part_motion, part_placement in parts:
             *path, own_name = str(part_name).split("/")
-            self._add(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material)
+            self._add_mesh(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material)
+
+    def _add_mesh(self, name, parent: int, placement, motion, mesh, material) -> None:
+        """A node with the mesh; below it the mesh's regions where a skin moves them."""
+        if not isinstance(motion, _core.Skin) or mesh is None or mesh.whole is not None:
+            self._add(name, parent, placement, motion, mesh, material)
+            return
+        group = self._add(name, parent, placement, None, None, None)
+        for joint, part in motion.parts(mesh):
+            self._add(joint, group, None, motion, part, material)
 
     def _group(self, groups: dict, path: tuple) -> int:
         """The node of a group, added with those above it where it is not there yet."""
@@ -87,13 +98,13 @@ class _Batch:
         if not isinstance(name, str):
             raise TypeError(f"name: must be text, got {name!r}")
         material, material_name = _material(material, mesh, name)
-        sequence = motion if isinstance(motion, _core.VertexSequence) else None
-        if sequence is not None and mesh is None:
-            raise ValueError(f"motion: a VertexSequence needs a mesh, and '{name}' has none of its own")
-        if not (motion is None or sequence or isinstance(motion, _core.Motion)):
-            raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion or VertexSequence, got {motion!r}")
-        self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if sequence else motion,
-                                     mesh=mesh, sequence=sequence, material=material, material_name=material_name,
+        deformation = motion if isinstance(motion, _core.Deformation) else None
+        if deformation is not None and mesh is None:
+            raise ValueError(f"motion: a {type(motion).__name__} needs a mesh, and '{name}' has none of its own")
+        if not (motion is None or deformation or isinstance(motion, _core.Motion)):
+            raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion, VertexSequence or Skin, got {motion!r}")
+        self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if deformation else motion,
+                                     mesh=mesh, deformation=deformation, material=material, material_name=material_name,
                                      smooth=self._smooth and mesh is not None))
         return self._first + len(self.nodes) - 1
 

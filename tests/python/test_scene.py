@@ -121,7 +121,7 @@ def test_vertex_sequence_moves_the_vertices_of_a_mesh(square):
               motion=ep.VertexSequence(times=[0, 1], vertices=[CORNERS, raised]))
     np.testing.assert_allclose(scene.world_vertices(0, 0.5), CORNERS + [0, 0, 2], atol=ROUNDING)
     node = scene.nodes[0]
-    assert isinstance(node.sequence, ep.VertexSequence) and node.motion is None
+    assert isinstance(node.deformation, ep.VertexSequence) and node.motion is None
     assert scene.is_moving(0)
     scene.require_times(0.0, 1.0)
     with pytest.raises(ValueError, match="lift"):
@@ -203,7 +203,7 @@ def test_breakpoints_of_all_motions_are_joined(square):
     ({"name": "x", "transform": np.eye(4), "yaw": 1.0}, ["transform", "yaw"]),
     ({"name": "x", "transform": np.eye(3)}, ["transform", "[4, 4]"]),
     ({"name": "x", "transform": np.diag([1, 1, 0, 1])}, ["placement", "flatten"]),
-    ({"name": "x", "motion": ep.VertexSequence(times=[0, 1], vertices=np.zeros((2, 3, 3)))}, ["sequence", "got 3"]),
+    ({"name": "x", "motion": ep.VertexSequence(times=[0, 1], vertices=np.zeros((2, 3, 3)))}, ["deformation", "got 3"]),
 ])
 def test_bad_values_are_refused_by_name_and_add_nothing(square, keywords, words):
     scene = ep.Scene()

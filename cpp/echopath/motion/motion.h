@@ -65,29 +65,8 @@ class KeyframeMotion : public Motion {
   std::shared_ptr<const Data> data_;
 };
 
-// Deforming mesh: time -> vertices. Replaces the vertices of the mesh of its node, in the node's own frame.
-// vertices: T frames of V vertices each, [T][V] in m, in the order of the vertices the mesh was made from.
-// Interpolation as in KeyframeMotion; cubic ones keep the second derivatives too, so they take twice the memory of
-// their frames.
-class VertexSequence {
- public:
-  VertexSequence(std::vector<double> times, std::vector<std::vector<Vec3>> vertices,
-                 Interpolation interpolation = Interpolation::kCubic);
-  ~VertexSequence();
-  int64_t num_vertices() const;
-  // Vertices [V] at `time`; raises invalid_argument outside span().
-  std::vector<Vec3> at(double time) const;
-  // Vertices `indices` [I] only, at `time`; out [I].
-  void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const;
-  std::vector<double> breakpoints() const;
-  TimeSpan span() const;
-  const std::vector<double>& times() const;
-  const std::vector<std::vector<Vec3>>& vertices() const;
-  Interpolation interpolation() const;
-
- private:
-  struct Data;
-  std::shared_ptr<const Data> data_;
-};
+// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement), the one rule by which motions move what is
+// placed: it turns about its own origin, in the axes of its parent. `motion` may be null: at rest.
+Transform moved(const Transform& placement, const Motion* motion, double time);
 
 }  // namespace echopath

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/motion/deformation.h"
 #include "echopath/motion/spline.h"
 
 namespace echopath {

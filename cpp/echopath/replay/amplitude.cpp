@@ -13,6 +13,15 @@ constexpr double kFourPi = 4.0 * kPi;
 constexpr double kLambert = 1.0 / kPi;
 constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
 
+// Area of a triangle over that at the trace, of all diffuse hits together.
+double diffuse_area_ratio(const LocalPath& path, const PosedHit* hits) {
+  double ratio = 1.0;
+  for (int k = path.first_material; k <= path.last_material; ++k) {
+    if (path.is_diffuse(k)) ratio *= hits[k].area_ratio;
+  }
+  return ratio;
+}
+
 // What lies between the first and the last material point; the same for all antennas.
 struct InnerPart {
   double length = 0.0;            // m
@@ -67,7 +76,8 @@ std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits
   if (cos_in * cos_out <= 0) return 0.0;
   const HitGeometry at{hit, arrival, out.travel, in.length + inner.length, out.length, std::abs(cos_in), std::abs(cos_out)};
   const double spreading = root_tube_area(path.cell, at) * out.length;
-  return std::sqrt(radio.transmit_power * in.gain.power * out.gain.power) / kFourPi * at.cos_in / spreading *
+  return std::sqrt(radio.transmit_power * in.gain.power * out.gain.power) / kFourPi * at.cos_in * hit.area_ratio /
+         spreading *
          cell_filter(path.cell, at, {radio.wavenumber, radio.spread, radio.footprint});
 }
 
@@ -82,7 +92,7 @@ double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPa
   const double first_leg = in.length + inner.to_first_diffuse;
   const double spreading = std::abs(cos_in * cos_out) * kLambert / (first_leg * first_leg * out.length * out.length);
   const double antennas = radio.transmit_power * in.gain.power * out.gain.power * radio.wavelength * radio.wavelength / (kFourPi * kFourPi);
-  return std::sqrt(antennas * spreading * inner.power_factor);
+  return std::sqrt(antennas * spreading * inner.power_factor * diffuse_area_ratio(path, hits));
 }
 
 // What the polarisations of two antennas make of a path: receive components, matrix, transmit components.

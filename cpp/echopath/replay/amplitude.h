@@ -3,6 +3,7 @@
 //
 // Coherent path (regime C), physical optics at its last material point:
 //   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
+//   dS is that of the time: the stored one times the area of the triangle over its area at the trace,
 //   sqrt(D) = unfolded length TX -> point on flat chains (else from the launch cell), r = unfolded length point -> RX,
 //   obliquity K = cos_i, F the footprint filter (launch_cell.h).
 // Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:

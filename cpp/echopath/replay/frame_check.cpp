@@ -40,17 +40,20 @@ FrameCheck::Scratch::Scratch(int longest) : probe(longest), evaluation(longest) 
 // One time of the frame.
 struct FrameCheck::View {
   std::shared_ptr<const EmbreeScene> geometry;
+  Pose pose;
   Instant first_antennas, rim;
   FrameProbe probe;
 
   View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> posed, double time)
-      : geometry(std::move(posed)), first_antennas(*check.paths_.scene, check.first_radar_, check.origin_, time),
-        rim(*check.paths_.scene, check.probe_radar_, check.origin_, time),
-        probe(*check.paths_.scene, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
+      : geometry(std::move(posed)), pose(*check.paths_.scene, time),
+        first_antennas(*check.paths_.scene, check.first_radar_, check.localise_.patches(), check.origin_, time),
+        rim(*check.paths_.scene, check.probe_radar_, check.localise_.patches(), check.origin_, time),
+        probe(check.localise_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times, SpecularPoints specular, Job* job)
-    : paths_(paths), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)), localise_(paths),
+    : paths_(paths), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
+      localise_(paths, whole_patches(*paths.scene)),
       walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)),
       mesh_moves_(moving_meshes(*paths.scene)) {
   radio_.specular = specular;

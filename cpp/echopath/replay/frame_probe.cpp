@@ -120,12 +120,12 @@ uint64_t FrameProbe::find_stepped(const LocalPath& path, ProbeScratch& scratch, 
 // Poses the point of the hit's mesh over which `point` lies; false where the way there leaves the surface.
 bool FrameProbe::move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const {
   const Vec3 in_mesh = instant_.rotation(hit.mesh_id).inverse() * (point - instant_.translation(hit.mesh_id));
-  const auto spot = walk_.find(hit.mesh_id, hit.triangle_id, instant_.local_vertices(hit.mesh_id), in_mesh);
+  const auto spot = walk_.find(hit.mesh_id, hit.triangle_id, pose_.local_vertices(hit.mesh_id), in_mesh);
   if (!spot) return false;
   is_near = spot->is_near;
-  LocalHit moved = local_hit(scene_, spot->hit);
+  LocalHit moved = localise_.hit(spot->hit);
   std::array<Vec3, 3> normals;
-  if (hit.normals && find_smooth_normals(moved, walk_.smooth_normals(hit.mesh_id), normals)) moved.normals = &normals;
+  if (hit.normals && localise_.find_smooth_normals(moved, normals)) moved.normals = &normals;
   pose_hit(moved, instant_, false, out);
   return true;
 }

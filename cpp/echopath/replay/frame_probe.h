@@ -42,9 +42,11 @@ struct ProbeScratch {
 
 class FrameProbe {
  public:
-  // rim: with the antennas of probe_radar, relative to the origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
-  FrameProbe(const Scene& scene, const Instant& rim, const EmbreeScene& geometry, const SurfaceWalk& walk, double wavenumber)
-      : scene_(scene), instant_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
+  // localise: of whole meshes (hit_patches.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
+  // origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
+  FrameProbe(const Localiser& localise, const Pose& pose, const Instant& rim, const EmbreeScene& geometry,
+             const SurfaceWalk& walk, double wavenumber)
+      : localise_(localise), pose_(pose), instant_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
 
   // Signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
   void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
@@ -66,7 +68,8 @@ class FrameProbe {
     return path.is_reversed ? instant_.transmitters : instant_.receivers;
   }
 
-  const Scene& scene_;
+  const Localiser& localise_;
+  const Pose& pose_;
   const Instant& instant_;
   const EmbreeScene& geometry_;
   const SurfaceWalk& walk_;

@@ -2,6 +2,7 @@
 // Scene and antennas at one time, relative to the origin of the trace.
 #include <vector>
 
+#include "echopath/scene/surface_patch.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
@@ -22,8 +23,9 @@ struct PosedAntenna {
 
 class Instant {
  public:
-  // The radar must outlive the instant. Raises invalid_argument when a motion is not defined at `time` (s).
-  Instant(const Scene& scene, const Radar& radar, const Vec3& origin, double time);
+  // patches: by mesh ID (replay/hit_patches.h), what of deforming meshes is posed. The radar must outlive the instant.
+  // Raises invalid_argument when a motion is not defined at `time` (s).
+  Instant(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin, double time);
 
   std::vector<PosedAntenna> transmitters, receivers;
 
@@ -32,16 +34,17 @@ class Instant {
   const Vec3& translation(uint32_t mesh_id) const { return translation_[mesh_id]; }
   // Normals of the mesh's frame -> normals in the world, not normalised (cofactors: follows the winding of the triangles).
   const Mat3& normal_matrix(uint32_t mesh_id) const { return normal_matrix_[mesh_id]; }
-  // Unit vertex normals in the mesh's frame of a smooth mesh that deforms; empty otherwise.
+  // Of deforming meshes, by place in their patch: vertices in the mesh's frame, m, and where the mesh is smooth their unit
+  // normals (right at the corners of triangles that were hit).
+  const std::vector<Vec3>& deformed_vertices(uint32_t mesh_id) const { return deformed_vertices_[mesh_id]; }
   const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[mesh_id]; }
-  // Vertices in the mesh's frame, deformed at this time.
-  const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const { return pose_.local_vertices(mesh_id); }
 
  private:
-  Pose pose_;
+  void add_mesh(const Node& node, const SurfacePatch& patch, const Transform& world_from_mesh, const Vec3& origin, double time);
+
   std::vector<Mat3> rotation_, normal_matrix_;
   std::vector<Vec3> translation_;
-  std::vector<std::vector<Vec3>> deformed_normals_;
+  std::vector<std::vector<Vec3>> deformed_vertices_, deformed_normals_;
 };
 
 }  // namespace echopath

@@ -86,8 +86,9 @@ std::complex<double> second_order(const LaunchCell& cell, const HitGeometry& at,
 
 double root_tube_area(const LaunchCell& cell, const HitGeometry& at) {
   if (!cell.is_curved) return at.length_in;
+  // Tangents stretch with their triangle, and so does the solid angle that it takes of the source.
   const Tangents tangents = tangents_of(cell, at.hit);
-  return std::sqrt(tangents.t[0].cross(tangents.t[1]).norm() * at.cos_in * cell.ray_density);
+  return std::sqrt(tangents.t[0].cross(tangents.t[1]).norm() / at.hit.area_ratio * at.cos_in * cell.ray_density);
 }
 
 std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& at, const CellFilter& filter) {

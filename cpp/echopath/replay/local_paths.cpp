@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "echopath/scene/smooth.h"
 
@@ -19,37 +20,59 @@ uint64_t sliding_hits(const LocalPath& path) {
 
 }  // namespace
 
-LocalHit local_hit(const Scene& scene, const Hit& hit) {
-  const Node& node = scene.node_of(hit.mesh_id);
+Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
+    : paths_(paths), patches_(std::move(patches)),
+      trace_instant_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
+    mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
+    smooth_normals_.push_back(normals_at_trace(id));
+  }
+}
+
+std::vector<Vec3> Localiser::normals_at_trace(uint32_t mesh_id) const {
+  const Node& node = paths_.scene->node_of(mesh_id);
+  if (!node.smooth) return {};
+  if (!node.deformation) return vertex_normals(*node.mesh);
+  std::vector<Vec3> normals;
+  for (const uint32_t place : patches_[mesh_id].place) {
+    const bool is_posed = place != SurfacePatch::kAbsent;
+    normals.push_back(is_posed ? trace_instant_.deformed_normals(mesh_id)[place] : Vec3(Vec3::Zero()));
+  }
+  return normals;
+}
+
+LocalHit Localiser::hit(const Hit& hit) const {
+  const Node& node = paths_.scene->node_of(hit.mesh_id);
+  const Triangle& triangle = node.mesh->triangles()[hit.triangle_id];
   LocalHit local;
   local.mesh_id = hit.mesh_id;
   local.triangle_id = hit.triangle_id;
-  local.deformed = node.sequence != nullptr;
-  local.triangle = node.mesh->triangles()[hit.triangle_id];
+  local.deformed = node.deformation != nullptr;
+  local.triangle = local.deformed ? patches_[hit.mesh_id].corners(triangle) : triangle;
   local.u = hit.u;
   local.v = hit.v;
-  const std::vector<Vec3>& vertices = node.mesh->vertices();
+  const std::vector<Vec3>& vertices =
+      local.deformed ? trace_instant_.deformed_vertices(hit.mesh_id) : node.mesh->vertices();
   local.corner = vertices[local.triangle[0]];
   local.edge_u = vertices[local.triangle[1]] - local.corner;
   local.edge_v = vertices[local.triangle[2]] - local.corner;
   local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
   local.normal = local.edge_u.cross(local.edge_v).normalized();
+  if (mesh_may_stretch_[hit.mesh_id]) {
+    PosedHit posed;
+    pose_facet(local, trace_instant_, posed);
+    local.trace_area = posed.edge_u.cross(posed.edge_v).norm();
+  }
   return local;
 }
 
-bool find_smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, std::array<Vec3, 3>& out) {
+bool Localiser::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
+  const std::vector<Vec3>& of_vertices = smooth_normals_[hit.mesh_id];
   if (of_vertices.empty()) return false;
-  out = {of_vertices[hit.triangle[0]], of_vertices[hit.triangle[1]], of_vertices[hit.triangle[2]]};
+  const Triangle& triangle = paths_.scene->node_of(hit.mesh_id).mesh->triangles()[hit.triangle_id];
+  out = {of_vertices[triangle[0]], of_vertices[triangle[1]], of_vertices[triangle[2]]};
   return is_smooth_facet(hit.normal, out);
-}
-
-Localiser::Localiser(const Paths& paths)
-    : paths_(paths), trace_instant_(*paths.scene, paths.radar, paths.frame.transmitter, paths.frame.trace_time) {
-  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    const Node& node = paths.scene->node_of(id);
-    mesh_is_mirror_.push_back(node.material->mirror);
-    smooth_normals_.push_back(node.smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>());
-  }
 }
 
 LocalPaths Localiser::operator()(std::span<const int64_t> indices) const {
@@ -79,9 +102,9 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
-    LocalHit& local = block.hits.emplace_back(local_hit(*paths_.scene, hit));
+    LocalHit& local = block.hits.emplace_back(this->hit(hit));
     std::array<Vec3, 3> normals;
-    if (find_smooth_normals(local, smooth_normals_[hit.mesh_id], normals)) local.normals = &block.normals.emplace_back(normals);
+    if (find_smooth_normals(local, normals)) local.normals = &block.normals.emplace_back(normals);
     if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;
     } else {

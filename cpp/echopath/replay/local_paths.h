@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "echopath/replay/hit_patches.h"
 #include "echopath/replay/path_geometry.h"
 
 namespace echopath {
@@ -19,30 +20,34 @@ struct LocalPaths {
   std::deque<std::array<Vec3, 3>> normals;
 };
 
-// A hit in the frame of its mesh, without its normals.
-LocalHit local_hit(const Scene& scene, const Hit& hit);
-// Normals of its corners from those of its mesh's vertices, at rest; false where the crease guard refuses the facet.
-bool find_smooth_normals(const LocalHit& hit, const std::vector<Vec3>& of_vertices, std::array<Vec3, 3>& out);
-
 // Thread-safe.
 class Localiser {
  public:
-  // The record must outlive it.
-  explicit Localiser(const Paths& paths);
+  // The record must outlive it. patches: of its deforming meshes (hit_patches.h), those of the instants that its paths are
+  // posed by.
+  Localiser(const Paths& paths, std::vector<SurfacePatch> patches);
   // The paths of these indices, hits in the order in which they were traced.
   LocalPaths operator()(std::span<const int64_t> indices) const;
-  // Unit vertex normals by mesh ID, at rest; empty where facets are meant.
+  // A hit in the frame of its mesh, without its normals.
+  LocalHit hit(const Hit& hit) const;
+  // Normals of its corners; false where facets are meant or the crease guard refuses this one.
+  bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
+  // Unit vertex normals by mesh ID; empty where facets are meant. As the rays saw the mesh: at rest, or deformed as at the
+  // trace, and then zero outside of its patch.
   const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
+  const std::vector<SurfacePatch>& patches() const { return patches_; }
 
  private:
+  std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
   LocalPath local_path(int64_t index, LocalPaths& block) const;
   void add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const;
   void set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const;
 
   const Paths& paths_;
-  std::vector<uint8_t> mesh_is_mirror_;            // by mesh ID
-  std::vector<std::vector<Vec3>> smooth_normals_;
+  std::vector<SurfacePatch> patches_;                         // by mesh ID
+  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_;    // by mesh ID
   Instant trace_instant_;
+  std::vector<std::vector<Vec3>> smooth_normals_;
 };
 
 }  // namespace echopath

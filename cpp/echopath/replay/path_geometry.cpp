@@ -41,18 +41,7 @@ void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
 }
 
 void pose_triangle(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
-  const Mat3& rotation = instant.rotation(hit.mesh_id);
-  Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
-  if (hit.deformed) {
-    const std::vector<Vec3>& vertices = instant.local_vertices(hit.mesh_id);
-    corner = vertices[hit.triangle[0]];
-    edge_u = vertices[hit.triangle[1]] - corner;
-    edge_v = vertices[hit.triangle[2]] - corner;
-  }
-  posed.edge_u = rotation * edge_u;
-  posed.edge_v = rotation * edge_v;
-  posed.point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * posed.edge_u + hit.v * posed.edge_v;
-  posed.normal = posed.edge_u.cross(posed.edge_v).normalized();
+  pose_facet(hit, instant, posed);
   posed.is_smooth = hit.normals != nullptr;
   posed.facet = posed.point;
   if (posed.is_smooth) curve(hit, instant, posed);
@@ -63,12 +52,30 @@ void pose_point(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
   posed.point = instant.rotation(hit.mesh_id) * hit.point + instant.translation(hit.mesh_id);
   posed.normal = (instant.normal_matrix(hit.mesh_id) * hit.normal).normalized();
   posed.is_smooth = false;
+  posed.area_ratio = 1.0;
 }
 
 }  // namespace
 
+void pose_facet(const LocalHit& hit, const Instant& instant, PosedHit& out) {
+  const Mat3& rotation = instant.rotation(hit.mesh_id);
+  Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
+  if (hit.deformed) {
+    const std::vector<Vec3>& vertices = instant.deformed_vertices(hit.mesh_id);
+    corner = vertices[hit.triangle[0]];
+    edge_u = vertices[hit.triangle[1]] - corner;
+    edge_v = vertices[hit.triangle[2]] - corner;
+  }
+  out.edge_u = rotation * edge_u;
+  out.edge_v = rotation * edge_v;
+  out.point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * out.edge_u + hit.v * out.edge_v;
+  const Vec3 across = out.edge_u.cross(out.edge_v);
+  out.normal = across.normalized();
+  out.area_ratio = hit.trace_area > 0 ? across.norm() / hit.trace_area : 1.0;
+}
+
 void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out) {
-  if (with_triangle || hit.deformed || hit.normals) pose_triangle(hit, instant, out);
+  if (with_triangle || hit.deformed || hit.normals || hit.trace_area > 0) pose_triangle(hit, instant, out);
   else pose_point(hit, instant, out);
 }
 

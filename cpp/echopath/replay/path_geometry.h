@@ -9,12 +9,13 @@ namespace echopath {
 // A hit in the frame of its mesh.
 struct LocalHit {
   uint32_t mesh_id = 0, triangle_id = 0;
-  bool deformed = false;        // the corners are those of the instant
+  bool deformed = false;        // the corners are those of the instant, `triangle` counts places in the mesh's patch
   Triangle triangle{};
   double u = 0.0, v = 0.0;
-  Vec3 corner, edge_u, edge_v;  // of its triangle at rest
-  Vec3 point, normal;           // at rest, on the facet; unit
-  // Unit vertex normals at rest where the triangle is taken as smooth, else null.
+  Vec3 corner, edge_u, edge_v;  // of its triangle at rest, of deformed ones as at the trace
+  Vec3 point, normal;           // likewise, on the facet; unit
+  double trace_area = 0.0;      // m^2, |edge_u x edge_v| in the world at the trace; 0: its area never changes
+  // Unit vertex normals at rest where the triangle is taken as smooth (of deformed ones: any), else null.
   const std::array<Vec3, 3>* normals = nullptr;
 };
 
@@ -24,6 +25,7 @@ struct PosedHit {
   Vec3 facet;            // the point on the flat triangle; only where is_smooth
   Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
   bool is_smooth = false;
+  double area_ratio = 1.0;  // of its triangle, over that at the trace
 };
 
 // What a launch cell of the path's own stratum becomes on the triangle of the physical-optics hit, at the trace time.
@@ -58,6 +60,8 @@ struct LocalPath {
   int first_material = -1, last_material = -1;
 };
 
+// Point, edges and normal of a hit on its flat triangle.
+void pose_facet(const LocalHit& hit, const Instant& instant, PosedHit& out);
 // with_triangle: the edges are needed too.
 void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out);
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);

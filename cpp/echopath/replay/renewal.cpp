@@ -33,10 +33,11 @@ Radar carried_radar(const Paths& paths, const Radar& radar) {
 class Renewer {
  public:
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job)
-      : paths_(paths), radar_(carried_radar(paths, radar)), localise_(paths), walk_(*paths.scene, localise_.smooth_normals()),
-        wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
+      : paths_(paths), radar_(carried_radar(paths, radar)), localise_(paths, whole_patches(*paths.scene)),
+        walk_(*paths.scene, localise_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
         origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
-        geometry_(*paths.scene, pose_, origin_, job), instant_(*paths.scene, radar_, origin_, time) {}
+        geometry_(*paths.scene, pose_, origin_, job),
+        instant_(*paths.scene, radar_, localise_.patches(), origin_, time) {}
 
   BlockOutcome renew_block(std::span<const int64_t> indices) const {
     BlockOutcome block;
@@ -95,11 +96,10 @@ class Renewer {
     const uint32_t mesh_id = hit.mesh_id;
     const Vec3 point = surface_point(scratch.posed[at], step);
     const Vec3 in_mesh = instant_.rotation(mesh_id).inverse() * (point - instant_.translation(mesh_id));
-    const auto spot = walk_.find(mesh_id, hit.triangle_id, instant_.local_vertices(mesh_id), in_mesh);
+    const auto spot = walk_.find(mesh_id, hit.triangle_id, pose_.local_vertices(mesh_id), in_mesh);
     if (!spot) return false;
-    hit = local_hit(*paths_.scene, spot->hit);
-    const std::vector<Vec3>& of_vertices = walk_.smooth_normals(mesh_id);
-    if (!of_vertices.empty() && find_smooth_normals(hit, of_vertices, scratch.normals[at])) hit.normals = &scratch.normals[at];
+    hit = localise_.hit(spot->hit);
+    if (localise_.find_smooth_normals(hit, scratch.normals[at])) hit.normals = &scratch.normals[at];
     pose_hit(hit, instant_, false, scratch.posed[at]);
     return true;
   }

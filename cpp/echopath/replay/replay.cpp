@@ -44,7 +44,7 @@ struct Replayer::NodeValues {
 };
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
-    : paths_(paths), radar_(radar), settings_(settings), localise_(paths), levels_(kExactLevel + 1) {
+    : paths_(paths), radar_(radar), settings_(settings), localise_(paths, hit_patches(paths)), levels_(kExactLevel + 1) {
   radar.validate();
   require(settings.phase_tolerance > 0, "phase_tolerance", "must be positive", settings.phase_tolerance);
   paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
@@ -71,6 +71,10 @@ int64_t Replayer::num_exact_nodes() const {
   return int64_t{radar_.num_slots()} * radar_.waveform.num_chirps * exact_order();
 }
 
+Instant Replayer::instant(double time) const {
+  return Instant(*paths_.scene, radar_, localise_.patches(), paths_.frame.transmitter, time);
+}
+
 const Replayer::Level& Replayer::level(int index) const {
   const std::lock_guard lock(levels_mutex_);
   std::unique_ptr<const Level>& slot = levels_[static_cast<size_t>(index)];
@@ -82,7 +86,7 @@ const Replayer::Level& Replayer::level(int index) const {
   else {
     made->nodes = chebyshev_nodes(radar_, start, breakpoints(), kOrders[static_cast<size_t>(index - 1)]);
   }
-  for (const double time : made->nodes.times) made->instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
+  for (const double time : made->nodes.times) made->instants.push_back(instant(time));
   slot = std::move(made);
   return *slot;
 }
@@ -157,15 +161,19 @@ int Replayer::num_levels() const {
   return static_cast<int>(std::count_if(kOrders.begin(), kOrders.end(), [&](int order) { return pieces * order <= num_exact_nodes(); }));
 }
 
-// The distances of a mesh's outermost vertices from the transmitters tell how many nodes its motion needs: an echo's length
-// is made of such distances.
+// The distances of vertices all over a mesh from the transmitters tell how many nodes its motion needs: an echo's length is
+// made of such distances.
 bool Replayer::fits(const Level& level, uint32_t mesh_id) const {
-  const size_t num_vertices = level.instants.front().local_vertices(mesh_id).size();
+  const Node& node = paths_.scene->node_of(mesh_id);
+  const auto vertices_at = [&](const Instant& instant) -> const std::vector<Vec3>& {
+    return node.deformation ? instant.deformed_vertices(mesh_id) : node.mesh->vertices();
+  };
+  const size_t num_vertices = vertices_at(level.instants.front()).size();
   const size_t step = std::max<size_t>(1, num_vertices / 16);
   for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
     std::vector<double> distance;
     for (const Instant& instant : level.instants) {
-      const Vec3 point = instant.rotation(mesh_id) * instant.local_vertices(mesh_id)[vertex] + instant.translation(mesh_id);
+      const Vec3 point = instant.rotation(mesh_id) * vertices_at(instant)[vertex] + instant.translation(mesh_id);
       distance.push_back(2.0 * (point - instant.transmitters.front().position).norm());
     }
     for (int piece = 0; piece < level.nodes.num_pieces(); ++piece) {
@@ -219,7 +227,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
                         std::vector<std::complex<double>>& amplitudes, Job* job) const {
   constexpr size_t kBlock = 8192;
   Level single;
-  single.instants.emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
+  single.instants.push_back(instant(time));
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
   amplitudes.resize(channels * indices.size());

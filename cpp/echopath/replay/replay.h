@@ -54,6 +54,7 @@ class Replayer {
  private:
   struct Level;
   int exact_order() const;
+  Instant instant(double time) const;
   const Level& level(int index) const;
   struct NodeValues;
   NodeValues evaluate_level(const LocalPaths& block, const Level& level) const;

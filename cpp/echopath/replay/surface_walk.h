@@ -15,7 +15,6 @@ class SurfaceWalk {
   // smooth_normals: unit vertex normals by mesh ID, empty where facets are meant. Both must outlive it.
   SurfaceWalk(const Scene& scene, const std::vector<std::vector<Vec3>>& smooth_normals);
   ~SurfaceWalk();
-  const std::vector<Vec3>& smooth_normals(uint32_t mesh_id) const { return smooth_normals_[mesh_id]; }
 
   struct Spot {
     Hit hit;

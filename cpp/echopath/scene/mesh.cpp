@@ -76,6 +76,27 @@ bool has_boundary(const HalfedgeMesh& mesh) {
   return false;
 }
 
+// Of triangles cut to a manifold, where an edge has one or two of them.
+bool has_boundary(const std::vector<Triangle>& triangles) {
+  std::vector<std::pair<uint32_t, uint32_t>> edges;
+  edges.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles) {
+    for (size_t k = 0; k < 3; ++k) edges.push_back(std::minmax(t[k], t[(k + 1) % 3]));
+  }
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 0; i < edges.size(); i += 2) {
+    if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return true;
+  }
+  return false;
+}
+
+void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  require(!triangles.empty(), "triangles", "must name one at least", 0);
+  require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
+}
+
 }  // namespace
 
 Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle)
@@ -103,6 +124,31 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   vertices_.reserve(original_vertex_.size());
   for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
   is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
+}
+
+MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
+  sort_and_check(triangles, whole->triangles_.size());
+  if (whole->whole_) {
+    for (uint32_t& triangle : triangles) triangle = whole->whole_triangle_[triangle];
+    return part(whole->whole_, std::move(triangles));
+  }
+  const std::shared_ptr<Mesh> made(new Mesh());
+  made->whole_ = whole;
+  for (const uint32_t t : triangles) {
+    made->triangles_.push_back(whole->triangles_[t]);
+    made->original_triangle_.push_back(whole->original_triangle_[t]);
+  }
+  made->whole_triangle_ = std::move(triangles);
+  made->whole_vertex_ = drop_unused_vertices(made->triangles_, whole->vertices_.size());
+  const auto num_before_copies = whole->vertices_.size() - static_cast<size_t>(whole->num_duplicated_vertices_);
+  for (const uint32_t v : made->whole_vertex_) {
+    made->vertices_.push_back(whole->vertices_[v]);
+    made->original_vertex_.push_back(whole->original_vertex_[v]);
+    made->num_duplicated_vertices_ += v >= num_before_copies ? 1 : 0;
+  }
+  made->num_input_vertices_ = whole->num_input_vertices_;
+  made->is_closed_ = made->num_duplicated_vertices_ == 0 && !has_boundary(made->triangles_);
+  return made;
 }
 
 Mesh::~Mesh() = default;

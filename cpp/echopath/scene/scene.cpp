@@ -23,12 +23,19 @@ void check_content(const Node& node) {
   require(!node.mesh || node.material, "material", "must be given with a mesh in node", node.name);
   require(node.mesh || !node.material, "material", "must not be given without a mesh in node", node.name);
   if (node.material) node.material->validate();
-  if (!node.sequence) return;
-  require(node.mesh != nullptr, "sequence", "must not be given without a mesh in node", node.name);
+  if (!node.deformation) return;
+  require(node.mesh != nullptr, "deformation", "must not be given without a mesh in node", node.name);
   const int64_t num_input = node.mesh->num_input_vertices();
-  require(node.sequence->num_vertices() == num_input, "sequence",
+  require(node.deformation->num_vertices() == num_input, "deformation",
           "must have the " + std::to_string(num_input) + " vertices the mesh was made from",
-          std::to_string(node.sequence->num_vertices()) + " in node " + node.name);
+          std::to_string(node.deformation->num_vertices()) + " in node " + node.name);
+}
+
+bool scales_unevenly(const Mat3& linear) {
+  constexpr double kRounding = 1e-12;  // relative
+  const Mat3 gram = linear.transpose() * linear;
+  const double mean = gram.trace() / 3.0;
+  return (gram - mean * Mat3::Identity()).cwiseAbs().maxCoeff() > kRounding * mean;
 }
 
 void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
@@ -80,9 +87,18 @@ std::optional<int> Scene::find(std::string_view full_name) const {
 }
 
 bool Scene::is_moving(uint32_t mesh_id) const {
-  if (node_of(mesh_id).sequence) return true;
+  if (node_of(mesh_id).deformation) return true;
   for (int i = meshes_[mesh_id].node; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) {
     if (nodes_[static_cast<size_t>(i)].motion) return true;
+  }
+  return false;
+}
+
+bool Scene::may_stretch(uint32_t mesh_id) const {
+  if (node_of(mesh_id).deformation) return true;
+  if (!is_moving(mesh_id)) return false;
+  for (int i = meshes_[mesh_id].node; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) {
+    if (scales_unevenly(nodes_[static_cast<size_t>(i)].placement.linear())) return true;
   }
   return false;
 }
@@ -92,7 +108,7 @@ std::vector<double> Scene::breakpoints() const {
   const auto append = [&](const std::vector<double>& times) { all.insert(all.end(), times.begin(), times.end()); };
   for (const Node& node : nodes_) {
     if (node.motion) append(node.motion->breakpoints());
-    if (node.sequence) append(node.sequence->breakpoints());
+    if (node.deformation) append(node.deformation->breakpoints());
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -102,7 +118,7 @@ std::vector<double> Scene::breakpoints() const {
 void Scene::require_times(double begin, double end) const {
   for (const Node& node : nodes_) {
     if (node.motion) require_span(node.motion->span(), begin, end, node.name);
-    if (node.sequence) require_span(node.sequence->span(), begin, end, node.name);
+    if (node.deformation) require_span(node.deformation->span(), begin, end, node.name);
   }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "echopath/em/material.h"
-#include "echopath/motion/motion.h"
+#include "echopath/motion/deformation.h"
 #include "echopath/scene/mesh.h"
 
 namespace echopath {
@@ -22,7 +22,7 @@ struct Node {
   Transform placement = Transform::Identity();      // at rest, relative to the parent
   std::shared_ptr<const Motion> motion;             // may be null
   MeshPtr mesh;                                     // may be null
-  std::shared_ptr<const VertexSequence> sequence;   // may be null; its frames replace the mesh's vertices
+  std::shared_ptr<const Deformation> deformation;   // may be null; its vertices replace the mesh's
   MaterialPtr material;                             // null where there is no mesh
   std::string material_name;                        // as the user gave it, may be empty
   bool smooth = false;                              // the mesh stands for a curved surface (scene/smooth.h)
@@ -38,7 +38,7 @@ class Scene {
  public:
   // Adds a node and returns its index. `node.name` is its own name without the parent's; it must be non-empty, unique
   // among its siblings and free of '/', '*', '?', quotes and white space at the ends. A mesh needs a material; a
-  // sequence needs a mesh and as many vertices as the mesh was made from. Raises invalid_argument, and then adds
+  // deformation needs a mesh and as many vertices as the mesh was made from. Raises invalid_argument, and then adds
   // nothing.
   int add(Node node);
 
@@ -49,8 +49,10 @@ class Scene {
   std::vector<std::string> mesh_names() const;                       // by mesh ID
   std::optional<int> find(std::string_view full_name) const;         // node index
 
-  // Mesh moves at some time (its node or an ancestor has a motion, or it has a vertex sequence).
+  // Mesh moves at some time (its node or an ancestor has a motion, or it deforms).
   bool is_moving(uint32_t mesh_id) const;
+  // Its triangles may change their areas: it deforms, or moves below or with a placement that scales unevenly.
+  bool may_stretch(uint32_t mesh_id) const;
   std::vector<double> breakpoints() const;  // of all motions, ascending
   // Raises invalid_argument naming the node when a motion is not defined on all of [begin, end] (s).
   void require_times(double begin, double end) const;
@@ -67,9 +69,11 @@ bool glob_takes(std::string_view glob, std::string_view full_name);
 // Vertices [V] of one mesh in world coordinates; poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
 
+// Of each mesh, by mesh ID.
+std::vector<Transform> world_from_meshes(const Scene& scene, double time);
+
 // World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh. The scene must outlive it.
-// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement): a motion turns a node about its own
-// origin.
+// Motions move nodes by the rule of `moved` (motion/motion.h).
 class Pose {
  public:
   Pose(const Scene& scene, double time);
@@ -78,6 +82,8 @@ class Pose {
   // In the mesh's own frame.
   const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
+  // Unit normals [V] in world axes of the curved surface that the mesh stands for, and its part is of (scene/smooth.h).
+  std::vector<Vec3> world_normals(uint32_t mesh_id) const;
   // Corners of a triangle in world coordinates.
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
 

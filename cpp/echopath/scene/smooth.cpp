@@ -23,6 +23,18 @@ std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::v
   return normals;
 }
 
+std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals = vertex_normals(mesh.surface().vertices(), mesh.surface().triangles());
+  if (!mesh.whole()) return normals;
+  std::vector<Vec3> of_part;
+  for (const uint32_t vertex : mesh.whole_vertex()) of_part.push_back(normals[vertex]);
+  return of_part;
+}
+
+Mat3 cofactor_matrix(const Mat3& world_from_mesh) {
+  return world_from_mesh.inverse().transpose() * world_from_mesh.determinant();
+}
+
 bool is_smooth_facet(const Vec3& facet_normal, const std::array<Vec3, 3>& normals) {
   return std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(facet_normal) >= kCreaseCosine; });
 }

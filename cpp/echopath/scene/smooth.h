@@ -12,6 +12,12 @@ namespace echopath {
 // vertices on a sphere at any tessellation. Zero where no triangle meets.
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
+// Unit vertex normals [V] of a mesh at rest: those of the whole surface that it is a part of.
+std::vector<Vec3> vertex_normals(const Mesh& mesh);
+
+// Takes normals of a mesh's frame to the world, up to their length; they follow the winding of the triangles.
+Mat3 cofactor_matrix(const Mat3& world_from_mesh);
+
 // A triangle may be taken as smooth where each vertex normal lies within 30 degrees of the facet's (crease guard: a box
 // taken as smooth errs by tens of dB).
 bool is_smooth_facet(const Vec3& facet_normal, const std::array<Vec3, 3>& normals);

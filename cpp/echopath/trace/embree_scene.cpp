@@ -119,7 +119,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
     }
     const Node& node = scene.node_of(mesh_id);
     device_->add_mesh(mesh_id, vertices, node.mesh->triangles());
-    normals_.push_back(node.smooth ? vertex_normals(vertices, node.mesh->triangles()) : std::vector<Vec3>());
+    normals_.push_back(node.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>());
   }
   device_->lift = 4.0 * 0x1.0p-24 * largest;
   reach_ = 2.0 * largest;

@@ -36,10 +36,10 @@ def _renewed(case: Case):
     return case.settings.retrace != "never", f'{what}; retrace = "{case.settings.retrace}"'
 
 
-@rule("deforming meshes", "Node.sequence")
+@rule("deforming meshes", "Node.deformation")
 def _deforming(case: Case):
-    return meshes_or([mesh for mesh in case.moving if case.nodes[mesh.node].sequence is not None],
-                     "no mesh has a vertex sequence")
+    return meshes_or([mesh for mesh in case.moving if case.nodes[mesh.node].deformation is not None],
+                     "no mesh has a vertex sequence or a skin")
 
 
 @rule("paths at rest evaluated once")

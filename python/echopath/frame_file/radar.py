@@ -6,7 +6,7 @@ import numpy as np
 import echopath as ep
 
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
-from .scene import read_motion, write_motion
+from .motion import read_motion, write_motion
 
 WAVEFORM_KINDS = {"start_frequency": float, "bandwidth": float, "num_samples": int, "sampling_rate": float,
                   "num_chirps": int, "chirp_interval": float, "real": bool}

@@ -5,16 +5,20 @@ import numpy as np
 
 import echopath as ep
 
+from .deformation import read_deformation, write_deformation
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"
 
 
 class _Pool:
-    """Objects that several nodes share, each kept once."""
+    """Objects that several nodes share, each kept once, and first those that others are parts of."""
 
-    def __init__(self):
+    def __init__(self, items=()):
         self.items = []
+        for item in items:
+            self.index(item)
 
     def index(self, item) -> int:
         if item is None:
@@ -27,7 +31,7 @@ class _Pool:
 
 
 def write_scene(group, scene) -> None:
-    """Writes nodes, meshes, materials, motions and vertex sequences; what nodes share is written once."""
+    """Writes nodes, meshes, materials, motions and deformations; what nodes share is written once."""
     nodes = list(scene.nodes)
     write_texts(group, "name", [node.name for node in nodes])
     write_texts(group, "material_name", [node.material_name for node in nodes])
@@ -35,8 +39,9 @@ def write_scene(group, scene) -> None:
     write_array(group, "parent", np.array([node.parent for node in nodes], np.int32))
     placements = np.array([node.placement for node in nodes], np.float64).reshape(-1, 4, 4)
     write_array(group, "placement", placements, unit="m")
+    wholes = [node.mesh.whole for node in nodes if node.mesh is not None]
     for kind, (folder, write, _) in _SHARED.items():
-        pool = _Pool()
+        pool = _Pool(wholes if kind == "mesh" else [])
         write_array(group, kind, np.array([pool.index(getattr(node, kind)) for node in nodes], np.int32))
         _write_pool(group.create_group(folder), pool, write)
 
@@ -66,7 +71,7 @@ def read_scene(group):
 
 def _write_pool(group, pool: _Pool, write) -> None:
     for index, item in enumerate(pool.items):
-        write(group.create_group(str(index)), item)
+        write(group.create_group(str(index)), item, pool)
 
 
 def _read_shared(group, kind: str, count: int) -> list:
@@ -74,14 +79,20 @@ def _read_shared(group, kind: str, count: int) -> list:
     folder, _, read = _SHARED[kind]
     indices = read_array(group, kind, np.int32, (count,))
     source = read_group(group, folder)
-    items = [read(read_group(source, str(index))) for index in range(len(source))]
+    items = []
+    for index in range(len(source)):
+        items.append(read(read_group(source, str(index)), items))
     if count and not (indices.min() >= NONE and indices.max() < len(items)):
         raise ep.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}")
     return [None if index == NONE else items[index] for index in indices]
 
 
-def _write_mesh(group, mesh) -> None:
-    """As before vertices were duplicated: vertex sequences go by those, and the same repair follows on reading."""
+def _write_mesh(group, mesh, pool: _Pool) -> None:
+    """As before vertices were duplicated: deformations go by those, and the same repair follows on reading."""
+    if mesh.whole is not None:
+        group.attrs["whole"] = pool.index(mesh.whole)
+        write_array(group, "whole_triangle", mesh.whole_triangle, compress=True)
+        return
     vertices = np.zeros((mesh.num_input_vertices, 3))
     vertices[mesh.original_vertex] = mesh.vertices
     write_array(group, "vertices", vertices, unit="m", compress=True)
@@ -89,7 +100,12 @@ def _write_mesh(group, mesh) -> None:
     write_array(group, "original_triangle", mesh.original_triangle, compress=True)
 
 
-def _read_mesh(group):
+def _read_mesh(group, earlier: list):
+    if "whole" in group.attrs:
+        index = read_attribute(group, "whole", int)
+        if not 0 <= index < len(earlier):
+            raise ep.FileError(f"{group.name}: attribute whole must name an earlier mesh, is {index}")
+        return earlier[index].part(read_array(group, "whole_triangle", np.uint32, (None,)))
     vertices = read_array(group, "vertices", np.float64, (None, 3))
     triangles = read_array(group, "triangles", np.uint32, (None, 3))
     original_triangle = read_array(group, "original_triangle", np.uint32, (len(triangles),))
@@ -115,47 +131,13 @@ def _read_material(group):
                           if field in group.attrs})
 
 
-def write_motion(group, motion) -> None:
-    """Writes a linear motion, keyframes or a vertex sequence."""
-    if isinstance(motion, ep.LinearMotion):
-        group.attrs["kind"] = "linear"
-        write_array(group, "velocity", motion.velocity, unit="m/s")
-        write_array(group, "angular_velocity", motion.angular_velocity, unit="rad/s")
-        return
-    if not isinstance(motion, (ep.KeyframeMotion, ep.VertexSequence)):
-        raise ValueError(f"motion: must be a LinearMotion, KeyframeMotion or VertexSequence, got {motion!r}")
-    group.attrs["kind"] = "vertices" if isinstance(motion, ep.VertexSequence) else "keyframes"
-    group.attrs["interpolation"] = motion.interpolation
-    write_array(group, "times", motion.times, unit="s")
-    if isinstance(motion, ep.VertexSequence):
-        write_array(group, "vertices", motion.vertices, unit="m")
-    else:
-        write_array(group, "translations", motion.translations, unit="m")
-        write_array(group, "rotations", motion.rotations)
-
-
-def read_motion(group):
-    """The motion of a group."""
-    kind = read_attribute(group, "kind", str)
-    if kind == "linear":
-        return ep.LinearMotion(velocity=read_array(group, "velocity", np.float64, (3,)),
-                               angular_velocity=read_array(group, "angular_velocity", np.float64, (3,)))
-    times = read_array(group, "times", np.float64, (None,))
-    interpolation = read_attribute(group, "interpolation", str)
-    if kind == "vertices":
-        vertices = read_array(group, "vertices", np.float64, (len(times), None, 3))
-        return ep.VertexSequence(times=times, vertices=vertices, interpolation=interpolation)
-    if kind == "keyframes":
-        return ep.KeyframeMotion(times=times, translations=_filled(group, "translations", (None, 3)),
-                                 rotations=_filled(group, "rotations", (None, 4)), interpolation=interpolation)
-    raise ep.FileError(f"{group.name}: unknown kind of motion '{kind}'")
-
-
-def _filled(group, name: str, shape: tuple):
-    values = read_array(group, name, np.float64, shape)
-    return values if len(values) else None
+def _alone(function):
+    """For kinds whose items know nothing of one another."""
+    return lambda *arguments: function(*arguments[:-1])
 
 
 # What nodes share: name of the node's field -> (group, how to write one, how to read one).
-_SHARED = {"mesh": ("meshes", _write_mesh, _read_mesh), "material": ("materials", _write_material, _read_material),
-           "motion": ("motions", write_motion, read_motion), "sequence": ("sequences", write_motion, read_motion)}
+_SHARED = {"mesh": ("meshes", _write_mesh, _read_mesh),
+           "material": ("materials", _alone(_write_material), _alone(_read_material)),
+           "motion": ("motions", _alone(write_motion), _alone(read_motion)),
+           "deformation": ("deformations", _alone(write_deformation), _alone(read_deformation))}

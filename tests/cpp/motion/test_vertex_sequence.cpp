@@ -5,7 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
-#include "echopath/motion/motion.h"
+#include "echopath/motion/deformation.h"
 #include "support/expect_error.h"
 
 namespace echopath {

@@ -112,7 +112,7 @@ TEST(Pose, ASequenceDeformsInTheFrameOfItsNode) {
   flag.mesh = triangle(), flag.material = metal();
   std::vector<Vec3> raised = triangle()->vertices();
   raised[1].z() = 2.0;
-  flag.sequence = std::make_shared<const VertexSequence>(
+  flag.deformation = std::make_shared<const VertexSequence>(
       std::vector<double>{0, 2}, std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
   scene.add(flag);
   const Vec3 expected = (shift(1, 0, 0) * shift(0, 0, 4) * turn_z(kPi / 2) * Eigen::Vector4d(1, 0, 1, 1)).head<3>();

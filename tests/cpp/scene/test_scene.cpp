@@ -132,7 +132,7 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
   std::vector<Vec3> moved = vertices;
   for (Vec3& vertex : moved) vertex += Vec3(0, 0, 2);
   Node node = with_mesh("tie", -1, mesh);
-  node.sequence = std::make_shared<const VertexSequence>(std::vector<double>{0, 1},
+  node.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 1},
                                                          std::vector<std::vector<Vec3>>{vertices, moved});
   Scene scene;
   scene.add(node);
@@ -142,13 +142,13 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
 
   node.name = "other";
   const std::vector<Vec3> five(5, Vec3::Zero());
-  node.sequence =
+  node.deformation =
       std::make_shared<const VertexSequence>(std::vector<double>{0, 1}, std::vector<std::vector<Vec3>>{five, five});
-  expect_error<Invalid>([&] { scene.add(node); }, {"sequence", "6 vertices", "got 5"});
+  expect_error<Invalid>([&] { scene.add(node); }, {"deformation", "6 vertices", "got 5"});
   node = named("bare");
-  node.sequence =
+  node.deformation =
       std::make_shared<const VertexSequence>(std::vector<double>{0, 1}, std::vector<std::vector<Vec3>>{five, five});
-  expect_error<Invalid>([&] { scene.add(node); }, {"sequence", "without a mesh"});
+  expect_error<Invalid>([&] { scene.add(node); }, {"deformation", "without a mesh"});
 }
 
 TEST(Scene, KnowsWhatMoves) {

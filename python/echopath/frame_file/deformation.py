@@ -1,0 +1,72 @@
+"""Vertex sequences and skins in HDF5 groups (layout: data/README.md)."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .motion import read_motion, write_motion
+
+
+def write_deformation(group, deformation) -> None:
+    """Writes a vertex sequence or a skin."""
+    if isinstance(deformation, ep.Skin):
+        group.attrs["kind"] = "skin"
+        _write_skin(group, deformation)
+        return
+    if not isinstance(deformation, ep.VertexSequence):
+        raise ValueError(f"motion: must be a VertexSequence or a Skin to deform a mesh, got {deformation!r}")
+    group.attrs["kind"] = "vertices"
+    group.attrs["interpolation"] = deformation.interpolation
+    write_array(group, "times", deformation.times, unit="s")
+    write_array(group, "vertices", deformation.vertices, unit="m")
+
+
+def read_deformation(group):
+    """The vertex sequence or skin of a group."""
+    kind = read_attribute(group, "kind", str)
+    if kind == "skin":
+        return _read_skin(group)
+    if kind != "vertices":
+        raise ep.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
+    times = read_array(group, "times", np.float64, (None,))
+    return ep.VertexSequence(times=times, vertices=read_array(group, "vertices", np.float64, (len(times), None, 3)),
+                             interpolation=read_attribute(group, "interpolation", str))
+
+
+def _write_skin(group, skin) -> None:
+    joints = skin.joints
+    names = [joint.name for joint in joints]
+    write_texts(group, "joint", names)
+    parents = [-1 if joint.parent is None else names.index(joint.parent) for joint in joints]
+    write_array(group, "parent", np.array(parents, np.int32))
+    write_array(group, "placement", np.array([joint.transform for joint in joints]), unit="m")
+    write_array(group, "inverse_bind", np.array([joint.inverse_bind for joint in joints]), unit="m")
+    motions = group.create_group("motions")
+    for index, joint in enumerate(joints):
+        if joint.motion is not None:
+            write_motion(motions.create_group(str(index)), joint.motion)
+    write_array(group, "vertices", skin.vertices, unit="m", compress=True)
+    write_array(group, "weights", skin.weights, compress=True)
+    write_array(group, "joint_indices", skin.joint_indices, compress=True)
+
+
+def _read_skin(group):
+    names = read_texts(group, "joint")
+    count = len(names)
+    parents = read_array(group, "parent", np.int32, (count,))
+    placements = read_array(group, "placement", np.float64, (count, 4, 4))
+    inverse_binds = read_array(group, "inverse_bind", np.float64, (count, 4, 4))
+    motions = read_group(group, "motions")
+    joints = []
+    for index, name in enumerate(names):
+        parent = int(parents[index])
+        if not -1 <= parent < index:
+            raise ep.FileError(f"{group.name}/parent: must name an earlier joint, is {parent} at joint {index}")
+        motion = read_motion(read_group(motions, str(index))) if str(index) in motions else None
+        joints.append(ep.Joint(name, None if parent < 0 else names[parent], transform=placements[index], motion=motion,
+                               inverse_bind=inverse_binds[index]))
+    vertices = read_array(group, "vertices", np.float64, (None, 3))
+    weights = read_array(group, "weights", np.float64, (len(vertices), None))
+    return ep.Skin(vertices, joints, weights, joint_indices=read_array(group, "joint_indices", np.uint32, weights.shape))

@@ -1,0 +1,43 @@
+"""Motions in HDF5 groups (layout: data/README.md)."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .h5 import read_array, read_attribute, write_array
+
+
+def write_motion(group, motion) -> None:
+    """Writes a linear motion or keyframes."""
+    if isinstance(motion, ep.LinearMotion):
+        group.attrs["kind"] = "linear"
+        write_array(group, "velocity", motion.velocity, unit="m/s")
+        write_array(group, "angular_velocity", motion.angular_velocity, unit="rad/s")
+        return
+    if not isinstance(motion, ep.KeyframeMotion):
+        raise ValueError(f"motion: must be a LinearMotion or KeyframeMotion, got {motion!r}")
+    group.attrs["kind"] = "keyframes"
+    group.attrs["interpolation"] = motion.interpolation
+    write_array(group, "times", motion.times, unit="s")
+    write_array(group, "translations", motion.translations, unit="m")
+    write_array(group, "rotations", motion.rotations)
+
+
+def read_motion(group):
+    """The motion of a group."""
+    kind = read_attribute(group, "kind", str)
+    if kind == "linear":
+        return ep.LinearMotion(velocity=read_array(group, "velocity", np.float64, (3,)),
+                               angular_velocity=read_array(group, "angular_velocity", np.float64, (3,)))
+    if kind == "keyframes":
+        return ep.KeyframeMotion(times=read_array(group, "times", np.float64, (None,)),
+                                 translations=_filled(group, "translations", (None, 3)),
+                                 rotations=_filled(group, "rotations", (None, 4)),
+                                 interpolation=read_attribute(group, "interpolation", str))
+    raise ep.FileError(f"{group.name}: unknown kind of motion '{kind}'")
+
+
+def _filled(group, name: str, shape: tuple):
+    values = read_array(group, name, np.float64, shape)
+    return values if len(values) else None

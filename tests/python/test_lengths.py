@@ -1,0 +1,91 @@
+"""Lengths from replay against an independent evaluation in NumPy, for everything that moves."""
+import numpy as np
+import pytest
+from support import slow_lengths
+from support.arm import make_arm
+
+import echopath as ep
+
+LENGTH_TOLERANCE = 1e-12  # m
+ROUGH = ep.Material(reflectivity=0.5, scattering=0.7)
+TRANSMITTERS, RECEIVERS = [(0, 0, 0.2), (0.1, 0.3, 0)], [(0, 0.01, 0.2), (-0.05, 0, 0), (0, -0.2, 0.1)]
+
+
+def make_radar(motion=None):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=64,
+                                chirp_interval=1e-4)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in TRANSMITTERS],
+                    receivers=[ep.Antenna(p) for p in RECEIVERS], motion=motion)
+
+
+def quad(*corners):
+    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
+
+
+def wall():
+    return quad((-5, 3, -5), (20, 3, -5), (20, 3, 6), (-5, 3, 6))
+
+
+def linear_keys(rotation_step):
+    times = np.linspace(-0.5, 0.5, 6)
+    angles = np.outer(times, rotation_step)
+    half = 0.5 * np.linalg.norm(angles, axis=1)
+    axis = np.array(rotation_step) / np.linalg.norm(rotation_step)
+    rotations = np.column_stack([np.cos(half), np.outer(np.sign(times) * np.sin(half), axis)])
+    return ep.KeyframeMotion(times=times, translations=np.outer(times**2, [1, -2, 0.5]), rotations=rotations,
+                             interpolation="linear")
+
+
+def rigid(scene):
+    scene.add(name="car", position=(6, 0.5, 0), yaw=0.3, motion=ep.LinearMotion((-3, 1, 0), (0, 0.1, 0.6)))
+    scene.add(ep.actors.box((1.0, 0.8, 0.6)), name="body", material=ROUGH, parent="car", motion=linear_keys([0.2, 1, 3]))
+    uneven = np.diag([0.2, 0.3, 0.25, 1.0])
+    uneven[:3, 3] = 4.5, -1.2, 0.2
+    scene.add(ep.actors.sphere(1.0, subdivisions=3), name="egg", material="metal", smooth=True, transform=uneven,
+              motion=ep.LinearMotion((1, 0, 2), (9, 5, 7)))
+
+
+def vertex_sequence(scene):
+    mesh = ep.actors.sphere(0.5, subdivisions=3)
+    times = np.linspace(-0.02, 0.03, 9)
+    grown = [mesh.vertices * (1 + 0.4 * np.sin(150 * t + 4 * mesh.vertices)) for t in times]
+    sequence = ep.VertexSequence(times=times, vertices=grown, interpolation="linear")
+    for index, smooth in enumerate((False, True)):
+        scene.add(mesh, name=f"jelly{index}", material=ROUGH, motion=sequence, smooth=smooth, position=(5, 1.2 * index, 0))
+
+
+def skin(scene):
+    mesh, arm = make_arm(motions=[ep.LinearMotion(angular_velocity=(0, 4, 0)), linear_keys([0, 3, 1])])
+    for index, smooth in enumerate((False, True)):
+        scene.add(mesh, name=f"arm{index}", material=ROUGH, motion=arm, smooth=smooth, position=(4, 0.6 * index - 0.3, 0.5))
+
+
+def mirrors(scene):
+    scene.add(wall(), name="wall", material=ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True),
+              motion=ep.LinearMotion((0, -2, 0.5), (0, 0, 0.02)))
+    scene.add(quad((-5, -9, -1), (30, -9, -1), (30, 9, -1), (-5, 9, -1)), name="floor", material=ep.Material.metal(mirror=True))
+    rigid(scene)
+
+
+def everything(scene):
+    mirrors(scene)
+    vertex_sequence(scene)
+    skin(scene)
+
+
+@pytest.mark.filterwarnings("ignore::echopath.TessellationWarning")
+@pytest.mark.parametrize("build, radar_motion", [
+    (rigid, None), (vertex_sequence, None), (skin, None), (mirrors, None),
+    (rigid, ep.LinearMotion((15, 1, 0), (0, 0, 0.4))), (everything, linear_keys([1, 0, 2]))])
+def test_lengths_are_those_of_an_independent_evaluation(build, radar_motion):
+    scene = ep.Scene()
+    build(scene)
+    radar = make_radar(radar_motion)
+    paths = ep.trace(scene, radar, num_rays=600, max_bounces=3)
+    paths = paths.select(np.arange(paths.num_paths) % (1 + paths.num_paths // 250) == 0)  # the slow one is slow
+    assert paths.num_paths > 40 and (build is skin or build is rigid or paths.num_bounces.max() > 1)
+    for time in (0.0, 0.0231, paths.frame.trace_time):
+        for tx, transmitter in enumerate(TRANSMITTERS):
+            for rx, receiver in enumerate(RECEIVERS):
+                expected = slow_lengths.lengths(paths, time, np.array(transmitter), np.array(receiver))
+                assert np.abs(paths.lengths([time], tx, rx)[0] - expected).max() < LENGTH_TOLERANCE

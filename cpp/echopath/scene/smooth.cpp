@@ -52,6 +52,17 @@ SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Ve
   point.position = flat;
   for (size_t i = 0; i < 3; ++i) point.position += 0.5 * weights[i] * (corners[i] - flat).dot(normals[i]) * normals[i];
 
+  const Vec3 side_u = corners[1] - corners[0], side_v = corners[2] - corners[0];
+  std::array<double, 3> lift;
+  for (size_t i = 0; i < 3; ++i) lift[i] = (corners[i] - flat).dot(normals[i]);
+  Vec3 along_u = side_u + 0.5 * (lift[1] * normals[1] - lift[0] * normals[0]);
+  Vec3 along_v = side_v + 0.5 * (lift[2] * normals[2] - lift[0] * normals[0]);
+  for (size_t i = 0; i < 3; ++i) {
+    along_u -= 0.5 * weights[i] * side_u.dot(normals[i]) * normals[i];
+    along_v -= 0.5 * weights[i] * side_v.dot(normals[i]) * normals[i];
+  }
+  point.stretch = along_u.cross(along_v).norm() / side_u.cross(side_v).norm();
+
   const auto tangential = [&](const Vec3& x) -> Vec3 { return x - point.normal.dot(x) * point.normal; };
   const Vec3 edge_u = tangential(corners[1] - corners[0]), edge_v = tangential(corners[2] - corners[0]);
   const Vec3 turn_u = tangential(normals[1] - normals[0]) / length, turn_v = tangential(normals[2] - normals[0]) / length;

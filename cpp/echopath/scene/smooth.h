@@ -28,6 +28,7 @@ struct SmoothPoint {
   Vec3 position;  // m: on the curved surface, not on the facet
   Vec3 normal;    // unit
   Mat3 curvature;
+  double stretch;  // area of the curved surface over that of the facet
 };
 
 // corners and unit normals of a triangle; u, v barycentric. The position is p + (1/2) sum b_i [(p_i - p).n_i] n_i; the

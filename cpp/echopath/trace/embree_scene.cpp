@@ -184,6 +184,7 @@ void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& directio
   const SmoothPoint smooth = smooth_point(corners, normals, hit.hit.u, hit.hit.v);
   if (std::abs(smooth.normal.dot(direction)) < kSmoothGrazing) return;
   hit.is_smooth = true;
+  hit.stretch = smooth.stretch * std::abs(smooth.normal.dot(direction)) / std::abs(hit.normal.dot(direction));
   const double out_of_facet = hit.normal.dot(smooth.position - hit.position);
   if (out_of_facet * hit.normal.dot(direction) <= 0) hit.position = smooth.position;
   hit.normal = smooth.normal;

@@ -18,6 +18,7 @@ struct RayHit {
   Vec3 normal;    // unit, flipped against the ray
   double distance = 0.0;  // m, along the ray
   bool is_smooth = false;
+  double stretch = 1.0;
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
 };
 

@@ -60,7 +60,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
-  const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence);
+  const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence) * surface.point.stretch;
   // Polarised, all coefficients are in the matrix.
   const std::complex<double> scalar =
       settings_.is_polarized ? 1.0 : ray.coefficient * surface.response.gamma * surface.response.coherent;

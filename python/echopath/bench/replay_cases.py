@@ -64,7 +64,7 @@ def _car() -> Case:
 
 def _wheel() -> Case:
     scene = ep.Scene()
-    scene.add(shapes.ellipsoid((0.33, 0.1, 0.3), edge=0.02), name="wheel", position=(10.0, 0.5, 0.4), material=_rough(),
+    scene.add(shapes.ellipsoid((0.33, 0.1, 0.3), edge=0.012), name="wheel", position=(10.0, 0.5, 0.4), material=_rough(),
               motion=ep.LinearMotion(velocity=(-6, 0, 0), angular_velocity=(0, 100, 0)))
     return Case("wheel", "wheel, 100 rad/s", scene, radar(chirp_interval=30e-6))
 

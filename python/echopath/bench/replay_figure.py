@@ -7,11 +7,12 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # 
 MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interpolated, 1e-5 rad (default)": "o", "every chirp": "s",
            "Newton step": "D", "renewed 4 times": "P", "renewed 16 times": "X"}
 FLOOR_RAD = 1e-6
+FLOOR_DB = -150.0  # errors below stand there
 
 
 def draw_replay(results: dict, path) -> None:
     """Writes a PNG: error against time of the ways to replay (left), phase error over an array's aperture (right)."""
-    with new_figure(12.5, 5.4) as figure:
+    with new_figure(12.5, 6.6) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         _draw_variants(left, results["cases"])
         _draw_apertures(right, results["apertures"])
@@ -21,7 +22,7 @@ def draw_replay(results: dict, path) -> None:
 def _draw_variants(axes, cases: dict) -> None:
     for colour, case in zip(COLOURS, cases.values()):
         for row in case["variants"]:
-            axes.plot(row["share_of_every_chirp"], row["error_db"], MARKERS[row["label"]], color=colour, markersize=7,
+            axes.plot(row["share_of_every_chirp"], max(row["error_db"], FLOOR_DB), MARKERS[row["label"]], color=colour, markersize=7,
                       markerfacecolor="none" if row["label"] != "interpolated, 1e-5 rad (default)" else colour)
         axes.plot([], [], "-", color=colour, linewidth=3, label=case["title"])
     for label, marker in MARKERS.items():
@@ -30,8 +31,9 @@ def _draw_variants(axes, cases: dict) -> None:
     axes.set_xscale("log")
     axes.set_xlabel("time of the signal, as a share of renewing the hits at every chirp")
     axes.set_ylabel("largest error of the map [dB of its peak]")
+    axes.set_ylim(FLOOR_DB - 5.0, -20.0)
     axes.set_title("One record for the frame: error against time")
-    axes.legend(fontsize=8, ncols=2, loc="best")
+    axes.legend(fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.13), frameon=False)
     axes.grid(alpha=0.25)
 
 
@@ -44,8 +46,11 @@ def _draw_apertures(axes, rows: list) -> None:
     axes.axhline(0.3, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.set_xticks(sorted({row["aperture_m"] for row in rows}))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.minorticks_off()
     axes.set_xlabel("width of the array [m]")
     axes.set_ylabel("phase error of the echo over a wall 1 m aside [rad]")
     axes.set_title("One record for the array (0.3 rad: the limit of `validity`)")
-    axes.legend(fontsize=8, ncols=2, loc="best")
+    axes.legend(fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.13), frameon=False)
     axes.grid(alpha=0.25)

@@ -114,7 +114,8 @@ void LegTester::test_arrival(const End& from, int first, int last) {
   const PosedHit& hit = hits_[last];
   const LegShadows before = shadows_;
   test(from, first, last, facet_of(hit));
-  if (!hit.is_smooth || !(shadows_.blocked & ~before.blocked)) return;
+  const bool is_worse = (shadows_.blocked & ~before.blocked) != 0 || (shadows_.off_mirror & ~before.off_mirror) != 0;
+  if (!hit.is_smooth || !is_worse) return;
   shadows_ = before;
   test(from, first, last, surface_of(hit));
 }

@@ -1,0 +1,197 @@
+#include <pybind11/complex.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "array.h"
+#include "echopath/label/partition.h"
+#include "path_series.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+using PathsPtr = std::shared_ptr<Paths>;
+
+// A column of the hits, a strided view without a copy.
+template <class T>
+auto hit_column(T Hit::* field) {
+  return [field](const py::object& self) {
+    const auto& paths = self.cast<const Paths&>();
+    const T* first = paths.num_hits() ? &(paths.hits->front().*field) : nullptr;
+    py::array_t<T> array({static_cast<py::ssize_t>(paths.num_hits())}, {static_cast<py::ssize_t>(sizeof(Hit))}, first, self);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+  };
+}
+
+template <class T>
+auto path_column(std::vector<T> Paths::* field) {
+  return [field](const py::object& self) { return numpy_view(self.cast<const Paths&>().*field, self); };
+}
+
+py::array hits_of(const py::object& self) {
+  const auto& paths = self.cast<const Paths&>();
+  return numpy_view(paths.num_hits() ? paths.hits->data() : nullptr, {static_cast<py::ssize_t>(paths.num_hits())}, self);
+}
+
+py::array curved_cell_of(const py::object& self) {
+  const auto& cells = self.cast<const Paths&>().curved_cell;
+  return numpy_view(cells.empty() ? nullptr : cells.front().data(), {static_cast<py::ssize_t>(cells.size()), 7}, self);
+}
+
+py::array jones_of(const py::object& self) {
+  const auto& matrices = self.cast<const Paths&>().jones;
+  const Shape shape{static_cast<py::ssize_t>(matrices.size()), 2, 2};
+  return numpy_view(matrices.empty() ? nullptr : matrices.front().data(), shape, self);
+}
+
+std::vector<uint8_t> as_mask(const py::array& mask) {
+  const auto keep = checked_array<bool>(mask, "selection", "[P]");
+  return std::vector<uint8_t>(keep.data(), keep.data() + keep.size());
+}
+
+PathsPtr select_mask(const Paths& paths, const py::array& mask) {
+  const std::vector<uint8_t> keep = as_mask(mask);
+  return run_job("select", py::none(), [&](Job& job) { return std::make_shared<Paths>(paths.select(keep, &job)); });
+}
+
+PathsPtr select_with_own_hits(const Paths& paths, const py::array& mask) {
+  const std::vector<uint8_t> keep = as_mask(mask);
+  return run_job("select", py::none(), [&](Job& job) {
+    return std::make_shared<Paths>(paths.select(keep, &job).with_own_hits(&job));
+  });
+}
+
+PathsPtr select_paths(const Paths& paths, const Selection& selection) {
+  return run_job("select", py::none(), [&](Job& job) {
+    return std::make_shared<Paths>(paths.select(selection.matches(paths, &job), &job));
+  });
+}
+
+// Paths of each part, in the order of the names.
+std::vector<PathsPtr> split(const Paths& paths, const Partition& partition, Job& job) {
+  std::vector<PathsPtr> parts;
+  for (uint32_t part = 0; part < partition.names.size(); ++part) {
+    std::vector<uint8_t> keep(partition.group.size());
+    for (size_t path = 0; path < keep.size(); ++path) keep[path] = partition.group[path] == part;
+    parts.push_back(std::make_shared<Paths>(paths.select(keep, &job)));
+  }
+  return parts;
+}
+
+py::dict partition_paths(const Paths& paths, const py::dict& parts) {
+  std::vector<NamedSelection> named;
+  for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
+  Partition partition;
+  const std::vector<PathsPtr> made = run_job("partition", py::none(), [&](Job& job) {
+    partition = make_partition(paths, named, &job);
+    return split(paths, partition, job);
+  });
+  py::dict out;
+  for (size_t part = 0; part < made.size(); ++part) out[py::str(partition.names[part])] = made[part];
+  return out;
+}
+
+PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
+                           const py::array& diffuse, const py::array& weight, const py::array& stratum,
+                           const py::array& batch, const py::array& flags, const py::object& curved_cell, const py::object& jones, const Scene& scene, const Radar& radar,
+                           const TraceFrame& frame) {
+  auto paths = std::make_shared<Paths>();
+  const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
+  paths->hits = std::make_shared<const std::vector<Hit>>(rows.data(), rows.data() + rows.size());
+  paths->offsets = as_vector<int64_t>(offsets, "offsets", "[P]");
+  paths->num_bounces = as_vector<uint8_t>(num_bounces, "num_bounces", "[P]");
+  paths->diffuse = as_vector<uint64_t>(diffuse, "diffuse", "[P]");
+  paths->weight = as_vector<std::complex<float>>(weight, "weight", "[P]");
+  paths->stratum = as_vector<uint8_t>(stratum, "stratum", "[P]");
+  paths->batch = as_vector<uint8_t>(batch, "batch", "[P]");
+  paths->flags = as_vector<uint32_t>(flags, "flags", "[P]");
+  if (!curved_cell.is_none()) {
+    const std::vector<float> cells = as_vector<float>(curved_cell, "curved_cell", "[P, 7]");
+    paths->curved_cell.resize(cells.size() / 7);
+    std::copy(cells.begin(), cells.end(), paths->curved_cell.empty() ? nullptr : paths->curved_cell.front().data());
+  }
+  if (!jones.is_none()) {
+    const auto entries = as_vector<std::complex<float>>(jones, "jones", "[P, 2, 2]");
+    paths->jones.resize(entries.size() / 4);
+    std::copy(entries.begin(), entries.end(), paths->jones.empty() ? nullptr : paths->jones.front().data());
+  }
+  paths->scene = std::make_shared<const Scene>(scene);
+  paths->radar = radar;
+  paths->frame = frame;
+  run_job("check", py::none(), [&](Job&) { paths->validate(); });
+  return paths;
+}
+
+std::string paths_text(const Paths& self) {
+  return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
+}
+
+}  // namespace
+
+void bind_paths(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(Hit, mesh_id, triangle_id, u, v);
+  py::class_<Paths, PathsPtr>(m, "Paths", R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
+
+Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
+share hits; selections share all hits of their trace.)")
+      .def_property_readonly("num_paths", &Paths::num_paths, "P, their number")
+      .def_property_readonly("num_hits", &Paths::num_hits, "H, of all paths of the trace")
+      .def_property_readonly("hits", &hits_of, "[H] structured: mesh_id, triangle_id, u, v")
+      .def_property_readonly("mesh_id", hit_column(&Hit::mesh_id), "[H]")
+      .def_property_readonly("triangle_id", hit_column(&Hit::triangle_id), "[H] triangle within the mesh")
+      .def_property_readonly("u", hit_column(&Hit::u), "[H] barycentric: p = (1 - u - v) v0 + u v1 + v v2")
+      .def_property_readonly("v", hit_column(&Hit::v), "[H] barycentric")
+      .def_property_readonly("offsets", path_column(&Paths::offsets), "[P] first hit")
+      .def_property_readonly("num_bounces", path_column(&Paths::num_bounces), "[P]")
+      .def_property_readonly("diffuse", path_column(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
+      .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
+      .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
+      .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
+      .def_property_readonly("flags", path_column(&Paths::flags), "[P] 1: recorded as the reversal of another path; else 0")
+      .def_property_readonly("jones", &jones_of,
+                             "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter")
+      .def_property_readonly("curved_cell", &curved_cell_of,
+                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
+      .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
+                             "snapshot of the scene")
+      .def_readonly("radar", &Paths::radar, "snapshot of the radar")
+      .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
+      .def_property_readonly("amplitude", &amplitude_of,
+                             "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length")
+      .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
+      .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
+           py::arg("replay") = "material",
+           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); "
+           "replay as in synthesize.")
+      .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
+           py::arg("replay") = "material",
+           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's "
+           "frame; replay as in synthesize.")
+      .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
+      .def("select", &select_paths, py::arg("selection"), "The paths that `selection`, a path expression or a Selection, takes.")
+      .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")
+      .def("_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
+           "The paths where a mask, bool [P], is true, with only the hits that they use.")
+      .def("partition", &partition_paths, py::arg("parts"),
+           "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
+      .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
+                  py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
+                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(),
+                  py::arg("scene"), py::arg("radar"), py::arg("frame"),
+                  R"(Paths of arrays as the properties give them.
+
+hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
+[P, 2, 2] complex or None
+scene, radar, frame: what they belong to
+Raises ValueError where an index leads nowhere.)")
+      .def("__len__", &Paths::num_paths)
+      .def("__repr__", &paths_text);
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,95 @@
+// What amplitudes and lengths of paths are relative to: strata, statistics and settings of a trace.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "array.h"
+#include "choice.h"
+#include "echopath/trace/paths.h"
+
+namespace echopath::bindings {
+
+void bind_trace_frame(py::module_& m) {
+  py::class_<Stratum>(m, "Stratum", "One launch stratum: uniform directions in a cone.")
+      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density,
+                       std::string name) {
+             Stratum made;
+             made.axis = as_vec3(axis, "axis");
+             made.versine = versine;
+             made.num_rays = num_rays;
+             made.ray_density = ray_density;
+             made.name = std::move(name);
+             return made;
+           }),
+           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"),
+           py::arg("name"))
+      .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
+      .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle; 2 is the whole sphere")
+      .def_readonly("num_rays", &Stratum::num_rays, "launched in it")
+      .def_readonly("name", &Stratum::name, "what it aims at")
+      .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
+      .def("__repr__", [](const Stratum& self) {
+        return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
+      });
+
+  py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
+      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing, int64_t small,
+                       int64_t false_hits) {
+             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits};
+           }),
+           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0, py::arg("num_paths") = 0,
+           py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
+           py::arg("num_false_hits") = 0)
+      .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
+      .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
+      .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
+      .def_readonly("num_paths", &TraceStatistics::num_paths, "recorded; selections have fewer")
+      .def_readonly("num_near_antenna", &TraceStatistics::num_near_antenna, "dropped: within 1 mm of an antenna")
+      .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
+      .def_readonly("num_small_mirrors", &TraceStatistics::num_small_mirrors,
+                    "rays ended behind an unflagged mirror smaller than its Fresnel zone")
+      .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision");
+
+  py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
+      .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
+                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
+                       const std::string& footprint, const TraceStatistics& statistics, int num_batches,
+                       double target_error_db, double error_db, const std::string& sampler) {
+             return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
+                               std::move(strata), seed, max_bounces, kPolarization.value_of(polarization),
+                               kFootprint.value_of(footprint), kSampler.value_of(sampler), statistics, num_batches, target_error_db,
+                               error_db};
+           }),
+           py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
+           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"), py::arg("footprint"),
+           py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0,
+           py::arg("sampler") = "lattice")
+      .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
+      .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
+      .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
+                             "[3] m, where rays started, world")
+      .def_property_readonly("receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
+                             "[3] m, where hits were connected to, world")
+      .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
+      .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
+      .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
+      .def_property_readonly(
+          "polarization", [](const TraceFrame& self) { return kPolarization.name_of(self.polarization); },
+          "\"scalar\" or \"jones\"")
+      .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
+                             "\"second_order\", \"first_order\" or \"none\"")
+      .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
+      .def_readonly("target_error_db", &TraceFrame::target_error_db,
+                    "dB, error of the received power that was asked for; 0: none")
+      .def_readonly("error_db", &TraceFrame::error_db,
+                    "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
+      .def_property_readonly("sampler",
+                             [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
+                             "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
+      .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,138 @@
+#include "path_series.h"
+
+#include <pybind11/complex.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <complex>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "array.h"
+#include "choice.h"
+#include "echopath/base/parallel.h"
+#include "echopath/replay/replay.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+constexpr int64_t kPathsPerBlock = 1 << 19;  // evaluated at a time where the paths are not all wanted at once
+
+std::vector<int64_t> path_range(int64_t begin, int64_t end) {
+  std::vector<int64_t> indices(static_cast<size_t>(end - begin));
+  std::iota(indices.begin(), indices.end(), begin);
+  return indices;
+}
+
+size_t antenna_index(const py::handle& value, const char* argument, size_t count) {
+  const auto index = *checked_array<int64_t>(value, argument, "[]").data();
+  if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
+  throw std::out_of_range(std::string(argument) + ": must lie in 0 to " + std::to_string(count - 1) + ", got " +
+                          std::to_string(index));
+}
+
+// The antenna of that index, or an isotropic one at a position [3] in m in the radar's frame.
+Antenna antenna_of(const py::object& value, const char* argument, const std::vector<Antenna>& antennas) {
+  if (py::isinstance<py::int_>(value)) return antennas[antenna_index(value, argument, antennas.size())];
+  Antenna made;
+  made.position = as_vec3(value, argument);
+  return made;
+}
+
+struct Series {
+  std::vector<double> lengths;                      // [T, P]
+  std::vector<std::complex<double>> amplitudes;     // [T, P]
+};
+
+// Of all paths. Runs beside Python, so that Ctrl-C is answered.
+Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
+                            const Antenna& receiver, SpecularPoints specular = SpecularPoints::kMaterial) {
+  return run_job("replay", py::none(), [&](Job& job) {
+    Radar radar = paths.radar;
+    radar.transmitters = {transmitter};
+    radar.receivers = {receiver};
+    ReplaySettings settings;
+    settings.specular = specular;
+    const Replayer replayer(paths, radar, settings);
+    const std::vector<int64_t> indices = path_range(0, paths.num_paths());
+    Series series;
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    for (const double time : times) {
+      replayer.evaluate(indices, time, lengths, amplitudes, &job);
+      series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
+      series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
+    }
+    return series;
+  });
+}
+
+Shape series_shape(const Paths& paths, const std::vector<double>& times) {
+  return {static_cast<py::ssize_t>(times.size()), static_cast<py::ssize_t>(paths.num_paths())};
+}
+
+}  // namespace
+
+py::array amplitudes_of(const Paths& paths, const py::object& times, const py::object& tx, const py::object& rx,
+                        const std::string& replay) {
+  const SpecularPoints specular = kSpecularPoints.value_of(replay);
+  const std::vector<double> at = as_vector<double>(times, "times");
+  const Antenna transmitter = paths.radar.transmitters[antenna_index(tx, "tx", paths.radar.transmitters.size())];
+  const Antenna receiver = paths.radar.receivers[antenna_index(rx, "rx", paths.radar.receivers.size())];
+  return numpy_take(evaluate_one_channel(paths, at, transmitter, receiver, specular).amplitudes, series_shape(paths, at));
+}
+
+py::array amplitude_of(const Paths& paths) {
+  const Radar& radar = paths.radar;
+  return numpy_take(
+      evaluate_one_channel(paths, {paths.frame.trace_time}, radar.transmitters[0], radar.receivers[0]).amplitudes);
+}
+
+py::array path_power_of(const Paths& paths) {
+  return numpy_take(run_job("replay", py::none(), [&](Job& job) {
+    Radar radar = paths.radar;
+    radar.transmitters.resize(1);
+    radar.receivers.resize(1);
+    const Replayer replayer(paths, radar);
+    std::vector<double> power, lengths;
+    std::vector<std::complex<double>> amplitudes;
+    power.reserve(static_cast<size_t>(paths.num_paths()));
+    for (int64_t begin = 0; begin < paths.num_paths(); begin += kPathsPerBlock) {
+      const std::vector<int64_t> block = path_range(begin, std::min(begin + kPathsPerBlock, paths.num_paths()));
+      replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, &job);
+      for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
+    }
+    return power;
+  }));
+}
+
+py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver,
+                     const std::string& replay) {
+  const SpecularPoints specular = kSpecularPoints.value_of(replay);
+  const std::vector<double> at = as_vector<double>(times, "times");
+  const Antenna from = antenna_of(transmitter, "transmitter", paths.radar.transmitters);
+  const Antenna to = antenna_of(receiver, "receiver", paths.radar.receivers);
+  return numpy_take(evaluate_one_channel(paths, at, from, to, specular).lengths, series_shape(paths, at));
+}
+
+py::array points_of(const Paths& paths, double time) {
+  std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
+    const Pose pose(*paths.scene, time);
+    std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
+    parallel_for((paths.num_hits() + kPathsPerBlock - 1) / kPathsPerBlock, [&](int64_t block) {
+      const int64_t end = std::min((block + 1) * kPathsPerBlock, paths.num_hits());
+      for (int64_t i = block * kPathsPerBlock; i < end; ++i) {
+        const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+        const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+        Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+      }
+    }, &job);
+    return out;
+  });
+  return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});
+}
+
+}  // namespace echopath::bindings

@@ -49,6 +49,11 @@ py::tuple partition_groups(const Paths& paths, const NamedSelections& parts) {
   return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
 }
 
+// Power of a path, to be compared with powers in W.
+struct Power {};
+
+void check_globs(const Selection& selection, const Scene& scene) { selection.check_globs(scene.mesh_names()); }
+
 // Number of hits of a path, to be compared with whole numbers.
 struct NumBounces {};
 
@@ -68,23 +73,30 @@ Selection between(int64_t min, int64_t max) {
                        "ep.num_bounces) & (ep.num_bounces <= 4) instead of 2 <= ep.num_bounces <= 4");
 }
 
+[[noreturn]] void refuse_equality() {
+  throw py::type_error("ep.power is a measured quantity: compare it by < <= > or >= with a power in W");
+}
+
 void bind_selection(py::module_& m) {
   py::class_<Selection> selection(m, "Selection", R"(Which paths are meant: path expressions joined by & | ~.
 
-text: a regular expression over the hits of a path between T and R. A hit is . (any), 'glob' (a mesh, by its full name
-    or that of a group above it), S or D (specular, diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are
-    * + ? | ( ) {m,n}.
-selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when
-a glob takes no mesh of the scene.)");
+text: path expressions, and power > 1e-15 (W, at the trace time for the first antennas; also < <= >=), joined by
+    ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
+    path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
+    diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
+selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under
+the fault; matching raises one when a glob takes no mesh of the scene.)");
   selection.def(py::init<const std::string&>(), py::arg("text"))
       .def(py::init<const Selection&>(), py::arg("selection"))
       .def_static("path_expression", [](const std::string& text) { return Selection(text); }, py::arg("text"),
-                  "The paths that the path expression `text` takes.")
+                  "The paths that `text`, a path expression and nothing else, takes.")
       .def_static("touches", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
                   "Paths with at least one hit on a mesh that the glob takes.")
       .def_static("num_bounces", &Selection::num_bounces, py::arg("min"), py::arg("max") = py::none(),
                   "Paths of min to max hits, both included; max None: any number from min on.")
       .def("matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.")
+      .def("check", &check_globs, py::arg("scene"),
+           "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.")
       .def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
       .def("__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
       .def("__rand__", [](const Selection& a, const Selection& b) { return b & a; }, py::is_operator())
@@ -97,6 +109,15 @@ a glob takes no mesh of the scene.)");
   py::detail::get_type_info(typeid(Selection))->implicit_conversions.push_back(&selection_of_text);
   m.def("hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
         "Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.");
+  m.def("first", [](const std::string& glob) { return Selection::first(glob); }, py::arg("glob"),
+        "Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.");
+  m.def("last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"),
+        "Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.");
+  m.def("parse_selection", [](const std::string& text) { return Selection(text); }, py::arg("text"),
+        R"(The selection that a text describes, as ep.Selection(text).
+
+text: as `Selection` takes it and `Selection.text` writes it: T 'walker' R | ~(T . R) & T .* 'wall' .* R & power > 1e-15
+Returns a Selection. Raises ValueError with a caret under the fault.)");
 }
 
 void bind_num_bounces(py::module_& m) {
@@ -112,11 +133,32 @@ void bind_num_bounces(py::module_& m) {
   m.attr("num_bounces") = NumBounces{};
 }
 
+Selection power(Selection::Comparison comparison, double watts) { return Selection::power(comparison, watts); }
+
+void bind_power(py::module_& m) {
+  using Comparison = Selection::Comparison;
+  py::class_<Power> type(m, "Power", R"(The power of a path in W, at the trace time for the first antennas of the radar that traced.
+
+ep.power > 1e-15 is a Selection; `paths.power` has the values.)");
+  type.def("__lt__", [](const Power&, double watts) { return power(Comparison::kBelow, watts); })
+      .def("__le__", [](const Power&, double watts) { return power(Comparison::kAtMost, watts); })
+      .def("__gt__", [](const Power&, double watts) { return power(Comparison::kAbove, watts); })
+      .def("__ge__", [](const Power&, double watts) { return power(Comparison::kAtLeast, watts); })
+      .def("__eq__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
+      .def("__ne__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
+      .def("__bool__", [](const Power&) -> bool { refuse_truth("ep.power"); })
+      .def("__repr__", [](const Power&) { return "ep.power"; });
+  m.attr("power") = Power{};
+}
+
 }  // namespace
 
 void bind_label(py::module_& m) {
   bind_selection(m);
+  bind_power(m);
   bind_num_bounces(m);
+  m.def("check_part_names", [](const NamedSelections& parts) { check_part_names(named(parts)); }, py::arg("parts"),
+        "Raises ValueError where a name of [(name, selection), ...] is empty, \"other\" or given twice.");
   m.def("partition_groups", &partition_groups, py::arg("paths"), py::arg("parts"),
         R"(The part of each path in a partition.
 

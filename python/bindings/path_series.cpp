@@ -13,19 +13,14 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/base/parallel.h"
+#include "echopath/replay/path_power.h"
 #include "echopath/replay/replay.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
 
-constexpr int64_t kPathsPerBlock = 1 << 19;  // evaluated at a time where the paths are not all wanted at once
-
-std::vector<int64_t> path_range(int64_t begin, int64_t end) {
-  std::vector<int64_t> indices(static_cast<size_t>(end - begin));
-  std::iota(indices.begin(), indices.end(), begin);
-  return indices;
-}
+constexpr int64_t kHitsPerTask = 1 << 19;
 
 size_t antenna_index(const py::handle& value, const char* argument, size_t count) {
   const auto index = *checked_array<int64_t>(value, argument, "[]").data();
@@ -57,7 +52,8 @@ Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times
     ReplaySettings settings;
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
-    const std::vector<int64_t> indices = path_range(0, paths.num_paths());
+    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::iota(indices.begin(), indices.end(), 0);
     Series series;
     std::vector<double> lengths;
     std::vector<std::complex<double>> amplitudes;
@@ -92,21 +88,7 @@ py::array amplitude_of(const Paths& paths) {
 }
 
 py::array path_power_of(const Paths& paths) {
-  return numpy_take(run_job("replay", py::none(), [&](Job& job) {
-    Radar radar = paths.radar;
-    radar.transmitters.resize(1);
-    radar.receivers.resize(1);
-    const Replayer replayer(paths, radar);
-    std::vector<double> power, lengths;
-    std::vector<std::complex<double>> amplitudes;
-    power.reserve(static_cast<size_t>(paths.num_paths()));
-    for (int64_t begin = 0; begin < paths.num_paths(); begin += kPathsPerBlock) {
-      const std::vector<int64_t> block = path_range(begin, std::min(begin + kPathsPerBlock, paths.num_paths()));
-      replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, &job);
-      for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
-    }
-    return power;
-  }));
+  return numpy_take(run_job("replay", py::none(), [&](Job& job) { return path_power(paths, &job); }));
 }
 
 py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver,
@@ -122,9 +104,9 @@ py::array points_of(const Paths& paths, double time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
     const Pose pose(*paths.scene, time);
     std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
-    parallel_for((paths.num_hits() + kPathsPerBlock - 1) / kPathsPerBlock, [&](int64_t block) {
-      const int64_t end = std::min((block + 1) * kPathsPerBlock, paths.num_hits());
-      for (int64_t i = block * kPathsPerBlock; i < end; ++i) {
+    parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
+      const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
+      for (int64_t i = block * kHitsPerTask; i < end; ++i) {
         const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
         const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
         Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);

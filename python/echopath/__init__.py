@@ -16,8 +16,9 @@ from ._core import (
     DeviceError, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
     Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
     Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
-    compensate_tdm, estimate_angles, hits, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads, range_azimuth,
-    range_doppler, received_power, renew, set_num_threads, speed_of_light, synthesize, validity, virtual_array,
+    compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
+    parse_selection, power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
+    synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
 from .materials import materials
@@ -29,7 +30,6 @@ from .actors import Actor, Part
 from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
-from .selection_text import parse_selection
 from .simulate import Frame, simulate
 from .frame_file import load_frame, save_frame
 from .scene_file import SceneFile, load_scene
@@ -66,8 +66,8 @@ __all__ = [
     "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Skin", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
     "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "compensate_tdm", "decompose",
-    "effects", "estimate_angles", "hits", "load_antenna", "load_frame", "load_mesh", "load_meshes", "load_scene",
-    "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays", "power_by_chirp",
-    "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
+    "effects", "estimate_angles", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
+    "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays",
+    "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
     "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
 ]

@@ -1,7 +1,11 @@
 """Signals of parts of the paths, which remember what the parts are."""
 from __future__ import annotations
 
+from . import _core
+from ._core import Selection
 from ._core import decompose as _decompose
+
+ONLY_PARTITION = "parts"  # name of a partition that is the only one and has none
 
 
 class Parts(dict):
@@ -34,3 +38,32 @@ def decompose(paths, radar=None, parts=None, **settings):
     if parts and all(isinstance(group, dict) for group in parts.values()):
         return {view: Parts(cubes[view], group, radar) for view, group in parts.items()}
     return Parts(cubes, parts, radar)
+
+
+def check_partitions(partitions: dict, scene) -> None:
+    """Raises ValueError naming the part whose name or text is faulty or that names no mesh of the scene.
+
+    partitions: {partition: {part: selection}}. Cheap: to know before a long trace.
+    """
+    for partition, group in partitions.items():
+        key = "parts" if partition == ONLY_PARTITION else f"parts.{partition}"
+        for name, selection in group.items():
+            try:
+                _core.check_part_names([(name, selection)])
+                Selection(selection).check(scene)
+            except ValueError as error:
+                raise ValueError(f"{key}.{name}: {str(error).removeprefix('parts: ')}") from None
+
+
+def parts_of_options(texts) -> dict:
+    """{name: Selection} of texts NAME=SELECTION, in their order. Raises ValueError where one is not of that form."""
+    parts = {}
+    for text in texts or []:
+        name, equals, expression = text.partition("=")
+        name = name.strip()
+        if not (name and equals):
+            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall' .* R\", got {text}")
+        if name in parts:
+            raise ValueError(f"part: must have a name of its own, got {name} twice")
+        parts[name] = Selection(expression)
+    return parts

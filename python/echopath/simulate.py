@@ -8,6 +8,7 @@ import echopath as ep
 
 from .azimuth_map import checked_settings, sees_azimuth
 from .effects import of_paths
+from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
 from .stages import Stage, StageClock
 
@@ -106,6 +107,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
+    check_partitions(partitions, scene)
     clock = StageClock()
     with clock("trace"):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
@@ -151,7 +153,7 @@ def as_partitions(parts) -> dict:
         return {partition: dict(group) for partition, group in parts.items()}
     if any(nested):
         raise ValueError(f"parts: must be all selections or all tables of selections, got {list(parts)}")
-    return {"parts": dict(parts)}
+    return {ONLY_PARTITION: dict(parts)}
 
 
 def _cubes(paths, radar, partitions: dict, settings: dict):

@@ -90,6 +90,30 @@ def test_info_tells_scenes_frames_and_meshes_apart(scene_path, tmp_path):
     assert "1 m^2, open" in call("info", tmp_path / "plate.obj").stdout
 
 
+def test_parts_and_selections_of_the_command_line(scene_path, tmp_path):
+    parts = ("--part", "strong = power > 1e-30 & T . R", "--part", "plate=T 'plate' R")
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500", *parts)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "choice.png").exists()
+    frame = ep.load_frame(tmp_path / "out" / "frame.h5")
+    assert list(frame.parts) == ["route", "choice"] and list(frame.parts["choice"]) == ["strong", "plate", "other"]
+    told = call("info", tmp_path / "out" / "frame.h5", "--select", "T 'plate' R & ~(power < 0)", "--select", "T . . R")
+    assert f"paths                             {frame.paths.num_paths:,} of {frame.paths.num_paths:,}" in told.stdout
+    assert "dBm, T D'plate' R, " in told.stdout and told.stdout.endswith(f"0 of {frame.paths.num_paths:,}\n")
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("--part", "T . R"), "echopath: part: must be NAME=SELECTION, as in "),
+    (("--part", "a=T . R", "--part", "a=T R"), "echopath: part: must have a name of its own, got a twice"),
+    (("--part", "a=T 'plat' R"), "echopath: parts.choice.a: path expression: expected a glob that takes a mesh, got 'plat'; "
+                                 "nearest names: plate\n  T 'plat' R\n    ^\n"),
+    (("--part", "a=T . R & T"), "echopath: path expression: expected a hit"),
+])
+def test_faults_of_parts_are_told_before_the_trace(scene_path, tmp_path, arguments, message):
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS, *arguments)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.startswith(message)
+
+
 def test_info_of_a_record_without_signals_is_told(scene_path, tmp_path):
     scene_file = ep.load_scene(scene_path)
     ep.trace(scene_file.scene, scene_file.radar, num_rays=100).save(tmp_path / "paths.h5")
@@ -102,6 +126,7 @@ BAD = {
     "missing frame": (("info", "nowhere.h5"), "nowhere.h5: no such file"),
     "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
     "unknown kind of file": (("info", "notes.txt"), "must be a .toml, .h5, .obj or .ply file"),
+    "selection of a mesh": (("info", "a.obj", "--select", "T . R"), "a.obj: must be a frame file (.h5) for --select"),
     "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
     "rays in words": (("demo", "--rays", "many"), "must be a whole number of at least 1, got 'many'"),
     "no command": ((), "required: COMMAND"),

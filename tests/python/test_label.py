@@ -105,6 +105,15 @@ def test_hits_is_touching_at_least_once(make_paths):
         assert ep.hits(glob).matches(make_paths(routes)).tolist() == wanted
 
 
+def test_first_and_last_are_the_ends_of_a_path(make_paths):
+    routes = random_routes(1000, 5, seed=11)
+    paths = make_paths(routes)
+    for glob in ("street/wall*", "pedestrian/arms", "*left"):
+        assert ep.first(glob).matches(paths).tolist() == [glob_takes(glob, route[0][0]) for route in routes]
+        assert ep.last(glob).matches(paths).tolist() == [glob_takes(glob, route[-1][0]) for route in routes]
+    assert str(ep.first("street") & ep.last("street")) == "(T 'street' .* R) & (T .* 'street' R)"
+
+
 @pytest.mark.parametrize("number", [-1, 0, 1, 3, 6, 64, 65, 10**12])
 def test_num_bounces_compares_like_a_number(make_paths, number):
     paths = make_paths(random_routes(500, 6, seed=4))
@@ -177,8 +186,9 @@ def test_unknown_meshes_name_the_nearest(make_paths):
     paths = make_paths(random_routes(3, 3, seed=9))
     with pytest.raises(ValueError, match="nearest names: pedestrian/torso"):
         paths.select("T 'pedestrian/torzo' R")
-    with pytest.raises(ValueError, match="glob: must be non-empty"):
-        ep.hits("")
+    for make in (ep.hits, ep.first, ep.last):
+        with pytest.raises(ValueError, match="glob: must be non-empty"):
+            make("")
 
 
 def test_parts_must_have_names_of_their_own(make_paths):

@@ -113,7 +113,7 @@ def test_a_loss_is_a_negative_imaginary_part(write):
 
 
 def test_settings_are_those_of_the_file_or_the_defaults(write):
-    scene_file = ep.load_scene(write("""
+    scene_file = ep.load_scene(write(mesh_object('material = "metal"') + """
 [trace]
 num_rays = 1234
 [spectrum]
@@ -174,6 +174,11 @@ FAULTS = [
     (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
     (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}", "parts: must be all expressions (one partition) or all tables"),
+    (RADAR + "[parts]\na = 'T & R'", "parts.a: path expression: expected a hit (. 'mesh' S D [...]) or '(', got &\n  T & R\n    ^"),
+    (RADAR + "[parts.b]\na = 'T . R & power > x'", "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
+    (RADAR + mesh_object("material = 'metal'") + "\n[parts]\na = \"T 'wal' R\"",
+     "parts.a: path expression: expected a glob that takes a mesh, got 'wal'; nearest names: "),
+    (RADAR + "[parts]\nother = 'T . R'", "parts.other: must not use the name of the rest, got other"),
     (RADAR + mesh_object("material = 'concret'"), "objects[0].material: unknown material 'concret'"),
     (RADAR + mesh_object("material = {scatering = 0.3}"),
      "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),

@@ -1,5 +1,7 @@
-"""Selections as text: what `Selection.text` writes is read back, and faults are shown where they are."""
+"""Selections as text: what `Selection.text` writes is read back, and faults are shown where they are; powers of paths."""
 from __future__ import annotations
+
+import random
 
 import numpy as np
 import pytest
@@ -44,13 +46,82 @@ def test_operators_bind_as_documented(paths, text, meant):
 
 @pytest.mark.parametrize("text, fault_at", [
     ("", 0), ("T . R &", 7), ("(T . R", 6), ("T . R T . R", 6), ("T . R & T ) R", 10), ("T . R | 'left'", 8),
-    ("~(T . R) & T 'left", 13), ("T . R\n& T + R", 10),
+    ("~(T . R) & T 'left", 13), ("T . R\n& T + R", 10), ("power = 3", 6), ("power", 5), ("power > much", 8),
+    ("power > inf", 8), ("power > 1e-15 W", 14), ("~" * 101 + "T . R", 100),
 ])
 def test_faults_are_marked_where_they_are(text, fault_at):
-    with pytest.raises(ValueError) as caught:
+    with pytest.raises(ValueError, match="path expression: expected") as caught:
         ep.parse_selection(text)
     _, line, caret = str(caught.value).splitlines()
-    assert line == "  " + text.replace("\n", " ") and caret == " " * (2 + fault_at) + "^"
+    begin = text.rfind("\n", 0, fault_at) + 1  # the line with the fault is shown
+    assert line == "  " + text[begin:] and caret == " " * (2 + fault_at - begin) + "^"
+
+
+def random_selection(draw: random.Random, thresholds, depth=4):
+    """A tree of & | ~ over all kinds of terms."""
+    terms = [lambda: ep.Selection("T 'Rear' | 'left' R"), lambda: ep.hits("right"), lambda: ep.first("left"),
+             lambda: ep.last("R*"), lambda: ep.num_bounces >= draw.randint(0, 4), lambda: ep.power > draw.choice(thresholds),
+             lambda: ep.power <= draw.choice(thresholds)]
+    if depth == 0 or draw.random() < 0.2:
+        return draw.choice(terms)()
+    inner = random_selection(draw, thresholds, depth - 1)
+    if draw.random() < 0.3:
+        return ~inner
+    other = random_selection(draw, thresholds, depth - 1)
+    return inner & other if draw.random() < 0.5 else inner | other
+
+
+def test_random_selections_are_read_back(paths):
+    draw, thresholds, shares = random.Random(3), np.quantile(paths.power, [0.1, 0.5, 0.9]), []
+    for _ in range(200):
+        selection = random_selection(draw, thresholds)
+        mask = selection.matches(paths)
+        assert np.array_equal(ep.parse_selection(selection.text).matches(paths), mask), selection
+        shares.append(mask.mean())
+    assert np.mean((np.array(shares) > 0.02) & (np.array(shares) < 0.98)) > 0.3  # neither all nor none, else it proves little
+
+
+def test_power_compares_like_the_powers_of_the_paths(paths):
+    median = float(np.sort(paths.power)[paths.num_paths // 2])  # one of them, so that > and >= differ
+    assert np.array_equal((ep.power > median).matches(paths), paths.power > median)
+    assert np.array_equal((ep.power >= median).matches(paths), paths.power >= median)
+    assert np.array_equal((ep.power < median).matches(paths), paths.power < median)
+    assert np.array_equal((median >= ep.power).matches(paths), paths.power <= median)
+    assert 0 < (ep.power > median).matches(paths).sum() < paths.num_paths
+    bands = paths.partition({"strong": ep.power > median, "weak": "power > 0"})
+    assert bands["strong"].power.min() > median >= bands["weak"].power.max()
+
+
+def test_the_text_of_a_power_keeps_every_bit(paths):
+    for watts in (1e-15, 0.1 + 0.2, 5e-324, -3.0, float(paths.power[0])):
+        text = (ep.power >= watts).text
+        assert float(text.removeprefix("power >= ")) == watts and ep.parse_selection(text).text == text
+    assert str((ep.power > 1e-15) & ~ONE) == "(power > 1e-15) & ~(T . R)"
+
+
+def test_comparisons_of_power_that_would_mislead_are_errors():
+    for mistake in (lambda: ep.power == 1e-15, lambda: ep.power != 0, lambda: 0 < ep.power < 1, lambda: bool(ep.power)):
+        with pytest.raises(TypeError):
+            mistake()
+    for watts in (float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="power: must be compared with a finite power in W"):
+            ep.power < watts
+
+
+def test_joined_text_stands_wherever_a_selection_does(paths):
+    text, meant = "~(T . R) & T .* 'Rear' .* R", ~ONE & REAR
+    wanted = meant.matches(paths)
+    assert 0 < wanted.sum() < paths.num_paths
+    assert np.array_equal(ep.Selection(text).matches(paths), wanted)
+    assert paths.select(text).num_paths == paths.partition({"a": text})["a"].num_paths == wanted.sum()
+    assert np.array_equal((text | REAR).matches(paths), (meant | REAR).matches(paths))
+    assert np.array_equal(ep.decompose(paths, None, {"a": text})["a"], ep.decompose(paths, None, {"a": meant})["a"])
+
+
+def test_globs_can_be_checked_before_a_trace(paths):
+    ep.Selection("T 'left' R & ~(power > 1)").check(paths.scene)
+    with pytest.raises(ValueError, match=r"expected a glob that takes a mesh, got 'Raer'; nearest names: Rear"):
+        ep.Selection("T . R | ~(T 'left' 'Raer' R)").check(paths.scene)
 
 
 def test_parts_remember_what_they_are(paths):

@@ -10,24 +10,29 @@ namespace {
 constexpr int kMaxNesting = 100;  // parentheses; bounds the recursion of parser and compiler
 const std::string kExpectHit = "expected a hit (. 'mesh' S D [...])";
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_continuation_byte(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }  // UTF-8
 
 class Parser {
  public:
-  explicit Parser(std::string_view text) : text_(text) {}
+  Parser(std::string_view text, size_t at) : text_(text), at_(at) {}
 
+  // From T to R; position() is then behind it.
   Syntax parse() {
     skip_space();
     if (!take('T')) fail("expected T, the transmitter, at the beginning");
     Syntax body;
     if (at_end()) fail(kExpectHit + ", '(' or R, the receiver");
     if (peek() != 'R') body = parse_choice();
-    if (!take('R')) fail(kExpectHit + ", '(', '|' or R, the receiver");
-    if (!at_end()) fail("expected the end after R, the receiver");
+    if (peek() != 'R') fail(kExpectHit + ", '(', '|' or R, the receiver");
+    ++at_;
     return body;
   }
+  void expect_end() {
+    skip_space();
+    if (!at_end()) fail("expected the end after R, the receiver");
+  }
+  size_t position() const { return at_; }
 
  private:
   Syntax parse_choice() {
@@ -143,7 +148,7 @@ class Parser {
   bool at_end() const { return at_ >= text_.size(); }
   char peek() const { return at_end() ? '\0' : text_[at_]; }
   void skip_space() {
-    while (!at_end() && is_space(text_[at_])) ++at_;
+    while (!at_end() && is_expression_space(text_[at_])) ++at_;
   }
   bool take(char c) {
     if (at_end() || text_[at_] != c) return false;
@@ -154,24 +159,46 @@ class Parser {
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(at_, what); }
   [[noreturn]] void fail_at(size_t position, const std::string& what) const {
-    throw_expression_error(text_, position, what + ", got " + found(position));
-  }
-  // What stands at `position`, whole characters only.
-  std::string found(size_t position) const {
-    if (position >= text_.size()) return "the end";
-    size_t end = position + 1;
-    while (end < text_.size() && is_continuation_byte(text_[end])) ++end;
-    return std::string(text_.substr(position, end - position));
+    throw_expression_error(text_, position, what + ", got " + found_in_expression(text_, position));
   }
 
   std::string_view text_;
-  size_t at_ = 0;
+  size_t at_;
   int nesting_ = 0;
 };
 
+// Positions of globs in a text that begins at byte `begin` of the one that was read.
+void move_globs(Syntax& syntax, size_t begin) {
+  for (HitPattern::Glob& glob : syntax.hit.globs) glob.position -= begin;
+  for (Syntax& child : syntax.children) move_globs(child, begin);
+}
+
 }  // namespace
 
-PathExpression parse_path_expression(std::string_view text) { return {std::string(text), Parser(text).parse()}; }
+PathExpression parse_path_expression(std::string_view text) {
+  Parser parser(text, 0);
+  Syntax body = parser.parse();
+  parser.expect_end();
+  return {std::string(text), std::move(body)};
+}
+
+PathExpression read_path_expression(std::string_view text, size_t& position) {
+  const size_t begin = position;
+  Parser parser(text, begin);
+  Syntax body = parser.parse();
+  position = parser.position();
+  move_globs(body, begin);
+  return {std::string(text.substr(begin, position - begin)), std::move(body)};
+}
+
+bool is_expression_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+std::string found_in_expression(std::string_view text, size_t position) {
+  if (position >= text.size()) return "the end";
+  size_t end = position + 1;
+  while (end < text.size() && is_continuation_byte(text[end])) ++end;
+  return std::string(text.substr(position, end - position));
+}
 
 void throw_expression_error(std::string_view text, size_t position, std::string_view what) {
   const size_t before = position == 0 ? std::string_view::npos : text.find_last_of('\n', position - 1);

@@ -55,8 +55,17 @@ struct PathExpression {
 // Raises invalid_argument whose message says what was expected, with a caret under the fault.
 PathExpression parse_path_expression(std::string_view text);
 
+// The same for one that begins at byte `position` of a longer text and ends with its R, to which `position` is moved. The
+// caret stands in the whole text.
+PathExpression read_path_expression(std::string_view text, size_t& position);
+
 // Raises invalid_argument("path expression: <what>") followed by the line of `text` that holds byte `position` and a
 // caret under it.
 [[noreturn]] void throw_expression_error(std::string_view text, size_t position, std::string_view what);
+
+// What stands at `position`, for such a message: a whole character or "the end".
+std::string found_in_expression(std::string_view text, size_t position);
+
+bool is_expression_space(char c);
 
 }  // namespace echopath

@@ -12,15 +12,6 @@ namespace {
 constexpr uint32_t kMaxGroups = 1 << 16;  // each one costs a whole cube in synthesis
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
 
-void check_names(const std::vector<NamedSelection>& parts) {
-  std::set<std::string> names;
-  for (const NamedSelection& part : parts) {
-    require(!part.name.empty(), "parts", "must have non-empty names", "an empty one");
-    require(part.name != "other", "parts", "must not use the name of the rest", "other");
-    require(names.insert(part.name).second, "parts", "must have names that differ", part.name + " twice");
-  }
-}
-
 // Refines the combined groups by one more partition; new groups are numbered by (old group, part).
 void refine(CombinedPartition& combined, const Partition& partition) {
   const size_t num_parts = partition.names.size();
@@ -48,15 +39,25 @@ void refine(CombinedPartition& combined, const Partition& partition) {
 
 }  // namespace
 
+void check_part_names(const std::vector<NamedSelection>& parts) {
+  std::set<std::string> names;
+  for (const NamedSelection& part : parts) {
+    require(!part.name.empty(), "parts", "must have non-empty names", "an empty one");
+    require(part.name != "other", "parts", "must not use the name of the rest", "other");
+    require(names.insert(part.name).second, "parts", "must have names that differ", part.name + " twice");
+  }
+}
+
 Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts, Job* job) {
-  check_names(parts);
+  check_part_names(parts);
   Partition partition;
   for (const NamedSelection& part : parts) partition.names.push_back(part.name);
   partition.names.push_back("other");
   const auto other = static_cast<uint32_t>(parts.size());
   partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
+  PathPowers with_power(paths);
   for (uint32_t part = 0; part < other; ++part) {
-    const std::vector<uint8_t> taken = parts[part].selection.matches(paths, job);
+    const std::vector<uint8_t> taken = parts[part].selection.matches(with_power, job);
     for (size_t path = 0; path < taken.size(); ++path) {
       if (taken[path] && partition.group[path] == other) partition.group[path] = part;
     }

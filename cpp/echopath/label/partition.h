@@ -19,8 +19,11 @@ struct Partition {
   std::vector<uint32_t> group;     // [P] index into names
 };
 
-// The first selection that takes a path names its part; paths that none takes are "other". Raises invalid_argument when
-// a name is empty, "other" or given twice, or when a glob takes no mesh; Cancelled when the job is.
+// Raises invalid_argument when a name is empty, "other" or given twice.
+void check_part_names(const std::vector<NamedSelection>& parts);
+
+// The first selection that takes a path names its part; paths that none takes are "other". Raises what check_part_names
+// does, and invalid_argument when a glob takes no mesh; Cancelled when the job is.
 Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts, Job* job = nullptr);
 
 // Several partitions of the same paths in one group index: one group per combination of parts that occurs.

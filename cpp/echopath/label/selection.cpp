@@ -1,48 +1,71 @@
 #include "echopath/label/selection.h"
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/label/automaton.h"
-#include "echopath/label/expression.h"
+#include "echopath/label/selection_text.h"
+#include "echopath/replay/path_power.h"
 
 namespace echopath {
 
 struct Selection::Term {
-  enum class Kind { kExpression, kNumBounces, kAnd, kOr, kNot };
+  enum class Kind { kExpression, kNumBounces, kPower, kAnd, kOr, kNot };
   Kind kind;
-  PathExpression expression;         // kExpression
-  int min = 0, max = 0;              // kNumBounces
-  std::vector<Selection> children;   // kAnd, kOr: two or more, kNot: one
+  PathExpression expression = {};                    // kExpression
+  int min = 0, max = 0;                              // kNumBounces
+  Comparison comparison = Comparison::kAbove;        // kPower
+  double watts = 0.0;                                // kPower
+  std::vector<Selection> children = {};              // kAnd, kOr: two or more, kNot: one
+
+  static Selection make(Term term) { return Selection(std::make_shared<const Term>(std::move(term))); }
 
   // Children of the same kind are taken over, so that a long chain of | is one term and not a deep tree.
   static Selection combine(Kind kind, const Selection& a, const Selection& b) {
-    Term term{kind, {}, 0, 0, {}};
+    Term term{.kind = kind};
     for (const Selection& operand : {a, b}) {
       const Term& inner = *operand.term_;
       if (inner.kind == kind) term.children.insert(term.children.end(), inner.children.begin(), inner.children.end());
       else term.children.push_back(operand);
     }
-    return Selection(std::make_shared<const Term>(std::move(term)));
+    return make(std::move(term));
   }
 };
 
-Selection::Selection(std::string_view path_expression)
-    : term_(std::make_shared<const Term>(
-          Term{Term::Kind::kExpression, parse_path_expression(path_expression), 0, 0, {}})) {}
+Selection::Selection(std::string_view text) : term_(parse_selection(text).term_) {}
 
-Selection Selection::touches(std::string_view glob) {
+Selection Selection::path_expression(PathExpression expression) {
+  return Term::make({.kind = Term::Kind::kExpression, .expression = std::move(expression)});
+}
+
+namespace {
+
+Selection around_glob(std::string_view before, std::string_view glob, std::string_view after) {
   const bool is_quotable = !glob.empty() && glob.find('\'') == std::string_view::npos;
   require(is_quotable, "glob", "must be non-empty and without quotes", glob);
-  return Selection(std::string("T .* '").append(glob).append("' .* R"));
+  return Selection::path_expression(std::string(before).append("'").append(glob).append("'").append(after));
 }
+
+}  // namespace
+
+Selection Selection::touches(std::string_view glob) { return around_glob("T .* ", glob, " .* R"); }
+Selection Selection::first(std::string_view glob) { return around_glob("T ", glob, " .* R"); }
+Selection Selection::last(std::string_view glob) { return around_glob("T .* ", glob, " R"); }
 
 Selection Selection::num_bounces(int min, std::optional<int> max) {
   const std::string limit = std::to_string(kMaxRepeatCount);
   require(min >= 0 && min <= kMaxRepeatCount, "num_bounces", "must be 0 to " + limit + ", the longest path", min);
   const int last = max.value_or(min);
   require(last >= min && last <= kMaxRepeatCount, "num_bounces", "must be from the minimum to " + limit, last);
-  return Selection(std::make_shared<const Term>(Term{Term::Kind::kNumBounces, {}, min, max.value_or(kNoLimit), {}}));
+  return Term::make({.kind = Term::Kind::kNumBounces, .min = min, .max = max.value_or(kNoLimit)});
+}
+
+Selection Selection::power(Comparison comparison, double watts) {
+  require(std::isfinite(watts), "power", "must be compared with a finite power in W", watts);
+  return Term::make({.kind = Term::Kind::kPower, .comparison = comparison, .watts = watts});
 }
 
 Selection operator&(const Selection& a, const Selection& b) {
@@ -56,7 +79,7 @@ Selection operator|(const Selection& a, const Selection& b) {
 Selection operator~(const Selection& a) {
   using Term = Selection::Term;
   if (a.term_->kind == Term::Kind::kNot) return a.term_->children.front();
-  return Selection(std::make_shared<const Term>(Term{Term::Kind::kNot, {}, 0, 0, {a}}));
+  return Term::make({.kind = Term::Kind::kNot, .children = {a}});
 }
 
 namespace {
@@ -75,6 +98,35 @@ std::vector<uint8_t> matches_expression(const Paths& paths, const PathExpression
   return matches(Automaton(expression, paths.scene->mesh_names()), paths, job);
 }
 
+template <class Holds>
+std::vector<uint8_t> bits_of(const std::vector<double>& power, Holds holds) {
+  std::vector<uint8_t> taken(power.size());
+  for (size_t path = 0; path < taken.size(); ++path) taken[path] = holds(power[path]);
+  return taken;
+}
+
+std::vector<uint8_t> matches_power(const std::vector<double>& power, Selection::Comparison comparison, double watts) {
+  switch (comparison) {
+    case Selection::Comparison::kBelow:
+      return bits_of(power, [=](double value) { return value < watts; });
+    case Selection::Comparison::kAtMost:
+      return bits_of(power, [=](double value) { return value <= watts; });
+    case Selection::Comparison::kAbove:
+      return bits_of(power, [=](double value) { return value > watts; });
+    case Selection::Comparison::kAtLeast:
+      return bits_of(power, [=](double value) { return value >= watts; });
+  }
+  return {};
+}
+
+// With the fewest digits that read back as the same number.
+std::string power_text(Selection::Comparison comparison, double watts) {
+  constexpr std::array<const char*, 4> kSigns = {"<", "<=", ">", ">="};
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), watts).ptr;
+  return std::string("power ").append(kSigns[static_cast<size_t>(comparison)]).append(" ").append(digits.data(), end);
+}
+
 std::string num_bounces_text(int min, int max) {
   std::string count = std::to_string(min);
   if (max != min) count += ',';
@@ -84,11 +136,22 @@ std::string num_bounces_text(int min, int max) {
 
 }  // namespace
 
+const std::vector<double>& PathPowers::power(Job* job) {
+  if (!power_) power_ = path_power(paths_, job);
+  return *power_;
+}
+
 std::vector<uint8_t> Selection::matches(const Paths& paths, Job* job) const {
+  PathPowers with_power(paths);
+  return matches(with_power, job);
+}
+
+std::vector<uint8_t> Selection::matches(PathPowers& paths, Job* job) const {
   const Term& term = *term_;
   if (job) job->throw_if_cancelled();
-  if (term.kind == Term::Kind::kExpression) return matches_expression(paths, term.expression, job);
-  if (term.kind == Term::Kind::kNumBounces) return matches_num_bounces(paths, term.min, term.max);
+  if (term.kind == Term::Kind::kExpression) return matches_expression(paths.paths(), term.expression, job);
+  if (term.kind == Term::Kind::kNumBounces) return matches_num_bounces(paths.paths(), term.min, term.max);
+  if (term.kind == Term::Kind::kPower) return matches_power(paths.power(job), term.comparison, term.watts);
 
   std::vector<uint8_t> taken = term.children.front().matches(paths, job);
   for (size_t child = 1; child < term.children.size(); ++child) {
@@ -103,9 +166,15 @@ std::vector<uint8_t> Selection::matches(const Paths& paths, Job* job) const {
   return taken;
 }
 
+void Selection::check_globs(const std::vector<std::string>& mesh_names) const {
+  if (term_->kind == Term::Kind::kExpression) Automaton(term_->expression, mesh_names);
+  for (const Selection& child : term_->children) child.check_globs(mesh_names);
+}
+
 std::string Selection::text() const {
   const Term& term = *term_;
   if (term.kind == Term::Kind::kExpression) return term.expression.text;
+  if (term.kind == Term::Kind::kPower) return power_text(term.comparison, term.watts);
   if (term.kind == Term::Kind::kNumBounces) return num_bounces_text(term.min, term.max);
   std::string joined = term.kind == Term::Kind::kNot ? "~" : "";
   for (size_t child = 0; child < term.children.size(); ++child) {

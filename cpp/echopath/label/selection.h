@@ -9,23 +9,45 @@
 #include <vector>
 
 #include "echopath/base/job.h"
+#include "echopath/label/expression.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
 
+// Paths and the power of each, computed when it is first asked for.
+class PathPowers {
+ public:
+  explicit PathPowers(const Paths& paths) : paths_(paths) {}  // which must outlive this
+
+  const Paths& paths() const { return paths_; }
+  const std::vector<double>& power(Job* job);  // [P] W
+
+ private:
+  const Paths& paths_;
+  std::optional<std::vector<double>> power_;
+};
+
 // An immutable value, cheap to copy. Knows names only: it serves any scene that has the meshes it names.
 class Selection {
  public:
-  // A path expression (label/expression.h). Implicit, so that text may stand wherever a selection is asked for.
-  Selection(std::string_view path_expression);
-  Selection(const std::string& path_expression) : Selection(std::string_view(path_expression)) {}
-  Selection(const char* path_expression) : Selection(std::string_view(path_expression)) {}
+  // Text as label/selection_text.h has it. Implicit, so that text may stand wherever a selection is asked for.
+  Selection(std::string_view text);
+  Selection(const std::string& text) : Selection(std::string_view(text)) {}
+  Selection(const char* text) : Selection(std::string_view(text)) {}
 
-  static Selection path_expression(std::string_view text) { return Selection(text); }
+  static Selection path_expression(PathExpression expression);
+  // A path expression and nothing else (label/expression.h).
+  static Selection path_expression(std::string_view text) { return path_expression(parse_path_expression(text)); }
   // Paths with at least one hit on a mesh that the glob takes: T .* 'glob' .* R.
   static Selection touches(std::string_view glob);
   // Paths of min to max hits, both included; without max any number from min on. 0 <= min <= max <= 64.
   static Selection num_bounces(int min, std::optional<int> max = std::nullopt);
+  // Paths with their first (last) hit on a mesh that the glob takes: T 'glob' .* R (T .* 'glob' R).
+  static Selection first(std::string_view glob);
+  static Selection last(std::string_view glob);
+  // Paths whose power (replay/path_power.h) compares so with a finite power in W.
+  enum class Comparison { kBelow, kAtMost, kAbove, kAtLeast };
+  static Selection power(Comparison comparison, double watts);
 
   friend Selection operator&(const Selection& a, const Selection& b);
   friend Selection operator|(const Selection& a, const Selection& b);
@@ -34,6 +56,10 @@ class Selection {
   // [P] 1 where the path is selected, else 0. Raises invalid_argument when a glob takes no mesh of the paths' scene,
   // Cancelled when the job is.
   std::vector<uint8_t> matches(const Paths& paths, Job* job = nullptr) const;
+  // The same for several selections of the same paths, whose power is then computed once.
+  std::vector<uint8_t> matches(PathPowers& paths, Job* job = nullptr) const;
+  // Raises invalid_argument when a glob takes none of these meshes (full names), as `matches` would.
+  void check_globs(const std::vector<std::string>& mesh_names) const;
   // As written; combined ones as (T . R) & ~(T .* 'wall' .* R).
   std::string text() const;
 

@@ -45,6 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("scene", metavar="SCENE.toml", help="scene file (keys: data/README.md)")
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     _add_trace_options(run, default_rays=None)
+    _add_part_option(run)
     run.set_defaults(command=_run)
 
     view = commands.add_parser("view", help="see which rays made which cell of a frame")
@@ -53,6 +54,8 @@ def _parser() -> argparse.ArgumentParser:
 
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
+    info.add_argument("--select", action="append", default=[], metavar="SELECTION",
+                      help="also say which paths of a frame it takes, as in \"T .* 'wall' .* R & power > 1e-15\"; may be repeated")
     info.set_defaults(command=_info)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
@@ -74,6 +77,12 @@ def _add_trace_options(parser, default_rays) -> None:
                         help="of the rays (default: that of the scene file)")
     parser.add_argument("--batches", type=_positive, default=None, metavar="N",
                         help="parts of the rays that give standard errors (default: that of the scene file)")
+
+
+def _add_part_option(parser) -> None:
+    parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
+                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall' .* R\"; may be repeated, "
+                             "the first that takes a path has it")
 
 
 def _positive(text: str) -> int:
@@ -120,15 +129,16 @@ def _view(options) -> None:
 def _run(options) -> None:
     from . import report
     from .progress import progress_bars
-    from .run import certify, simulate_file, write_outputs
+    from .run import certify, chosen_partition, simulate_file, write_outputs
     from ..scene_file import load_scene
 
     scene_file = load_scene(options.scene)
+    chosen = chosen_partition(options.part)
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
-                              batches=options.batches, progress=progress)
+                              batches=options.batches, extra_parts=chosen, progress=progress)
         certificate = certify(frame, progress=progress)
-        written = write_outputs(frame, options.out, partitions=scene_file.partitions())
+        written = write_outputs(frame, options.out, partitions=frame.parts)
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.validity(certificate), *report.files(written)]:
@@ -138,7 +148,7 @@ def _run(options) -> None:
 def _info(options) -> None:
     from .info import describe_file
 
-    print("\n".join(describe_file(options.file)))
+    print("\n".join(describe_file(options.file, options.select)))
 
 
 def _bench(options) -> None:

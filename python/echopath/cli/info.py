@@ -9,23 +9,29 @@ import echopath as ep
 
 from ..frame_file import left_out, load_frame
 from ..scene_file import load_scene
+from ..measures import in_dbm, with_error
 from . import report
 
+FRAME_SUFFIXES = (".h5", ".hdf5")
 MESH_SUFFIXES = (".obj", ".ply")
 MAX_LISTED = 40  # nodes or meshes named one by one
 
 
-def describe_file(path) -> list[str]:
+def describe_file(path, selections=()) -> list[str]:
     """Lines that say what is in a scene file (TOML), a frame file (HDF5) or a mesh file (OBJ, PLY).
 
-    Raises ValueError for another kind of file, ep.FileError when it cannot be read.
+    selections: of paths, also to be told of; of frame files
+    Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
     suffix = path.suffix.lower()
+    selections = [ep.Selection(selection) for selection in selections]
+    if selections and suffix not in FRAME_SUFFIXES:
+        raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
     if suffix == ".toml":
         return _describe_scene_file(load_scene(path))
-    if suffix in (".h5", ".hdf5"):
-        return _describe_frame(path)
+    if suffix in FRAME_SUFFIXES:
+        return _describe_frame(path, selections)
     if suffix in MESH_SUFFIXES:
         return _describe_meshes(ep.load_meshes(str(path)))
     raise ValueError(f"{path}: must be a .toml, .h5, .obj or .ply file")
@@ -91,15 +97,47 @@ def _describe_array(array) -> list[str]:
             report.line("overlaps, gaps", f"{array.num_overlaps}, {len(array.gaps)}")]
 
 
-def _describe_frame(path: Path) -> list[str]:
+def _describe_frame(path: Path, selections) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
+    chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
     lines = [str(path), *_describe_scene(frame.scene), *_describe_radar(frame.radar), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
-    if frame.cube is None:
+    if frame.cube is not None:
+        shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
+        lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame)]
+    return lines + chosen
+
+
+def _describe_selection(frame, selection) -> list[str]:
+    """Number, power and strongest of the paths that a selection takes."""
+    mask = selection.matches(frame.paths)
+    taken, power = int(mask.sum()), frame.path_power
+    lines = [f"selected by {selection}", report.line("paths", f"{taken:,} of {len(mask):,}")]
+    if taken == 0:
         return lines
-    shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
-    return [*lines, "cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame)]
+    share = power.sum(where=mask) / power.sum() if power.any() else 0.0
+    strongest = int(np.where(mask, power, -1.0).argmax())
+    return [*lines, report.line("share of the sum of powers", f"{100.0 * share:.3g} %"),
+            report.line("mean received power", _mean_power(frame.paths.select(mask))),
+            report.line("strongest path", f"{in_dbm(power[strongest]):.2f} dBm, {_route(frame.paths, strongest)}")]
+
+
+def _mean_power(paths) -> str:
+    power = ep.received_power(paths)
+    return f"{in_dbm(power.power):.2f} dBm" if paths.frame.num_batches == 1 else with_error(power)
+
+
+def _route(paths, path: int) -> str:
+    """The hits of a path as an expression that takes it, and its length."""
+    first, count = paths.offsets[path], int(paths.num_bounces[path])
+    names = [mesh.name for mesh in paths.scene.meshes]
+    diffuse = int(paths.diffuse[path])
+    hits = [f"{'D' if diffuse >> k & 1 else 'S'}'{names[paths.mesh_id[first + k]]}'" for k in range(count)]
+    one = np.zeros(paths.num_paths, bool)
+    one[path] = True
+    length = paths.select(one).lengths([paths.frame.trace_time])[0, 0]
+    return f"{' '.join(['T', *hits, 'R'])}, {length:.3f} m"
 
 
 def _describe_meshes(meshes) -> list[str]:

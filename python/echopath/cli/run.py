@@ -9,6 +9,7 @@ import echopath as ep
 from .. import plots
 from ..frame_file import LeftOut, save_frame
 from ..measures import note_on_errors, with_error
+from ..parts import parts_of_options
 from ..path_subset import power_of_strongest
 from ..scene_file import SceneFile
 from ..simulate import Frame, simulate
@@ -45,6 +46,11 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
                     progress=progress)
+
+
+def chosen_partition(texts) -> dict:
+    """{"choice": {name: Selection}} of texts NAME=SELECTION from the command line; {} of none."""
+    return {"choice": parts_of_options(texts)} if texts else {}
 
 
 def certify(frame: Frame, *, progress=None):

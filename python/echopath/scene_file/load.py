@@ -15,6 +15,7 @@ from pydantic import create_model
 import echopath as ep
 
 from ..azimuth_map import checked_settings
+from ..parts import check_partitions
 from ..simulate import as_partitions
 from .errors import validated
 from .schema import (AngleTable, ObjectTable, RadarTable, ReplayTable, SceneTable, SpectrumTable, Table, TraceTable,
@@ -92,9 +93,15 @@ def load_scene(path) -> SceneFile:
                                parts=dict(settings.parts), noise_seed=settings.noise.seed)
         with _blame("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
+        check_partitions(scene_file.partitions(), scene_file.scene)
         return scene_file
     except ValueError as error:
-        raise ValueError("\n".join(f"{path}: {line}" for line in str(error).splitlines())) from None
+        raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
+
+
+def _with_file(path: Path, line: str) -> str:
+    """A line of a message, the file before it; not before a text that is quoted with a caret below."""
+    return line if line.startswith("  ") else f"{path}: {line}"
 
 
 def _parse(path: Path) -> dict:

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +16,12 @@ using Bits = std::vector<uint8_t>;
 std::vector<HandMadePath> some_paths() {
   std::vector<HandMadePath> paths = random_paths(2000, 0, 5, 5);
   paths.insert(paths.end(), {{}, {{kTorso, false}}, {{kWallLeft, false}, {kTorso, true}}});
+  return paths;
+}
+
+Paths make_paths_without_scene() {
+  Paths paths = make_paths({{{kTorso, false}}});
+  paths.scene = nullptr;
   return paths;
 }
 
@@ -77,6 +84,34 @@ TEST(Selection, TextReadsLikeTheAlgebra) {
   EXPECT_EQ((a | b | c).text(), "(T .* 'pedestrian' .* R) | (T .{1} R) | (T .{2,} R)");
 }
 
+TEST(Selection, FirstAndLastAreTheEndsOfAPath) {
+  const Paths paths = make_paths(some_paths());
+  const auto is_wall = [](const HandMadeHit& hit) { return hit.mesh_id == kWallLeft || hit.mesh_id == kWallRight; };
+  EXPECT_EQ(Selection::first("street/wall*").matches(paths),
+            bits_where(some_paths(), [&](const auto& path) { return !path.empty() && is_wall(path.front()); }));
+  EXPECT_EQ(Selection::last("street/wall*").matches(paths),
+            bits_where(some_paths(), [&](const auto& path) { return !path.empty() && is_wall(path.back()); }));
+}
+
+TEST(Selection, JoinedTextIsTheAlgebra) {
+  const Paths paths = make_paths(some_paths());
+  const Selection a = "T 'pedestrian' | 'street' R", b = Selection::touches("street"), c = "T .* D R";
+  const std::string street = "T .* 'street' .* R";
+  EXPECT_EQ(Selection("T 'pedestrian' | 'street' R | " + street + " & ~T .* D R").matches(paths), (a | (b & ~c)).matches(paths));
+  EXPECT_EQ(Selection("(T 'pedestrian' | 'street' R | " + street + ")&~ ~(T .* D R)").matches(paths),
+            ((a | b) & c).matches(paths));
+}
+
+// The glob stands where its path expression begins in the text, not where the text does.
+TEST(Selection, GlobsWithoutAMeshAreMarkedWithinJoinedText) {
+  try {
+    Selection("T . R | ~T 'street' 'pedestrain' R").matches(make_paths(some_paths()));
+    FAIL() << "no error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("\n  T 'street' 'pedestrain' R\n             ^")) << error.what();
+  }
+}
+
 TEST(Selection, NoPathsGiveNoBits) {
   const Paths none = make_paths({});
   EXPECT_TRUE(Selection("T . R").matches(none).empty());
@@ -100,6 +135,9 @@ TEST(Selection, BadInputNamesTheArgument) {
   EXPECT_TRUE(error_of([] { Selection::num_bounces(-1); }).starts_with("num_bounces: "));
   EXPECT_TRUE(error_of([] { Selection::num_bounces(3, 2); }).starts_with("num_bounces: "));
   EXPECT_TRUE(error_of([] { Selection::num_bounces(65); }).starts_with("num_bounces: "));
+  EXPECT_TRUE(error_of([] { Selection::first(""); }).starts_with("glob: "));
+  EXPECT_TRUE(error_of([] { Selection::power(Selection::Comparison::kAbove, NAN); }).starts_with("power: "));
+  EXPECT_TRUE(error_of([] { Selection("power > 0").matches(make_paths_without_scene()); }).starts_with("paths: "));
   EXPECT_TRUE(error_of([] { Selection("T ."); }).starts_with("path expression: "));
   EXPECT_TRUE(error_of([] { Selection("T . R").matches(Paths{}); }).starts_with("paths: "));
   Paths empty_scene;

@@ -33,6 +33,7 @@ from .path_cells import PathCells, path_cells
 from .simulate import Frame, simulate
 from .frame_file import load_frame, save_frame
 from .scene_file import SceneFile, load_scene
+from .xarray_maps import to_xarray
 
 
 def view(*arguments, **keywords):
@@ -69,5 +70,5 @@ __all__ = [
     "effects", "estimate_angles", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
     "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
-    "speed_of_light", "synthesize", "trace", "validity", "view", "virtual_array",
+    "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array",
 ]

@@ -1,5 +1,7 @@
-"""Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces."""
+"""Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces,
+`run_labels(folder)` of parts and path expressions."""
+from .labels import run_labels
 from .physics import run_physics
 from .replay import run_replay
 
-__all__ = ["run_physics", "run_replay"]
+__all__ = ["run_labels", "run_physics", "run_replay"]

@@ -59,8 +59,9 @@ def _parser() -> argparse.ArgumentParser:
     info.set_defaults(command=_info)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay"],
-                       help="physics: levels of canonical targets; replay: one record against tracing every chirp and antenna")
+    bench.add_argument("what", choices=["physics", "replay", "labels"],
+                       help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
+                            "antenna; labels: cost of parts, rate of path expressions")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its JSON file and figure")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
@@ -152,12 +153,14 @@ def _info(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import replay, report, run_physics, run_replay
+    from ..bench import labels, replay, report, run_labels, run_physics, run_replay
     from .progress import progress_bars
 
     with progress_bars() as progress:
         if options.what == "physics":
             lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress))
+        elif options.what == "labels":
+            lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
         else:
             lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
     print("\n".join(lines))

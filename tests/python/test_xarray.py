@@ -1,0 +1,62 @@
+"""Maps as xarray: named axes and units around the same numbers."""
+import sys
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+RANGE, SPEED, AZIMUTH = 6.0, -2.0, 0.3  # of a plate that faces the radar
+
+
+@pytest.fixture(scope="module")
+def radar():
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, sampling_rate=10e6, num_chirps=32,
+                              chirp_interval=1e-4)
+    half_wave = 0.5 * chirps.wavelength
+    return ep.Radar(chirps, transmitters=[ep.Antenna(), ep.Antenna((0.0, 4 * half_wave, 0.0))],
+                    receivers=[ep.Antenna((0.0, index * half_wave, 0.0)) for index in range(4)])
+
+
+@pytest.fixture(scope="module")
+def spectrum(radar):
+    direction = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=ep.Material(reflectivity=0.5, scattering=1.0),
+              position=RANGE * direction, yaw=AZIMUTH + np.pi, motion=ep.LinearMotion(velocity=SPEED * direction))
+    return ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=2000)), radar)
+
+
+def test_a_target_is_found_by_the_names_of_the_axes(spectrum, radar):
+    power = abs(spectrum.to_xarray()).mean(("tx", "rx"))
+    peak = power.where(power == power.max(), drop=True)
+    assert float(peak.range[0]) == pytest.approx(RANGE, abs=0.2)
+    assert float(peak.velocity[0]) == pytest.approx(SPEED, abs=0.31)  # one cell
+    assert float(power.sel(range=RANGE, method="nearest").max()) > 0.5 * float(power.max())
+    above = ep.range_azimuth(spectrum, radar).to_xarray()
+    assert float(above.max("range").idxmax("azimuth")) == pytest.approx(AZIMUTH, abs=0.1)
+
+
+def test_values_axes_and_units_are_those_of_the_map(spectrum, radar):
+    named = ep.to_xarray(spectrum)
+    assert named.dims == ("tx", "rx", "velocity", "range") and np.shares_memory(named.values, spectrum.values)
+    assert np.array_equal(named.velocity, spectrum.velocity) and np.array_equal(named.range, spectrum.range)
+    assert named.attrs["units"] == "sqrt(W)"
+    assert (named.velocity.attrs["units"], named.range.attrs["units"]) == ("m/s", "m")
+    above = ep.range_azimuth(spectrum, radar, combine="peak")
+    named = above.to_xarray()
+    assert named.dims == ("azimuth", "range") and np.shares_memory(named.values, above.power)
+    assert np.array_equal(named.azimuth, above.azimuth) and "velocity" not in named.attrs
+    assert (named.attrs["units"], named.azimuth.attrs["units"]) == ("W", "rad")
+    assert ep.range_azimuth(spectrum, radar, velocity=0.0).to_xarray().attrs["velocity"] == pytest.approx(0.0, abs=1.0)
+
+
+def test_without_xarray_the_message_says_what_to_install(spectrum, monkeypatch):
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(ModuleNotFoundError, match=r"pip install 'echopath\[xarray\]'"):
+        spectrum.to_xarray()
+
+
+def test_what_is_no_map_is_an_error():
+    with pytest.raises(TypeError, match="map: must be one of RangeDoppler, RangeAzimuth.*, got dict"):
+        ep.to_xarray({})

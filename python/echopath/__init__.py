@@ -12,11 +12,11 @@ answer_ctrl_c_while_loading()
 
 from . import _core
 from ._core import (
-    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, ChirpSequence, CosinePower, Deformation,
+    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CosinePower, Deformation,
     DeviceError, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
     Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
     Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
-    compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
+    cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
     parse_selection, power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
     synthesize, validity, virtual_array,
 )
@@ -61,12 +61,12 @@ def _viewer():
 
 
 __all__ = [
-    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "ChirpSequence",
+    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "ChirpSequence",
     "CosinePower", "Deformation", "DeviceError", "Effect", "FileError", "Frame", "GainTable", "Isotropic", "Joint",
     "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Parts", "PathCells", "Paths", "Radar",
     "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Skin", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
-    "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "compensate_tdm", "decompose",
+    "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "cfar", "compensate_tdm", "decompose",
     "effects", "estimate_angles", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
     "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",

@@ -96,11 +96,28 @@ double equivalent_noise_bandwidth(const std::vector<double>& samples) {
 }
 
 double scalloping_loss_db(const std::vector<double>& samples) {
+  return -20.0 * std::log10(std::abs(tone_response(samples, 0.5)));
+}
+
+double main_lobe_half_width(const std::vector<double>& samples) {
+  constexpr int kSteps = 64;  // per bin
+  const int last = kSteps * static_cast<int>(samples.size()) / 2;
+  double before = 1.0;
+  for (int step = 1; step <= last; ++step) {
+    const double level = std::abs(tone_response(samples, static_cast<double>(step) / kSteps));
+    if (level >= before) return static_cast<double>(step - 1) / kSteps;
+    before = level;
+  }
+  return static_cast<double>(last) / kSteps;
+}
+
+std::complex<double> tone_response(const std::vector<double>& samples, double bins) {
+  const double n = static_cast<double>(samples.size()), middle = 0.5 * (n - 1.0);
   std::complex<double> sum;
   for (size_t i = 0; i < samples.size(); ++i) {
-    sum += std::polar(1.0, -kPi * static_cast<double>(i) / static_cast<double>(samples.size())) * samples[i];
+    sum += std::polar(samples[i], -kTwoPi * bins * (static_cast<double>(i) - middle) / n);
   }
-  return -20.0 * std::log10(std::abs(sum) / sum_of(samples));
+  return sum / sum_of(samples);
 }
 
 }  // namespace echopath

@@ -1,6 +1,7 @@
 #pragma once
 // Tapering windows and their figures of merit (Harris, "On the use of windows for harmonic analysis with the discrete
 // Fourier transform", 1978).
+#include <complex>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Window {
 
   // "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
   static Window named(const std::string& name, double sidelobe_db = 80.0);
+  bool operator==(const Window&) const = default;
 };
 
 // Samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin grid
@@ -28,5 +30,8 @@ std::vector<double> centred_window_samples(const Window& window, int n);
 double coherent_gain(const std::vector<double>& samples);               // sum w / n
 double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
 double scalloping_loss_db(const std::vector<double>& samples);          // loss of a tone half-way between bins, dB
+double main_lobe_half_width(const std::vector<double>& samples);        // from a tone to its first null, bins, to 1/64
+// Response to a tone `bins` away, 1 at 0; real where samples are symmetric about their middle (n - 1) / 2.
+std::complex<double> tone_response(const std::vector<double>& samples, double bins);
 
 }  // namespace echopath

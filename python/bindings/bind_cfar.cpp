@@ -1,0 +1,108 @@
+// Detection at a constant false-alarm rate.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <sstream>
+#include <string>
+
+#include "array.h"
+#include "choice.h"
+#include "echopath/spectrum/cfar.h"
+#include "keywords.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
+
+constexpr const char* kCfarDoc = R"(Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
+
+A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
+right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
+channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
+spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
+false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
+guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
+    the window's main lobe; None: just that
+training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the map
+    is small
+rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
+progress: callable(stage, fraction) or None
+Returns a CfarResult. Raises ValueError naming the argument.)";
+
+CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
+                   std::optional<int> guard_velocity, std::optional<int> guard_range,
+                   std::optional<int> training_velocity, std::optional<int> training_range, double rank,
+                   const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "cfar", {"spectrum", "radar", "method", "false_alarm_rate", "guard_velocity", "guard_range",
+                                   "training_velocity", "training_range", "rank", "progress"});
+  const CfarOptions options{kCfarMethod.value_of(method), false_alarm_rate,  guard_velocity, guard_range,
+                            training_velocity,            training_range,    rank};
+  return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
+}
+
+py::array_t<int64_t> cells_of(const CfarResult& result) {
+  py::array_t<int64_t> cells({static_cast<py::ssize_t>(result.cells.size()), py::ssize_t{2}});
+  for (size_t i = 0; i < result.cells.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = result.cells[i][axis];
+  }
+  return cells;
+}
+
+py::array_t<bool> mask_of(const CfarResult& result) {
+  py::array_t<bool> mask({result.num_velocities, result.num_ranges});
+  std::fill_n(mask.mutable_data(), mask.size(), false);
+  for (const auto& [velocity, range] : result.cells) mask.mutable_at(velocity, range) = true;
+  return mask;
+}
+
+std::string text_of(const CfarResult& result) {
+  const CfarWindow& cells = result.design.cells;
+  std::ostringstream text;
+  text << "CfarResult(" << result.cells.size() << " of " << result.num_velocities << " x " << result.num_ranges
+       << " cells, method '" << kCfarMethod.name_of(result.design.method) << "', false_alarm_rate "
+       << result.design.false_alarm_rate << ", guard " << cells.guard_velocity << " x " << cells.guard_range << ", training "
+       << cells.training_velocity << " x " << cells.training_range << ")";
+  return text.str();
+}
+
+}  // namespace
+
+void bind_cfar(py::module_& m) {
+  py::class_<CfarResult>(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.")
+      .def_property_readonly("power", [](const py::object& self) {
+        const auto& result = self.cast<const CfarResult&>();
+        return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
+      }, "[velocity, range] W, mean over channels")
+      .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
+      .def_property_readonly("cells", &cells_of, "[D, 2] (velocity, range) indices of the cells found, ascending")
+      .def_property_readonly("noise", [](const py::object& self) {
+        return numpy_view(self.cast<const CfarResult&>().noise, self);
+      }, "[D] W, mean power of the noise about each cell found, as its training cells tell it")
+      .def_property_readonly("factor", [](const CfarResult& self) {
+        return self.factors.factor.back() * self.factors.statistic;
+      }, "power over noise, linear, from which a cell away from the ends of the range axis is found")
+      .def_property_readonly("method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); },
+                             "\"ca\" or \"os\"")
+      .def_property_readonly("false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; },
+                             "of one cell")
+      .def_property_readonly("guard", [](const CfarResult& self) {
+        return py::make_tuple(self.design.cells.guard_velocity, self.design.cells.guard_range);
+      }, "half widths along (velocity, range) in cells")
+      .def_property_readonly("training", [](const CfarResult& self) {
+        return py::make_tuple(self.design.cells.training_velocity, self.design.cells.training_range);
+      }, "cells beyond the guard cells on each side, along (velocity, range)")
+      .def("__len__", [](const CfarResult& self) { return self.cells.size(); })
+      .def("__repr__", &text_of);
+
+  const CfarOptions standard;
+  m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
+        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
+        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(), kCfarDoc);
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,90 @@
+"""False-alarm rates of CFAR on noise, and what it finds of echoes."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.bench.false_alarms import measure_false_alarms
+
+RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %
+
+
+@pytest.mark.parametrize("window, zero_pad, receivers", [("rect", 1, 1), ("hann", 1, 1), (("chebyshev", 60), 1, 1), ("hann", 1, 3)])
+def test_false_alarms_come_at_the_rate_asked_for(window, zero_pad, receivers):
+    """A million cells of noise; ten times as many in the benchmark."""
+    for row in measure_false_alarms(1_000_000, windows=[(window, zero_pad, receivers)], rates=[1e-3]):
+        assert row["ratio"] == pytest.approx(1.0, abs=RATE_TOLERANCE), row
+
+
+def radar_with(num_chirps=64, num_samples=128, receivers=1):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=60e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna()],
+                    receivers=[ep.Antenna((0.0, 0.002 * index, 0.0)) for index in range(receivers)])
+
+
+def spectrum_of_tones(radar, tones, window="hann"):
+    """(velocity cell, range cell, power in W) each, in noise of the receiver."""
+    waveform = radar.waveform
+    chirp, sample = np.arange(waveform.num_chirps), np.arange(waveform.num_samples)
+    cube = np.zeros((1, len(radar.receivers), len(chirp), len(sample)), complex)
+    for velocity, distance, power in tones:
+        cycles = np.add.outer((velocity - len(chirp) // 2) * chirp / len(chirp), distance * sample / len(sample))
+        cube += np.sqrt(power) * np.exp(2j * np.pi * cycles)
+    return ep.range_doppler(ep.add_noise(cube, radar, seed=3), radar, window=window)
+
+
+def noise_in_a_cell(radar, window_gain=1.5 ** 2):
+    """W, for Hann on both axes."""
+    waveform = radar.waveform
+    power = ep.boltzmann * 290.0 * 10 ** (radar.noise_figure_db / 10) * waveform.sampling_rate
+    return power * window_gain / (waveform.num_chirps * waveform.num_samples)
+
+
+@pytest.mark.parametrize("method", ["ca", "os"])
+def test_an_echo_in_noise_is_found_with_its_power_and_that_of_the_noise(method):
+    radar = radar_with(receivers=4)
+    noise = noise_in_a_cell(radar)
+    found = ep.cfar(spectrum_of_tones(radar, [(20, 40, 1000 * noise)]), radar, method=method)
+    assert found.mask[20, 40] and len(found) < 12  # the main lobe of Hann: 3 x 3 cells and two beyond, weakly
+    index = [tuple(cell) for cell in found.cells].index((20, 40))
+    assert found.power[20, 40] == pytest.approx(1001 * noise, rel=0.1)
+    assert found.noise[index] == pytest.approx(noise, rel=0.15)  # 70 independent cells of 4 channels: 6 %
+
+
+def test_ordered_statistics_find_the_weaker_of_two_neighbours():
+    radar = radar_with(receivers=2)
+    noise = noise_in_a_cell(radar)
+    spectrum = spectrum_of_tones(radar, [(20, 40, 1e5 * noise), (20, 47, 100 * noise)])
+    assert not ep.cfar(spectrum, radar, method="ca").mask[20, 47]
+    assert ep.cfar(spectrum, radar, method="os").mask[20, 47]
+
+
+def test_the_factor_is_power_over_noise_that_the_rate_needs():
+    """Cell averaging without correlation: N (P^(-1/N) - 1)."""
+    spectrum = spectrum_of_tones(radar_with(), [], window="rect")
+    found = ep.cfar(spectrum, radar_with(), false_alarm_rate=1e-5, training_velocity=3, training_range=5)
+    count = 9 * 13 - 9
+    assert found.guard == (1, 1) and found.training == (3, 5)
+    assert found.factor == pytest.approx(count * (1e-5 ** (-1 / count) - 1))
+    assert ep.cfar(spectrum, radar_with(), method="os", false_alarm_rate=1e-5).factor == pytest.approx(found.factor, rel=0.1)
+
+
+def test_arrays_fit_each_other_and_the_text_says_what_was_done():
+    radar = radar_with()
+    found = ep.cfar(spectrum_of_tones(radar, [(20, 40, 1e-10)]), radar, false_alarm_rate=0.01)
+    assert found.power.shape == found.mask.shape == (64, 128)
+    assert np.array_equal(np.argwhere(found.mask), found.cells)
+    assert len(found) == len(found.noise) == found.mask.sum() > 0
+    assert "method 'ca'" in repr(found) and "guard 2 x 2" in repr(found)
+
+
+def test_bad_arguments_are_named():
+    radar = radar_with()
+    spectrum = spectrum_of_tones(radar, [])
+    for name, value in (("method", "go"), ("false_alarm_rate", 0.0), ("guard_range", 1), ("training_velocity", 40), ("rank", 0.0)):
+        with pytest.raises(ValueError, match=name):
+            ep.cfar(spectrum, radar, **{name: value})
+    with pytest.raises(TypeError, match="false_alarm_rate"):
+        ep.cfar(spectrum, radar, false_alarm=1e-3)

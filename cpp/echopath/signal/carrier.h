@@ -1,5 +1,5 @@
 #pragma once
-// Beat frequency and start phase of each echo at one chirp: the one place of the IF phase model.
+// Beat frequency and start phase of each echo at one chirp (the formula itself: carrier_of in kernels_body.h).
 //
 // Model "lin": over one chirp the delay is linear in time about the window centre t_m. With n the sample, t = n / fs,
 //   s[n] = sum conj(a) exp(j 2 pi {f0 tau + mu t_m tau - mu tau^2 / 2 + f_b (t - t_m)}),
@@ -8,10 +8,11 @@
 // the way without that error.
 #include <cstdint>
 
-#include "echopath/radar/radar.h"
 #include "echopath/signal/echo_states.h"
 
 namespace echopath {
+
+struct ChirpSequence;
 
 // At most kCapacity echoes at one chirp: echo p is (re + j im)[p] e^{j 2 pi frequency[p] (n - reference sample)}.
 struct Carriers {
@@ -32,9 +33,11 @@ struct CarrierModel {
   double sample_interval;       // s
   double reference_offset;      // samples from the window centre to the reference sample
   double highest_frequency;     // cycles per sample; beat frequencies outside [0, highest) are removed
+  // f0 + mu t_m as a sum of two: the carrier turns 1e4 to 1e6 times, and one rounding of it would leave 1e-11 rad.
+  double centre_frequency, centre_frequency_rest;  // Hz
 };
 
-// Carriers of echoes [begin, begin + count) at `chirp`; count <= Carriers::kCapacity.
+// Carriers of echoes [begin, begin + count) at `chirp`; count <= Carriers::kCapacity. Phases are right to 7e-14 rad.
 void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count,
                        Carriers& out);
 

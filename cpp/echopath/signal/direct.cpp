@@ -4,7 +4,7 @@
 namespace echopath {
 namespace {
 
-ECHOPATH_SIMD void add_tone(double frequency, double re, double im, int num_samples, double* out_re, double* out_im) {
+ECHOPATH_INLINE void add_tone(double frequency, double re, double im, int num_samples, double* out_re, double* out_im) {
   for (int n = 0; n < num_samples; ++n) {
     const Phasor phasor = phasor_of_cycles(frequency * n);
     out_re[n] += re * phasor.re - im * phasor.im;
@@ -19,7 +19,7 @@ class Direct : public ToneMethod {
   void add(const Carriers& carriers, Rows rows) const override {
     for (int p = 0; p < carriers.count; ++p) {
       double* row = rows.first + carriers.group[p] * rows.stride;
-      add_tone(carriers.frequency[p], carriers.re[p], carriers.im[p], num_samples_, row, row + row_length());
+      run_simd<add_tone>(carriers.frequency[p], carriers.re[p], carriers.im[p], num_samples_, row, row + row_length());
     }
   }
 

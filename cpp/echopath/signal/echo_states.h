@@ -2,9 +2,9 @@
 // Echoes at the window centre of one chirp.
 #include <cstdint>
 
-#include "echopath/signal/echoes.h"
-
 namespace echopath {
+
+struct Echoes;
 
 struct EchoStates {
   static constexpr int kCapacity = 256;  // delays, amplitudes and carriers of a block stay in the first-level cache

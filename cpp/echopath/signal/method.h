@@ -5,16 +5,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "echopath/signal/carrier.h"
+#include "echopath/signal/kernels.h"
 
 namespace echopath {
-
-// The rows of all groups at one chirp and channel: real parts of group g at first + g * stride, imaginary parts
-// `stride / 2` doubles later. Zero before the first echo.
-struct Rows {
-  double* first;
-  int64_t stride;
-};
 
 class ToneMethod {
  public:
@@ -35,6 +28,13 @@ class ToneMethod {
   int reference_sample_;
 };
 
+// A method that adds by spreading on a grid, for which there are quicker loops over echoes in tiles.
+class SpreadMethod : public ToneMethod {
+ public:
+  using ToneMethod::ToneMethod;
+  virtual Spreading spreading() const = 0;  // valid while the method lives
+};
+
 // Sine and cosine of every sample: the reference. Error 1e-13 of the sum of |a|.
 std::unique_ptr<const ToneMethod> make_direct(int num_samples);
 // Powers of e^{j 2 pi f} by multiplication, in blocks. Error 1e-13 of the sum of |a| at 512 samples, growing with
@@ -42,6 +42,6 @@ std::unique_ptr<const ToneMethod> make_direct(int num_samples);
 std::unique_ptr<const ToneMethod> make_recurrence(int num_samples);
 // Type-1 non-uniform FFT. Rms error over the samples below `tolerance` of the sum of |a|, for 1e-13 <= tolerance <=
 // 0.1 (and not below the rounding of 1e-16 x num_samples); the largest error of one sample is up to six times that.
-std::unique_ptr<const ToneMethod> make_nufft(int num_samples, double tolerance);
+std::unique_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance);
 
 }  // namespace echopath

@@ -9,7 +9,8 @@ namespace echopath {
 struct NufftKernel {
   static constexpr int kMinWidth = 3;
   static constexpr int kMaxWidth = 16;
-  static constexpr int degree(int width) { return width + 3; }
+  // Of the polynomials: more would not make the tone error of width_for smaller.
+  static constexpr int degree(int width) { return width <= 4 || width == 8 ? width : width - 1; }
   // Values per coefficient row: whole vectors; the values beyond the width are zero.
   static constexpr int padded(int width) { return width <= 8 ? 8 : 16; }
 

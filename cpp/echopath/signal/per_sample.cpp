@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "echopath/signal/echoes.h"
 #include "echopath/signal/phasor.h"
 
 namespace echopath {
@@ -30,7 +31,7 @@ bool passes_filter(const CarrierModel& model, const Bent& echo) {
   return frequency >= 0.0 && frequency < model.highest_frequency;
 }
 
-ECHOPATH_SIMD void add_bent(const CarrierModel& model, const Bent& echo, int num_samples, double* out_re, double* out_im) {
+ECHOPATH_INLINE void add_bent(CarrierModel model, Bent echo, int num_samples, double* out_re, double* out_im) {
   const double slope = model.slope, centre = model.window_centre, step = model.sample_interval;
   const double carrier = model.start_frequency + slope * (centre - echo.delay);
   for (int n = 0; n < num_samples; ++n) {
@@ -54,7 +55,7 @@ void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, i
     if (!passes_filter(model_, echo)) continue;
     const uint32_t group = echoes.group.empty() ? 0 : echoes.group[static_cast<size_t>(begin + p)];
     double* row = rows.first + group * rows.stride;
-    add_bent(model_, echo, num_samples_, row, row + row_length);
+    run_simd<add_bent>(model_, echo, num_samples_, row, row + row_length);
   }
 }
 

@@ -56,11 +56,11 @@ ECHOPATH_INLINE void advance(Tones& tones) {
 }
 
 // Adds carriers [first, first + count), count <= kTones, all of one group; missing tones have amplitude zero.
-ECHOPATH_SIMD void add_tones(const Carriers& carriers, int first, int count, int64_t length, double* row) {
+ECHOPATH_INLINE void add_tones(const Carriers* carriers, int first, int count, int64_t length, double* row) {
   Tones tones;
   for (int k = 0; k < kTones; ++k) {
     const int p = first + std::min(k, count - 1);
-    set_tone(tones, k, carriers.frequency[p], k < count ? carriers.re[p] : 0.0, k < count ? carriers.im[p] : 0.0);
+    set_tone(tones, k, carriers->frequency[p], k < count ? carriers->re[p] : 0.0, k < count ? carriers->im[p] : 0.0);
   }
   for (int64_t n = 0; n < length; n += kBlock) {
     add_block(tones, row + n, row + length + n);
@@ -78,7 +78,7 @@ class Recurrence : public ToneMethod {
       int count = 1;
       const uint32_t group = carriers.group[first];
       while (count < kTones && first + count < carriers.count && carriers.group[first + count] == group) ++count;
-      add_tones(carriers, first, count, row_length(), rows.first + group * rows.stride);
+      run_simd<add_tones>(&carriers, first, count, row_length(), rows.first + group * rows.stride);
       first += count;
     }
   }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
@@ -18,27 +20,27 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kRecurrenceLimit = 75;  // echoes below which the recurrence beats the FFT of a NUFFT row
-constexpr int kChirpsPerTask = 4;         // a block of echoes is read once per this many chirps
+// Tasks of chirps own whole groups of this many, whose echoes are read once.
+constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
+constexpr int kGroupsPerTask = 4;         // at most; fewer where that would leave threads without work
+constexpr int64_t kStillParts = 16;       // at most, of echoes at rest; their number must not depend on the threads
+constexpr int64_t kEchoesOfPart = 1024;   // at least, for each group: adding up the parts must cost little
 
 Method choose_method(Method asked, int64_t expected_echoes) {
   if (asked != Method::kAuto) return asked;
   return expected_echoes < kRecurrenceLimit ? Method::kRecurrence : Method::kNufft;
 }
 
-std::unique_ptr<const ToneMethod> make_tones(Method method, int num_samples, double tolerance) {
-  if (method == Method::kDirect) return make_direct(num_samples);
-  if (method == Method::kRecurrence) return make_recurrence(num_samples);
-  return make_nufft(num_samples, tolerance);
-}
-
-ECHOPATH_SIMD bool all_finite(const double* values, int64_t count) {
-  int64_t bad = 0;
-  for (int64_t i = 0; i < count; ++i) bad |= !(std::abs(values[i]) <= std::numeric_limits<double>::max());
-  return bad == 0;
+ECHOPATH_INLINE void find_not_finite(const double* values, int64_t count, int64_t* bad) {
+  int64_t found = 0;
+  for (int64_t i = 0; i < count; ++i) found |= !(std::abs(values[i]) <= std::numeric_limits<double>::max());
+  *bad = found;
 }
 
 void require_finite(const double* values, size_t count, const char* name) {
-  if (all_finite(values, static_cast<int64_t>(count))) return;
+  int64_t found = 0;
+  run_simd<find_not_finite>(values, static_cast<int64_t>(count), &found);
+  if (!found) return;
   const double* bad = std::find_if(values, values + count, [](double value) { return !std::isfinite(value); });
   require(false, name, "must be finite", *bad);
 }
@@ -67,7 +69,31 @@ void validate_sampling(const TimeSampling& sampling, int num_chirps) {
   }
 }
 
-int64_t num_tasks(int num_chirps) { return (num_chirps + kChirpsPerTask - 1) / kChirpsPerTask; }
+// Bits do not depend on it: every chirp takes all echoes in their order.
+int chirps_per_task(int num_chirps) {
+  const int groups = (num_chirps + kChirpGroup - 1) / kChirpGroup;
+  return kChirpGroup * std::clamp(groups / (2 * num_threads()), 1, kGroupsPerTask);
+}
+
+void run_tasks(int num_chirps, const std::function<void(int first, int count)>& work) {
+  const int size = chirps_per_task(num_chirps);
+  parallel_for((num_chirps + size - 1) / size, [&](int64_t task) {
+    const int first = static_cast<int>(task) * size;
+    work(first, std::min(size, num_chirps - first));
+  });
+}
+
+bool same_sampling(const TimeSampling& a, const TimeSampling& b) {
+  return a.num_nodes == b.num_nodes && a.order == b.order && a.first_node == b.first_node && a.value == b.value &&
+         a.slope == b.slope;
+}
+
+// How many from the first on share its sampling.
+size_t run_of_one_sampling(std::span<const Echoes> blocks) {
+  size_t count = 1;
+  while (count < blocks.size() && same_sampling(blocks[count].sampling, blocks.front().sampling)) ++count;
+  return count;
+}
 
 }  // namespace
 
@@ -80,7 +106,13 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
   require(expected_echoes >= 0, "expected_echoes", "must not be negative", expected_echoes);
   require(options.tolerance >= 1e-13 && options.tolerance <= 0.1, "tolerance", "must be in [1e-13, 0.1]",
           options.tolerance);
-  tones_ = make_tones(method_, waveform.num_samples, options.tolerance);
+  if (method_ == Method::kNufft) {
+    auto nufft = make_nufft(waveform.num_samples, options.tolerance);
+    spread_ = options.per_sample ? nullptr : nufft.get();
+    tones_ = std::move(nufft);
+  } else {
+    tones_ = method_ == Method::kDirect ? make_direct(waveform.num_samples) : make_recurrence(waveform.num_samples);
+  }
   model_ = std::make_unique<CarrierModel>(waveform, tones_->reference_sample());
   if (options.per_sample) {
     sample_rows_ = make_direct(waveform.num_samples);
@@ -92,11 +124,7 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
 Synthesizer::~Synthesizer() = default;
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
-void Synthesizer::validate(int channel, const Echoes& block) const {
-  if (channel < 0 || channel >= static_cast<int>(channels_.size())) {
-    throw std::out_of_range("channel: must be in [0, " + std::to_string(channels_.size()) + "), got " +
-                            std::to_string(channel));
-  }
+void Synthesizer::validate(const Echoes& block) const {
   validate_sampling(block.sampling, waveform_.num_chirps);
   require(block.num_echoes >= 0, "num_echoes", "must not be negative", block.num_echoes);
   const size_t echoes = static_cast<size_t>(block.num_echoes);
@@ -118,36 +146,87 @@ int64_t Synthesizer::row_size(bool moving) const {
   return 2 * (moving && sample_rows_ ? sample_rows_ : tones_)->row_length();
 }
 
-void Synthesizer::add(int channel, const Echoes& block, Job* job) {
-  validate(channel, block);
-  if (block.num_echoes == 0) return;
-  ChannelRows& rows = channels_[channel];
-  if (block.sampling.is_static()) {
-    rows.still.resize(static_cast<size_t>(row_size(false)) * num_groups_);
-    parallel_for(1, [&](int64_t) { add_rows(block, 0, 1, rows.still.data(), job); });
-  } else {
-    add_moving(block, rows, job);
+void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
+  if (channel < 0 || channel >= static_cast<int>(channels_.size())) {
+    throw std::out_of_range("channel: must be in [0, " + std::to_string(channels_.size()) + "), got " +
+                            std::to_string(channel));
   }
-  if (job) job->advance(block.num_echoes);
+  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) { validate(blocks[static_cast<size_t>(i)]); });
+  ChannelRows& rows = channels_[channel];
+  while (!blocks.empty()) {
+    const std::span<const Echoes> run = blocks.first(run_of_one_sampling(blocks));
+    if (run.front().sampling.is_static()) {
+      add_still(run, rows, job);
+    } else {
+      add_moving(run, rows, job);
+    }
+    if (job) {
+      for (const Echoes& block : run) job->advance(block.num_echoes);
+    }
+    blocks = blocks.subspan(run.size());
+  }
 }
 
-void Synthesizer::add_moving(const Echoes& block, ChannelRows& rows, Job* job) const {
+// In a fixed number of parts with rows of their own, added in their order.
+void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const {
+  const size_t size = static_cast<size_t>(row_size(false)) * num_groups_;
+  for (const Echoes& block : blocks) {
+    if (block.num_echoes == 0) continue;
+    rows.still.resize(size);
+    const int64_t num_parts = std::clamp<int64_t>(block.num_echoes / (kEchoesOfPart * num_groups_), 1, kStillParts);
+    const int64_t per_part = (block.num_echoes + num_parts - 1) / num_parts;
+    std::vector<std::vector<double>> parts(static_cast<size_t>(num_parts));
+    parallel_for(num_parts, [&](int64_t i) {
+      std::vector<double>& part = parts[static_cast<size_t>(i)];
+      part.resize(size);
+      add_rows(block, {i * per_part, std::min(block.num_echoes, (i + 1) * per_part)}, {0, 1}, part.data(), job);
+    });
+    for (const std::vector<double>& part : parts) {
+      for (size_t i = 0; i < size; ++i) rows.still[i] += part[i];
+    }
+  }
+}
+
+void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
   const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
   rows.moving.resize(chirp_size * waveform_.num_chirps);
-  parallel_for(num_tasks(waveform_.num_chirps), [&](int64_t task) {
-    const int first = static_cast<int>(task) * kChirpsPerTask;
-    const int count = std::min(kChirpsPerTask, waveform_.num_chirps - first);
-    add_rows(block, first, count, rows.moving.data() + chirp_size * first, job);
+  if (spread_) tiles_.assign(blocks, num_groups_, longest_delay());
+  run_tasks(waveform_.num_chirps, [&](int first, int count) {
+    double* const first_row = rows.moving.data() + chirp_size * first;
+    if (spread_) return add_tiles(blocks.front().sampling, first, count, first_row, job);
+    for (const Echoes& block : blocks) add_rows(block, {0, block.num_echoes}, {first, first + count}, first_row, job);
   });
 }
 
-// Every chirp takes all echoes in their order, in blocks that do not depend on the tasks: hence the same bits always.
-void Synthesizer::add_rows(const Echoes& block, int first_chirp, int num_chirps, double* rows, Job* job) const {
-  const int64_t stride = row_size(!block.sampling.is_static());
-  for (int64_t begin = 0; begin < block.num_echoes; begin += Carriers::kCapacity) {
+// The delay of the last cell.
+double Synthesizer::longest_delay() const { return waveform_.sampling_rate / waveform_.slope(); }
+
+void Synthesizer::add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const {
+  const Spreading spreading = spread_->spreading();
+  const int64_t stride = row_size(true);
+  for (const EchoTiles::Tile& tile : tiles_.tiles()) {
     if (job) job->throw_if_cancelled();
-    const int count = static_cast<int>(std::min<int64_t>(Carriers::kCapacity, block.num_echoes - begin));
-    for (int i = 0; i < num_chirps; ++i) add_some(block, first_chirp + i, begin, count, {rows + i * num_groups_ * stride, stride});
+    for (int i = 0; i < num_chirps; i += kChirpGroup) {
+      const int chirp = first_chirp + i;
+      const size_t weights = static_cast<size_t>(chirp) * sampling.order;
+      const TileAtChirps at{tiles_.nodes(tile), tile.count, sampling.num_nodes, sampling.order, std::min(kChirpGroup, num_chirps - i),
+                            &sampling.first_node[chirp], &sampling.value[weights], &sampling.slope[weights]};
+      double* row = rows + (int64_t{i} * num_groups_ + tile.group) * stride;
+      signal_kernels().add_tile(*model_, spreading, at, row, stride * num_groups_);
+    }
+  }
+}
+
+// Every chirp takes all echoes in their order, in blocks that do not depend on the tasks: hence the same bits always.
+void Synthesizer::add_rows(const Echoes& block, Range echoes, Range chirps, double* rows, Job* job) const {
+  const int64_t stride = row_size(!block.sampling.is_static());
+  for (int64_t begin = echoes.begin; begin < echoes.end; begin += Carriers::kCapacity) {
+    if (job) job->throw_if_cancelled();
+    const int count = static_cast<int>(std::min<int64_t>(Carriers::kCapacity, echoes.end - begin));
+    for (int64_t chirp = chirps.begin; chirp < chirps.end; ++chirp) {
+      const Rows at{rows + (chirp - chirps.begin) * num_groups_ * stride, stride};
+      add_some(block, static_cast<int>(chirp), begin, count, at);
+    }
   }
 }
 

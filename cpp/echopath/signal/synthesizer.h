@@ -3,15 +3,18 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
+#include "echopath/signal/echo_tiles.h"
 #include "echopath/signal/echoes.h"
 
 namespace echopath {
 
 class PerSample;
+class SpreadMethod;
 class ToneMethod;
 struct CarrierModel;
 struct Rows;
@@ -43,10 +46,12 @@ class Synthesizer {
 
   Method method() const { return method_; }  // the one chosen, never kAuto
 
-  // Adds a block to a channel; parallel over chirps. Raises invalid_argument on wrong shapes, groups out of range, or
-  // values that are not finite; nothing is added then. The job's progress advances by the number of echoes; when it
-  // is cancelled, Cancelled is raised and the cubes are void.
-  void add(int channel, const Echoes& block, Job* job = nullptr);
+  // Adds blocks to a channel; parallel over chirps. Many echoes at once are quicker: a NUFFT sorts neighbouring moving blocks
+  // of one sampling together, which needs as much memory again as they have. Raises invalid_argument on wrong shapes, groups
+  // out of range, or values that are not finite; nothing is added then. The job's progress advances by the number of echoes;
+  // when it is cancelled, Cancelled is raised and the cubes are void.
+  void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
+  void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
   // Samples [channel, chirp, sample] of one group so far, in sqrt(W).
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
@@ -56,20 +61,28 @@ class Synthesizer {
     std::vector<double> moving;  // [chirp, group, re/im, row length]; empty until a moving echo comes
     std::vector<double> still;   // [group, re/im, row length], added to every chirp; empty likewise
   };
-  void validate(int channel, const Echoes& block) const;
-  void add_rows(const Echoes& block, int first_chirp, int num_chirps, double* rows, Job* job) const;
-  void add_moving(const Echoes& block, ChannelRows& rows, Job* job) const;
+  void validate(const Echoes& block) const;
+  void add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const;
+  void add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job);
+  void add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const;
+  struct Range {
+    int64_t begin, end;
+  };
+  void add_rows(const Echoes& block, Range echoes, Range chirps, double* rows, Job* job) const;
   void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
   int64_t row_size(bool moving) const;
+  double longest_delay() const;
   void write_row(const double* row, bool moving, std::complex<double>* out) const;
 
   ChirpSequence waveform_;
   int num_groups_;
   Method method_;
   std::unique_ptr<const ToneMethod> tones_;         // of all echoes, or of those at rest
+  const SpreadMethod* spread_ = nullptr;            // tones_ where moving echoes go through tiles
   std::unique_ptr<const ToneMethod> sample_rows_;   // the form of the rows of moving echoes, where per_sample_ is there
   std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
+  EchoTiles tiles_;  // of the blocks in hand
   std::vector<ChannelRows> channels_;
 };
 

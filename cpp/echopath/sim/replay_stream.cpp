@@ -6,6 +6,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/signal/echo_states.h"
+#include "echopath/signal/echoes.h"
 
 namespace echopath {
 namespace {
@@ -76,17 +77,20 @@ std::vector<int64_t> ReplayStream::run_blocks(const std::vector<int64_t>& paths,
       const int64_t first = begin + i * size;
       return std::span<const int64_t>(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
     };
-    std::vector<std::vector<Echoes>> blocks(static_cast<size_t>(num_blocks));
-    std::vector<std::vector<int64_t>> left(blocks.size());
+    std::vector<std::vector<Echoes>> by_channel(static_cast<size_t>(num_channels()));
+    for (std::vector<Echoes>& blocks : by_channel) blocks.resize(static_cast<size_t>(num_blocks));
+    std::vector<std::vector<int64_t>> left(static_cast<size_t>(num_blocks));
     parallel_for(num_blocks, [&](int64_t i) {
       if (job_) job_->throw_if_cancelled();
-      blocks[static_cast<size_t>(i)] = replay(part(i), left[static_cast<size_t>(i)]);
+      std::vector<Echoes> channels = replay(part(i), left[static_cast<size_t>(i)]);
+      for (size_t channel = 0; channel < channels.size(); ++channel) by_channel[channel][static_cast<size_t>(i)] = std::move(channels[channel]);
     });
-    for (int64_t i = 0; i < num_blocks; ++i) {
+    const auto handed_over = static_cast<size_t>(std::min(size * num_blocks, num_paths - begin));
+    for (size_t channel = 0; channel < by_channel.size(); ++channel) {
       if (job_) job_->throw_if_cancelled();
-      sink(blocks[static_cast<size_t>(i)], part(i));
-      all_left.insert(all_left.end(), left[static_cast<size_t>(i)].begin(), left[static_cast<size_t>(i)].end());
+      sink(static_cast<int>(channel), by_channel[channel], {paths.data() + begin, handed_over});
     }
+    for (const std::vector<int64_t>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
   }
   return all_left;
 }
@@ -94,8 +98,8 @@ std::vector<int64_t> ReplayStream::run_blocks(const std::vector<int64_t>& paths,
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job) {
   const ReplayStream stream(paths, radar, settings, job);
   std::atomic<int64_t> path_chirps = 0;
-  stream.run([&](std::vector<Echoes>& channels, std::span<const int64_t>) {
-    for (const Echoes& echoes : channels) {
+  stream.run([&](int, std::span<Echoes> blocks, std::span<const int64_t>) {
+    for (const Echoes& echoes : blocks) {
       parallel_for(echoes.sampling.is_static() ? 1 : radar.waveform.num_chirps, [&](int64_t chirp) {
         EchoStates states;
         for (int64_t begin = 0; begin < echoes.num_echoes; begin += EchoStates::kCapacity) {

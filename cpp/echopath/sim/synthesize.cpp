@@ -1,12 +1,20 @@
 #include "echopath/sim/synthesize.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "echopath/sim/replay_stream.h"
 
 namespace echopath {
 namespace {
+
+void set_groups(const std::vector<uint32_t>& group, std::span<const int64_t> indices, std::span<Echoes> blocks) {
+  auto path = indices.begin();
+  for (Echoes& block : blocks) {
+    for (int64_t i = 0; i < block.num_echoes; ++i) block.group.push_back(group[static_cast<size_t>(*path++)]);
+  }
+}
 
 // Cubes [group] of all groups, in one pass.
 std::vector<Cube> synthesize_groups(const Paths& paths, const Radar& radar, const std::vector<uint32_t>* group, int num_groups,
@@ -15,14 +23,9 @@ std::vector<Cube> synthesize_groups(const Paths& paths, const Radar& radar, cons
   ReplayStream stream(paths, radar, settings.replay, job);
   Synthesizer synthesizer(radar.waveform, stream.num_channels(), num_groups, paths.num_paths(), settings.synthesis);
   if (job) job->start(paths.num_paths() * stream.num_channels());
-  stream.run([&](std::vector<Echoes>& channels, std::span<const int64_t> indices) {
-    for (size_t channel = 0; channel < channels.size(); ++channel) {
-      if (job) job->throw_if_cancelled();
-      if (group) {
-        for (const int64_t path : indices) channels[channel].group.push_back((*group)[static_cast<size_t>(path)]);
-      }
-      synthesizer.add(static_cast<int>(channel), channels[channel], job);
-    }
+  stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
+    if (group) set_groups(*group, indices, blocks);
+    synthesizer.add(channel, blocks, job);
   });
 
   std::vector<Cube> cubes;

@@ -27,7 +27,7 @@ ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_
 }
 
 // weights [directions, padded], columns [padded, kColumns]
-ECHOPATH_SIMD void add_squares_of_block(int64_t directions, int64_t padded, const double* weight_re,
+ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, const double* weight_re,
                                         const double* weight_im, const double* re, const double* im, Combine combine,
                                         double* power) {
   for (int64_t d = 0; d < directions; ++d) {
@@ -68,7 +68,7 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
       im[e * kColumns + c] = columns(e, c).imag();
     }
   }
-  add_squares_of_block(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine, power.data());
+  run_simd<add_squares_of_block>(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine, power.data());
 }
 
 Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {

@@ -1,0 +1,41 @@
+#pragma once
+// Echoes in the order of their groups and delays, in the layout of the inner loops.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "echopath/signal/echoes.h"
+
+namespace echopath {
+
+// Neighbours in delay share cells of the grid, where their kernels are summed at once (cell moments), and the rows of a
+// group stay in the cache. Delays are compared in the middle of the frame: what moves otherwise than its neighbours mixes
+// the order later on, which costs time alone.
+class EchoTiles {
+ public:
+  struct Tile {
+    int64_t vector;  // the first of its vectors, as in TileAtChirps
+    int count;       // echoes, at most TileAtChirps::kCapacity
+    uint32_t group;
+  };
+
+  // From `blocks` that share one sampling. Delays in [0, longest_delay] are told apart, others are not. Reuses memory.
+  void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay);
+
+  int num_nodes() const { return num_nodes_; }
+  const std::vector<Tile>& tiles() const { return tiles_; }
+  const double* nodes(const Tile& tile) const;
+
+ private:
+  void cut(const std::vector<uint64_t>& order);
+  void gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order);
+
+  int num_nodes_ = 0;
+  int index_bits_ = 0, local_bits_ = 0, group_shift_ = 0;
+  std::vector<Tile> tiles_;
+  std::vector<int64_t> first_;     // [tiles], place of the first echo of each in the order
+  std::vector<double> nodes_;
+};
+
+}  // namespace echopath

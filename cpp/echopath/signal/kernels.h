@@ -1,0 +1,52 @@
+#pragma once
+// The inner loops of synthesis, compiled once per instruction set from kernels_body.h. The headers that this one includes
+// define no functions with code: what is compiled for one instruction set must not be linked into another's.
+#include <cstdint>
+
+#include "echopath/signal/carrier.h"
+
+namespace echopath {
+
+// The rows of all groups at one chirp and channel: real parts of group g at first + g * stride, imaginary parts
+// `stride / 2` doubles later. Zero before the first echo.
+struct Rows {
+  double* first;
+  int64_t stride;
+};
+
+// The kernel of a NUFFT and the grid it is spread on.
+struct Spreading {
+  int width;
+  const double* coefficients;  // NufftKernel::coefficients
+  double grid_size;            // M
+  int64_t row_length;
+};
+
+// Echoes of one group, near each other in delay, in the layout of EchoTiles, at a few chirps.
+struct TileAtChirps {
+  static constexpr int kLanes = 8;       // of the layout, whatever the instruction set
+  static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the first-level cache
+  static constexpr int kMaxChirps = 4;   // for which the nodes are read once
+  const double* nodes;    // [vectors of kLanes echoes, num_nodes, (delay, re, im), kLanes]
+  int count;              // echoes; the last vector is filled up with zero amplitudes
+  int num_nodes, order;
+  int num_chirps;         // 1 to kMaxChirps
+  const int* first_node;  // [num_chirps], as in TimeSampling
+  const double* value;    // [num_chirps, order]
+  const double* slope;    // [num_chirps, order]
+};
+
+struct SignalKernels {
+  // Carriers of states.
+  void (*modulate)(const CarrierModel& model, const EchoStates& states, int count, Carriers& out);
+  // Adds carriers in any order, each to the row of its group.
+  void (*spread)(const Spreading& spreading, const Carriers& carriers, Rows rows);
+  // Adds a tile to one row per chirp, `chirp_stride` doubles apart.
+  void (*add_tile)(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
+                   int64_t chirp_stride);
+};
+
+// Those of instruction_set().
+const SignalKernels& signal_kernels();
+
+}  // namespace echopath

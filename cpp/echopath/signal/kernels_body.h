@@ -1,0 +1,326 @@
+// The inner loops of synthesis for one instruction set: kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
+// ECHOPATH_LANES set (no include guard).
+#include "echopath/signal/kernels.h"
+#include "echopath/signal/nufft_kernel.h"
+#include "echopath/signal/phasor.h"
+#include "echopath/signal/vector.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+namespace {
+
+// Chirps whose echoes at a vector of nodes fit into the registers.
+constexpr int kChirpsAtOnce = kLanes == 8 ? 4 : 2;
+// Terms of a polynomial whose moments do, real and imaginary.
+constexpr int kTermsAtOnce = kLanes == 8 ? 12 : 5;
+// Echoes in one cell from which their moments are quicker than a kernel for each, for kernels of one vector or two.
+constexpr int kFewInCell[] = {3, 2};
+// Echoes per run of one cell below which it pays to bring those of a cell together, and the cells this can be done for.
+constexpr int kShortRun = 8;
+constexpr int kCellsOfTile = 128;
+// Echoes of a sorted tile are spread in this many places in turn: a sum of the last few is not yet ready to be loaded.
+constexpr int kStreams = 8;
+
+struct Carrier {
+  Vec frequency, re, im;
+};
+
+// The phase model of carrier.h, in half turns.
+ECHOPATH_INLINE Carrier carrier_of(const CarrierModel& model, Vec tau, Vec rate, Vec re, Vec im) {
+  const double centre = 2.0 * model.centre_frequency, rest = 2.0 * model.centre_frequency_rest;
+  const Vec swept = tau * (model.slope * model.sample_interval);
+  const Vec frequency = multiply_add(rate, model.centre_frequency * model.sample_interval - swept, swept);
+  const Vec turns = all(centre) * tau + kRoundingShift;
+  const Vec begun = exact_multiply_add(all(centre), tau, kRoundingShift - turns) + tau * (rest - model.slope * tau) +
+                    frequency * (2.0 * model.reference_offset);
+  const Vec more_turns = begun + kRoundingShift;
+  const PhasorOf<Vec> phasor = phasor_of_half_turns<Vec>(begun - (more_turns - kRoundingShift));
+  const Mask sign = (bits(turns) ^ bits(more_turns)) << 63;  // odd numbers of half turns
+  const Vec c = from_bits(bits(phasor.re) ^ sign), s = from_bits(bits(phasor.im) ^ sign);
+  const Mask kept = (frequency >= 0.0) & (frequency < model.highest_frequency);
+  return {kept ? frequency : Vec{}, kept ? re * c + im * s : Vec{}, kept ? re * s - im * c : Vec{}};
+}
+
+void modulate(const CarrierModel& model, const EchoStates& states, int count, Carriers& out) {
+  for (int p = 0; p < count; p += kLanes) {
+    Vec re, im;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      re[lane] = states.amplitude[2 * (p + lane)];
+      im[lane] = states.amplitude[2 * (p + lane) + 1];
+    }
+    const Carrier carrier = carrier_of(model, load(states.delay + p), load(states.rate + p), re, im);
+    store(out.frequency + p, carrier.frequency);
+    store(out.re + p, carrier.re);
+    store(out.im + p, carrier.im);
+  }
+}
+
+// Echoes on the grid at one chirp. Loops may read a vector beyond the last.
+struct Places {
+  static constexpr int kSize = TileAtChirps::kCapacity + 8;
+  alignas(64) double t[kSize];       // place in the cell, [-1, 1]
+  alignas(64) double re[kSize];
+  alignas(64) double im[kSize];
+  alignas(64) int32_t cell[kSize];   // of the first kernel value, counted from -width
+};
+
+ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
+  const Vec left = frequency * spreading.grid_size + 0.5 * spreading.width;
+  const Cells cell = __builtin_convertvector(left, Cells) + 1;
+  *reinterpret_cast<UnalignedCells*>(places.cell + p) = cell;
+  store(places.t + p, 2.0 * (__builtin_convertvector(cell, Vec) - left) - 1.0);
+}
+
+template <int kWidth>
+struct Spreader {
+  static constexpr int kPadded = NufftKernel::padded(kWidth), kTerms = NufftKernel::degree(kWidth) + 1;
+  static constexpr int kVectors = kPadded / kLanes;
+  const double* coefficients;
+  int64_t row_length;
+
+  // Adds re and im times the values of the kernel.
+  ECHOPATH_INLINE void add_window(const Vec* re, const Vec* im, double* row) const {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) {
+      double* out = row + v * kLanes;
+      store(out, load(out) + re[v]);
+      store(out + row_length, load(out + row_length) + im[v]);
+    }
+  }
+
+  ECHOPATH_INLINE void add_echo(const Places& places, int p, double* first) const {
+    const Vec t = all(places.t[p]);
+    Vec re[kVectors], im[kVectors];
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) {
+      Vec value = load(coefficients + v * kLanes);
+#pragma GCC unroll 16
+      for (int d = 1; d < kTerms; ++d) value = multiply_add(value, t, load(coefficients + d * kPadded + v * kLanes));
+      re[v] = value * places.re[p];
+      im[v] = value * places.im[p];
+    }
+    add_window(re, im, first + places.cell[p]);
+  }
+
+  // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell: sums of (re + j im) t^d.
+  template <int kFirst, int kCount>
+  ECHOPATH_INLINE void add_moments(const Places& places, int begin, int end, double* sum_re, double* sum_im) const {
+    constexpr int kRounded = (kCount + kLanes - 1) / kLanes * kLanes;
+    Vec moment_re[kRounded] = {}, moment_im[kRounded] = {};
+    Mask lane;
+    for (int i = 0; i < kLanes; ++i) lane[i] = i;
+    for (int p = begin; p < end; p += kLanes) {
+      const Vec t = load(places.t + p);
+      Vec re = load(places.re + p), im = load(places.im + p);
+      if (end - p < kLanes) {
+        const Mask kept = lane < int64_t{end - p};
+        re = kept ? re : Vec{};
+        im = kept ? im : Vec{};
+      }
+      Vec power = all(1.0);
+#pragma GCC unroll 16
+      for (int d = 0; d < kFirst; ++d) power = power * t;
+#pragma GCC unroll 16
+      for (int d = 0; d < kCount; ++d) {
+        moment_re[d] = multiply_add(power, re, moment_re[d]);
+        moment_im[d] = multiply_add(power, im, moment_im[d]);
+        power = power * t;
+      }
+    }
+#pragma GCC unroll 16
+    for (int d = 0; d < kRounded; d += kLanes) {
+      store(sum_re + kFirst + d, sums(moment_re + d));
+      store(sum_im + kFirst + d, sums(moment_im + d));
+    }
+    if constexpr (kFirst + kCount < kTerms) {
+      constexpr int kNext = kFirst + kCount, kLeft = kTerms - kNext;
+      add_moments<kNext, (kLeft < kTermsAtOnce ? kLeft : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
+    }
+  }
+
+  // The kernel is a polynomial in t: a run of echoes needs its values once.
+  ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* first) const {
+    alignas(64) double sum_re[kTerms + 2 * kLanes], sum_im[kTerms + 2 * kLanes];
+    add_moments<0, (kTerms < kTermsAtOnce ? kTerms : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
+    Vec re[kVectors] = {}, im[kVectors] = {};
+#pragma GCC unroll 16
+    for (int d = 0; d < kTerms; ++d) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        const Vec coefficient = load(coefficients + (kTerms - 1 - d) * kPadded + v * kLanes);
+        re[v] = multiply_add(coefficient, all(sum_re[d]), re[v]);
+        im[v] = multiply_add(coefficient, all(sum_im[d]), im[v]);
+      }
+    }
+    add_window(re, im, first + places.cell[begin]);
+  }
+
+  void add_runs(const Places& places, int count, double* first) const {
+    for (int begin = 0; begin < count;) {
+      int end = begin + 1;
+      while (end < count && places.cell[end] == places.cell[begin]) ++end;
+      add_run(places, begin, end, first);
+      begin = end;
+    }
+  }
+
+  void add_apart(const Places& places, int count, double* first) const {
+    const int step = (count + kStreams - 1) / kStreams;
+    for (int begin = 0; begin < step; ++begin) {
+      for (int p = begin; p < count; p += step) add_echo(places, p, first);
+    }
+  }
+};
+
+int num_runs(const int32_t* cell, int count) {
+  int changes = 0;
+  for (int p = 1; p < count; ++p) changes += cell[p] != cell[p - 1] ? 1 : 0;
+  return 1 + changes;
+}
+
+// How many echoes each of the cells of a tile has.
+struct CellCounts {
+  int32_t lowest;
+  int num_cells;       // between the lowest and the highest; the rest is void where they are more than kCellsOfTile
+  int num_taken = 0;   // that have echoes
+  int32_t count[kCellsOfTile];
+};
+
+CellCounts count_cells(const int32_t* cell, int count) {
+  int32_t lowest = cell[0], highest = cell[0];
+  for (int p = 1; p < count; ++p) {
+    lowest = cell[p] < lowest ? cell[p] : lowest;
+    highest = cell[p] > highest ? cell[p] : highest;
+  }
+  CellCounts counts;
+  counts.lowest = lowest;
+  counts.num_cells = highest - lowest + 1;
+  if (counts.num_cells > kCellsOfTile) return counts;
+  for (int c = 0; c < counts.num_cells; ++c) counts.count[c] = 0;
+  for (int p = 0; p < count; ++p) ++counts.count[cell[p] - lowest];
+  for (int c = 0; c < counts.num_cells; ++c) counts.num_taken += counts.count[c] != 0 ? 1 : 0;
+  return counts;
+}
+
+// In the order of the cells, equal ones in theirs.
+void bring_together(const Places& places, int count, const CellCounts& counts, Places& sorted) {
+  int32_t next[kCellsOfTile];
+  int32_t sum = 0;
+  for (int c = 0; c < counts.num_cells; ++c) {
+    next[c] = sum;
+    sum += counts.count[c];
+  }
+  for (int p = 0; p < count; ++p) {
+    const int32_t to = next[places.cell[p] - counts.lowest]++;
+    sorted.t[to] = places.t[p];
+    sorted.re[to] = places.re[p];
+    sorted.im[to] = places.im[p];
+    sorted.cell[to] = places.cell[p];
+  }
+}
+
+template <int kWidth>
+void spread_tile(const Spreading& spreading, const Places& places, int count, double* row) {
+  constexpr int kFew = kFewInCell[Spreader<kWidth>::kPadded > 8];
+  const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
+  const int runs = num_runs(places.cell, count);
+  if (runs * kShortRun > count) {
+    const CellCounts counts = count_cells(places.cell, count);
+    if (counts.num_cells <= kCellsOfTile && 2 * counts.num_taken <= runs && counts.num_taken * kFew <= count) {
+      Places sorted;
+      bring_together(places, count, counts, sorted);
+      return spreader.add_runs(sorted, count, row);
+    }
+    if (runs * kFew > count) return spreader.add_apart(places, count, row);
+  }
+  spreader.add_runs(places, count, row);
+}
+
+template <int kWidth>
+void spread_any(const Spreading& spreading, const Places& places, int count, const uint32_t* group, Rows rows) {
+  const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
+  for (int p = 0; p < count; ++p) spreader.add_echo(places, p, rows.first + group[p] * rows.stride);
+}
+
+// By width from the least.
+using SpreadTile = void (*)(const Spreading&, const Places&, int, double*);
+constexpr SpreadTile kSpreadTile[] = {spread_tile<3>,  spread_tile<4>,  spread_tile<5>,  spread_tile<6>,  spread_tile<7>,
+                                      spread_tile<8>,  spread_tile<9>,  spread_tile<10>, spread_tile<11>, spread_tile<12>,
+                                      spread_tile<13>, spread_tile<14>, spread_tile<15>, spread_tile<16>};
+using SpreadAny = void (*)(const Spreading&, const Places&, int, const uint32_t*, Rows);
+constexpr SpreadAny kSpreadAny[] = {spread_any<3>,  spread_any<4>,  spread_any<5>,  spread_any<6>,  spread_any<7>,
+                                    spread_any<8>,  spread_any<9>,  spread_any<10>, spread_any<11>, spread_any<12>,
+                                    spread_any<13>, spread_any<14>, spread_any<15>, spread_any<16>};
+
+void spread(const Spreading& spreading, const Carriers& carriers, Rows rows) {
+  Places places;
+  for (int p = 0; p < carriers.count; p += kLanes) {
+    locate(spreading, load(carriers.frequency + p), p, places);
+    store(places.re + p, load(carriers.re + p));
+    store(places.im + p, load(carriers.im + p));
+  }
+  kSpreadAny[spreading.width - NufftKernel::kMinWidth](spreading, places, carriers.count, carriers.group, rows);
+}
+
+// Places of a tile at kChirps chirps from `chirp`, which interpolate between the same nodes.
+template <int kChirps>
+ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, int chirp,
+                                Places* places) {
+  constexpr int kRow = 3 * TileAtChirps::kLanes;  // doubles of one node
+  const double* value = tile.value + chirp * tile.order;
+  const double* slope = tile.slope + chirp * tile.order;
+  for (int p = 0; p < tile.count; p += kLanes) {
+    const int vector = p / TileAtChirps::kLanes;
+    const double* node = tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_node[chirp]) * kRow +
+                         p % TileAtChirps::kLanes;
+    Vec delay[kChirps] = {}, rate[kChirps] = {}, re[kChirps] = {}, im[kChirps] = {};
+    for (int k = 0; k < tile.order; ++k, node += kRow) {
+      const Vec d = load(node), r = load(node + TileAtChirps::kLanes), i = load(node + 2 * TileAtChirps::kLanes);
+#pragma GCC unroll 4
+      for (int c = 0; c < kChirps; ++c) {
+        const Vec weight = all(value[c * tile.order + k]);
+        delay[c] = multiply_add(weight, d, delay[c]);
+        rate[c] = multiply_add(all(slope[c * tile.order + k]), d, rate[c]);
+        re[c] = multiply_add(weight, r, re[c]);
+        im[c] = multiply_add(weight, i, im[c]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int c = 0; c < kChirps; ++c) {
+      const Carrier carrier = carrier_of(model, delay[c], rate[c], re[c], im[c]);
+      locate(spreading, carrier.frequency, p, places[c]);
+      store(places[c].re + p, carrier.re);
+      store(places[c].im + p, carrier.im);
+    }
+  }
+}
+
+bool same_nodes(const TileAtChirps& tile, int chirp, int count) {
+  for (int c = 1; c < count; ++c) {
+    if (tile.first_node[chirp + c] != tile.first_node[chirp]) return false;
+  }
+  return true;
+}
+
+void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
+              int64_t chirp_stride) {
+  Places places[TileAtChirps::kMaxChirps];
+  for (int chirp = 0; chirp < tile.num_chirps;) {
+    if (chirp + kChirpsAtOnce <= tile.num_chirps && same_nodes(tile, chirp, kChirpsAtOnce)) {
+      place_tile<kChirpsAtOnce>(model, spreading, tile, chirp, places + chirp);
+      chirp += kChirpsAtOnce;
+    } else {
+      place_tile<1>(model, spreading, tile, chirp, places + chirp);
+      ++chirp;
+    }
+  }
+  for (int chirp = 0; chirp < tile.num_chirps; ++chirp) {
+    kSpreadTile[spreading.width - NufftKernel::kMinWidth](spreading, places[chirp], tile.count, rows + chirp * chirp_stride);
+  }
+}
+
+}  // namespace
+
+extern const SignalKernels kKernels;
+const SignalKernels kKernels = {modulate, spread, add_tile};
+
+}  // namespace echopath::ECHOPATH_KERNELS

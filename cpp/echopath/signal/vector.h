@@ -1,0 +1,71 @@
+// Vectors of ECHOPATH_LANES doubles, for kernels_body.h alone (no include guard: once per instruction set).
+#include <cstdint>
+#if defined(__FMA__)
+#include <immintrin.h>
+#endif
+
+#include "echopath/base/simd.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+
+constexpr int kLanes = ECHOPATH_LANES;
+typedef double Vec __attribute__((vector_size(8 * kLanes)));
+typedef double UnalignedVec __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
+typedef int64_t Mask __attribute__((vector_size(8 * kLanes)));
+typedef int32_t Cells __attribute__((vector_size(4 * kLanes)));
+typedef int32_t UnalignedCells __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
+
+ECHOPATH_INLINE Vec load(const double* from) { return *reinterpret_cast<const UnalignedVec*>(from); }
+ECHOPATH_INLINE void store(double* to, Vec x) { *reinterpret_cast<UnalignedVec*>(to) = x; }
+ECHOPATH_INLINE Vec all(double x) { return x - Vec{}; }
+ECHOPATH_INLINE Mask bits(Vec x) { return reinterpret_cast<Mask>(x); }
+ECHOPATH_INLINE Vec from_bits(Mask x) { return reinterpret_cast<Vec>(x); }
+
+// a * b + c; which roundings it has is the compiler's choice.
+ECHOPATH_INLINE Vec multiply_add(Vec a, Vec b, Vec c) { return a * b + c; }
+
+// a * b + c where c is nearly -a * b: the product is not rounded before c is added.
+ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
+#if ECHOPATH_LANES == 8
+  return _mm512_fmadd_pd(a, b, c);
+#elif ECHOPATH_LANES == 4
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  // Without a fused operation: the product's own error by halves of 26 bits (Dekker 1971).
+  constexpr double kSplit = 134217729.0;  // 2^27 + 1
+  const Vec big_a = a * kSplit, big_b = b * kSplit;
+  const Vec ah = big_a - (big_a - a), bh = big_b - (big_b - b);
+  const Vec al = a - ah, bl = b - bh;
+  const Vec product = a * b;
+  const Vec error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+  return (product + c) + error;
+#endif
+}
+
+// Lane i of the result is the sum of all lanes of x[i].
+ECHOPATH_INLINE Vec sums(const Vec* x) {
+#if ECHOPATH_LANES == 8
+  Vec pair[4], four[2];
+  for (int i = 0; i < 4; ++i) {
+    pair[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{0, 8, 2, 10, 4, 12, 6, 14}) +
+              __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{1, 9, 3, 11, 5, 13, 7, 15});
+  }
+  for (int i = 0; i < 2; ++i) {
+    four[i] = __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{0, 1, 8, 9, 4, 5, 12, 13}) +
+              __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{2, 3, 10, 11, 6, 7, 14, 15});
+  }
+  return __builtin_shuffle(four[0], four[1], Mask{0, 1, 2, 3, 8, 9, 10, 11}) +
+         __builtin_shuffle(four[0], four[1], Mask{4, 5, 6, 7, 12, 13, 14, 15});
+#elif ECHOPATH_LANES == 4
+  Vec pair[2];
+  for (int i = 0; i < 2; ++i) {
+    pair[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{0, 4, 2, 6}) +
+              __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{1, 5, 3, 7});
+  }
+  return __builtin_shuffle(pair[0], pair[1], Mask{0, 1, 4, 5}) + __builtin_shuffle(pair[0], pair[1], Mask{2, 3, 6, 7});
+#else
+  return Vec{x[0][0], x[1][0]} + Vec{x[0][1], x[1][1]};
+#endif
+}
+
+}  // namespace echopath::ECHOPATH_KERNELS

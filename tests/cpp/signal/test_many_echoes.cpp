@@ -1,0 +1,166 @@
+// The NUFFT as it adds many moving echoes: sorted, in tiles, by moments of cells. Truth is the direct sum in double.
+#include <gtest/gtest.h>
+
+#include "cpp/signal/slow_sum.h"
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+using testing::Complex;
+
+// Of the direct sum itself: 512 samples of phase, relative to the sum of |a|.
+constexpr double kDirectRounding = 1e-12;
+constexpr double kAdditivity = 1e-12;
+constexpr double kWeakEchoDb = 0.1;
+
+ChirpSequence few_chirps(int num_chirps = 7) {
+  ChirpSequence w = testing::reference_waveform();
+  w.num_chirps = num_chirps;  // one group of four that share nodes, and three that do not fill one
+  return w;
+}
+
+double cell_delay(const ChirpSequence& w) { return w.sampling_rate / w.slope() / (2 * w.num_samples); }
+
+// Straight motion between two nodes: what replay hands over, with one polynomial for all chirps.
+Echoes two_node_echoes(const ChirpSequence& w, const std::vector<double>& delay, const std::vector<double>& drift,
+                       const std::vector<Complex>& amplitude) {
+  Echoes echoes;
+  echoes.num_echoes = static_cast<int64_t>(delay.size());
+  echoes.sampling.num_nodes = echoes.sampling.order = 2;
+  echoes.sampling.first_node.assign(w.num_chirps, 0);
+  const double span = w.num_chirps * w.chirp_interval;
+  for (int j = 0; j < w.num_chirps; ++j) {
+    const double x = (j + 0.5) / w.num_chirps;
+    echoes.sampling.value.insert(echoes.sampling.value.end(), {1.0 - x, x});
+    echoes.sampling.slope.insert(echoes.sampling.slope.end(), {-1.0 / span, 1.0 / span});
+  }
+  echoes.delay = delay;
+  for (size_t p = 0; p < delay.size(); ++p) echoes.delay.push_back(delay[p] + drift[p]);
+  echoes.amplitude = amplitude;
+  for (const Complex& a : amplitude) echoes.amplitude.push_back(a * Complex(0.9, 0.1));
+  return echoes;
+}
+
+// Echoes over `cells` cells from a delay on, each drifting at random by up to `drift` cells over the frame.
+Echoes crowd(const ChirpSequence& w, int count, double from, double cells, double drift) {
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<double> delay, drifts;
+  std::vector<Complex> amplitude;
+  for (int p = 0; p < count; ++p) {
+    delay.push_back(from + cells * cell_delay(w) * unit(random));
+    drifts.push_back(drift * cell_delay(w) * (2.0 * unit(random) - 1.0));
+    amplitude.push_back(std::polar(std::pow(10.0, -2.0 * unit(random)), 6.283 * unit(random)));
+  }
+  return two_node_echoes(w, delay, drifts, amplitude);
+}
+
+double rms_error(const std::vector<Complex>& actual, const std::vector<Complex>& expected, double scale) {
+  double sum = 0.0;
+  for (size_t i = 0; i < actual.size(); ++i) sum += std::norm(actual[i] - expected[i]);
+  return std::sqrt(sum / static_cast<double>(actual.size())) / scale;
+}
+
+double error_against_direct(const ChirpSequence& w, const Echoes& echoes, double tolerance) {
+  const auto direct = testing::synthesize(w, echoes, {.method = Method::kDirect});
+  const auto nufft = testing::synthesize(w, echoes, {tolerance, Method::kNufft});
+  const std::vector<Complex> first(echoes.amplitude.begin(), echoes.amplitude.begin() + echoes.num_echoes);
+  return rms_error(nufft, direct, testing::sum_of_magnitudes(first));
+}
+
+TEST(ManyEchoes, NufftHoldsItsToleranceHoweverCrowdedAndMixedTheCellsAre) {
+  const ChirpSequence w = few_chirps();
+  struct Case { int count; double from, cells, drift; };
+  const double middle = 500 * cell_delay(w);
+  for (const Case& c : {Case{1, middle, 1, 0}, Case{9, middle, 1, 0}, Case{300, middle, 0.5, 0}, Case{1500, middle, 5, 0},
+                        Case{1500, middle, 5, 3}, Case{700, 1e-9, 1000, 5}, Case{600, middle, 150, 0.3}}) {
+    for (const double tolerance : {1e-1, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
+      EXPECT_LT(error_against_direct(w, crowd(w, c.count, c.from, c.cells, c.drift), tolerance), 1.1 * tolerance + kDirectRounding)
+          << c.count << " echoes in " << c.cells << " cells, tolerance " << tolerance;
+    }
+  }
+}
+
+TEST(ManyEchoes, CellEdgesAndEndsOfTheRangeAreAsGood) {
+  const ChirpSequence w = few_chirps();
+  std::vector<double> delay;
+  for (int cell = 0; cell <= 1024; ++cell) {
+    for (const double off : {-1e-12, 0.0, 1e-12}) delay.push_back((cell + off) * cell_delay(w));
+    delay.push_back((cell + 0.5) * cell_delay(w));  // where the kernel of an odd width changes its cell
+  }
+  const std::vector<double> rest(delay.size());
+  const Echoes echoes = two_node_echoes(w, delay, rest, std::vector<Complex>(delay.size(), 1.0));
+  for (const double tolerance : {1e-4, 1e-6, 1e-7, 1e-10}) {
+    EXPECT_LT(error_against_direct(w, echoes, tolerance), tolerance) << tolerance;
+  }
+}
+
+// The strong echoes drown the weak one only by the tolerance, which is relative to their sum.
+TEST(ManyEchoes, EchoAHundredDecibelsDownKeepsItsLevel) {
+  const ChirpSequence w = few_chirps(1);
+  Echoes strong = crowd(w, 200, 300 * cell_delay(w), 3, 0);
+  for (Complex& a : strong.amplitude) a /= 200.0;
+  const Echoes weak = two_node_echoes(w, {700.3 * cell_delay(w)}, {0.0}, {1e-5});
+  const SynthesisOptions options{1e-9, Method::kNufft};
+  Synthesizer both(w, 1, 1, 201, options);
+  both.add(0, strong);
+  both.add(0, weak);
+  const auto sum = both.cube();
+  const auto expected_strong = testing::synthesize(w, strong, {.method = Method::kDirect});
+  const auto expected_weak = testing::synthesize(w, weak, {.method = Method::kDirect});
+  Complex correlation;
+  double energy = 0.0;
+  for (size_t i = 0; i < sum.size(); ++i) {
+    correlation += (sum[i] - expected_strong[i]) * std::conj(expected_weak[i]);
+    energy += std::norm(expected_weak[i]);
+  }
+  EXPECT_NEAR(20.0 * std::log10(std::abs(correlation) / energy), 0.0, kWeakEchoDb);
+}
+
+TEST(ManyEchoes, GroupsOfACrowdAddUpToIt) {
+  const ChirpSequence w = few_chirps();
+  Echoes echoes = crowd(w, 3000, 400 * cell_delay(w), 12, 1);
+  const auto whole = testing::synthesize(w, echoes, {.method = Method::kNufft});
+  for (int p = 0; p < 3000; ++p) echoes.group.push_back(static_cast<uint32_t>(p * 7919 % 5));
+  Synthesizer parts(w, 1, 5, 3000, {.method = Method::kNufft});
+  parts.add(0, echoes);
+  std::vector<Complex> sum(whole.size());
+  for (int g = 0; g < 5; ++g) {
+    const auto part = parts.cube(g);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+  }
+  EXPECT_LT(testing::largest_difference(sum, whole), kAdditivity * 3000);
+}
+
+TEST(ManyEchoes, BlocksAtOnceEqualBlocksOneByOne) {
+  const ChirpSequence w = few_chirps();
+  const std::vector<Echoes> blocks = {crowd(w, 900, 400 * cell_delay(w), 12, 1), crowd(w, 500, 405 * cell_delay(w), 12, 1),
+                                      testing::static_echoes(w.num_chirps, {1e-7, 2e-7}, {1.0, 0.5}),
+                                      crowd(w, 70, 390 * cell_delay(w), 2, 0)};
+  Synthesizer at_once(w, 1, 1, 1472, {.method = Method::kNufft}), one_by_one(w, 1, 1, 1472, {.method = Method::kNufft});
+  at_once.add(0, blocks);
+  for (const Echoes& block : blocks) one_by_one.add(0, block);
+  EXPECT_LT(testing::largest_difference(at_once.cube(), one_by_one.cube()), kAdditivity * 1472);
+}
+
+TEST(ManyEchoes, SameBitsForAnyNumberOfThreads) {
+  const ChirpSequence w = few_chirps(41);
+  const std::vector<Echoes> moving = {crowd(w, 2000, 400 * cell_delay(w), 12, 4), crowd(w, 2000, 405 * cell_delay(w), 300, 1)};
+  Echoes still = testing::static_echoes(w.num_chirps, moving[1].delay, moving[1].amplitude);
+  still.num_echoes = 4000;
+  std::vector<std::vector<Complex>> cubes;
+  for (const int threads : {1, 2, 5}) {
+    set_num_threads(threads);
+    Synthesizer synthesizer(w, 1, 1, 8000);
+    synthesizer.add(0, moving);
+    synthesizer.add(0, still);
+    cubes.push_back(synthesizer.cube());
+  }
+  set_num_threads(0);
+  EXPECT_EQ(cubes[0], cubes[1]);
+  EXPECT_EQ(cubes[0], cubes[2]);
+}
+
+}  // namespace
+}  // namespace echopath

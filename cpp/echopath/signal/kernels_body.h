@@ -109,10 +109,10 @@ struct Spreader {
     Mask lane;
     for (int i = 0; i < kLanes; ++i) lane[i] = i;
     for (int p = begin; p < end; p += kLanes) {
-      const Vec t = load(places.t + p);
-      Vec re = load(places.re + p), im = load(places.im + p);
+      Vec t = load(places.t + p), re = load(places.re + p), im = load(places.im + p);
       if (end - p < kLanes) {
         const Mask kept = lane < int64_t{end - p};
+        t = kept ? t : Vec{};
         re = kept ? re : Vec{};
         im = kept ? im : Vec{};
       }

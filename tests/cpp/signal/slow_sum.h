@@ -99,7 +99,10 @@ inline std::vector<Complex> synthesize(const ChirpSequence& w, const Echoes& ech
 
 inline double largest_difference(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   double largest = a.size() == b.size() ? 0.0 : INFINITY;
-  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const double difference = std::abs(a[i] - b[i]);
+    if (!(difference <= largest)) largest = difference;  // what is not a number stays
+  }
   return largest;
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "cpp/signal/slow_sum.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/echo_tiles.h"
@@ -13,12 +15,18 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // of sums of a thousand numbers in another order
 
+// Leaves not-a-numbers where the next call has its local arrays.
+[[gnu::noinline]] void spoil_stack() {
+  volatile double garbage[8192];
+  for (volatile double& value : garbage) value = std::numeric_limits<double>::quiet_NaN();
+}
+
 // The picked instruction set, which the environment chooses, against the plainest one.
 TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
   ChirpSequence w = testing::reference_waveform();
   w.num_chirps = 4;
   const CarrierModel model(w, w.num_samples / 2);
-  const Echoes echoes = testing::exact_echoes(w, testing::MovingPoints(1000, 3, 20.0, 24.0));
+  const Echoes echoes = testing::exact_echoes(w, testing::MovingPoints(1003, 3, 20.0, 24.0));
   EchoTiles tiles;
   tiles.assign(std::span(&echoes, 1), 1, w.sampling_rate / w.slope());
   for (int width = NufftKernel::kMinWidth; width <= NufftKernel::kMaxWidth; ++width) {
@@ -30,16 +38,16 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
       for (const EchoTiles::Tile& tile : tiles.tiles()) {
         const TileAtChirps at{tiles.nodes(tile), tile.count, echoes.sampling.num_nodes, echoes.sampling.order, 4,
                               echoes.sampling.first_node.data(), echoes.sampling.value.data(), echoes.sampling.slope.data()};
+        spoil_stack();
         (i == 0 ? kernels_baseline::kKernels : signal_kernels()).add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
       }
     }
-    double largest = 0.0, difference = 0.0;
+    double largest = 0.0;
     for (size_t i = 0; i < rows[0].size(); ++i) {
       largest = std::max(largest, std::abs(rows[0][i]));
-      difference = std::max(difference, std::abs(rows[0][i] - rows[1][i]));
+      ASSERT_NEAR(rows[1][i], rows[0][i], kRounding * 1000) << width << " on " << name_of(instruction_set());
     }
     EXPECT_GT(largest, 0.1);
-    EXPECT_LT(difference, kRounding * 1000) << width << " on " << name_of(instruction_set());
   }
 }
 

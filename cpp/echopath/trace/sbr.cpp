@@ -95,8 +95,13 @@ bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ray.leg_length += surface.point.distance;
   if (has_smooth_ && ray.coherent) follow_tube(ray, surface);
   surface.material = scene_.node_of(surface.point.hit.mesh_id).material.get();
-  surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence,
-                             polarization_mode(settings_.polarization, ray.direction, surface.point.normal));
+  const PolarizationMode mode = polarization_mode(settings_.polarization, ray.direction, surface.point.normal);
+  surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence, mode);
+  if (!surface.material->mirror) {
+    const bool is_dielectric = surface.material->permittivity.has_value();
+    ray.has_dielectric_tm |= is_dielectric && mode == PolarizationMode::kTm;
+    ray.has_odd_conductors ^= !is_dielectric;
+  }
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
   return true;
 }

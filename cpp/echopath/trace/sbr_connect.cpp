@@ -57,13 +57,17 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   else connect_diffuse(ray, surface, scratch, block);
 }
 
+// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h), which point opposite ways where a wave turns back, so
+// that what comes back to the radar changes its sign once: at normal incidence TE and TM then are the same. Conductors
+// count as TE at every angle: an odd number of them has made that change.
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
   const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence) * surface.point.stretch;
+  const double sign = ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0;
   // Polarised, all coefficients are in the matrix.
   const std::complex<double> scalar =
-      settings_.is_polarized ? 1.0 : ray.coefficient * surface.response.gamma * surface.response.coherent;
+      settings_.is_polarized ? 1.0 : ray.coefficient * surface.response.gamma * surface.response.coherent * sign;
   const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field_factor * scalar * launch_area;
   for (const Leg& leg : scratch.receive) {
     const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);

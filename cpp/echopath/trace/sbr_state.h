@@ -37,6 +37,8 @@ struct RayShooter::Ray {
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
   FieldPair polarized;                     // likewise of vectors, where polarised
+  // Of the unflagged bounces so far; tells the sign of what comes back (sbr_connect.cpp).
+  bool has_dielectric_tm = false, has_odd_conductors = false;
   // What a field has beside its coefficients: 1/q of every bounce, j of every caustic; regime C.
   std::complex<double> field_factor = 1.0;
   RayDifferential rays;       // regime C, where the scene has smooth meshes

@@ -96,6 +96,24 @@ TEST(Polarization, ModelsAgreeAtNormalIncidence) {
   }
 }
 
+// Rays about the normal meet both modes, whose coefficients differ in sign there: the echo is Fresnel's all the same.
+TEST(Polarization, DielectricPlateReflectsWithFresnelsCoefficientInBothModels) {
+  const auto earth = std::make_shared<Material>();
+  earth->permittivity = std::complex<double>(4.0, 0.0);
+  for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
+    std::complex<double> sums[2];
+    for (const bool metal : {false, true}) {
+      Scene scene;
+      add_rectangle(scene, "plate", {50, -.05, -.05}, {0, .1, 0}, {0, 0, .1}, metal ? share(Material::metal()) : earth);
+      TraceSettings settings;
+      settings.num_rays = 5000;
+      settings.polarization = model;
+      sums[metal] = coherent_sum(trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings));
+    }
+    EXPECT_NEAR(std::abs(sums[0] / sums[1] - 1.0 / 3.0), 0.0, 1e-5);  // (1 - 2) / (1 + 2) over -1
+  }
+}
+
 TEST(Polarization, ScalarTraceKeepsNoMatrix) {
   Scene scene;
   add_rectangle(scene, "plate", {50, -.05, -.05}, {0, .1, 0}, {0, 0, .1}, share(Material::metal()));

@@ -5,14 +5,13 @@ import dataclasses
 import json
 from contextlib import contextmanager
 
-import h5py
 import numpy as np
 
 import echopath as ep
 
 from ..files import written_whole
 from ..simulate import Frame, with_spectra
-from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts
+from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
@@ -86,7 +85,7 @@ def left_out(path) -> LeftOut:
 @contextmanager
 def _new_file(path):
     """A new HDF5 file of ours that takes its place when the block ends well."""
-    with written_whole(path) as temporary, h5py.File(temporary, "w") as file:
+    with written_whole(path) as temporary, writing(temporary) as file:
         file.attrs["format"] = FORMAT
         file.attrs["schema_version"] = SCHEMA_VERSION
         file.attrs["software_version"] = ep.__version__

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import os
 from contextlib import contextmanager
 
 import h5py
@@ -12,8 +13,36 @@ import echopath as ep
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 CHUNK_BYTES = 1 << 20   # of compression and of check sums
 SMALL_BYTES = 1 << 12   # below it a dataset is one piece without compression
+SPARE_BYTES = 1 << 18   # kept free beyond each dataset, for what HDF5 writes about it and the groups that follow
 
 _TEXT = h5py.string_dtype("utf-8")
+
+
+@contextmanager
+def writing(path):
+    """A new HDF5 file at `path`, open for writing, which has its space before anything is written to it.
+
+    HDF5 cannot give up a file that it fails to write: the process would end with a crash. So a full disk is told here, by
+    an OSError, and the file is cut to its size at the end.
+    """
+    _take_space(path)
+    with h5py.File(path, "w") as file:
+        _reserve(file, 0)
+        yield file
+        file.flush()
+        size = file.id.get_filesize()
+    os.truncate(path, size)
+
+
+def _take_space(path) -> None:
+    with open(path, "wb") as file:
+        os.posix_fallocate(file.fileno(), 0, SPARE_BYTES)
+
+
+def _reserve(group, num_bytes: int) -> None:
+    """Space on the disk for a dataset of `num_bytes` at the end of the file; raises OSError where there is none."""
+    file = group.file.id
+    os.posix_fallocate(file.get_vfd_handle(), file.get_filesize(), num_bytes + num_bytes // 64 + SPARE_BYTES)
 
 
 def write_array(group, name: str, values, *, unit: str = "", compress: bool = False) -> None:
@@ -27,6 +56,7 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
         options = {"chunks": _chunks(values.shape, values.itemsize), "fletcher32": True}
         if compress:
             options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    _reserve(group, values.nbytes)
     dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
     dataset.attrs["unit"] = unit
     for rows in _row_blocks(values.shape, values.itemsize):
@@ -37,6 +67,7 @@ def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
     """Writes arrays of one shape as one array [N, ...], one after the other."""
     shape = (len(arrays), *arrays[0].shape)
     dtype = arrays[0].dtype
+    _reserve(group, sum(values.nbytes for values in arrays))
     dataset = group.create_dataset(name, shape=shape, dtype=dtype, fletcher32=True,
                                    chunks=_chunks(shape, dtype.itemsize))
     dataset.attrs["unit"] = unit

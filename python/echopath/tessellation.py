@@ -10,6 +10,7 @@ import warnings
 import numpy as np
 
 from . import _core
+from .lost_rays import warn_of_lost_rays
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
 EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
@@ -194,7 +195,9 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
 
 def trace(scene, radar, **settings):
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
-    return _core.trace(scene, radar, **settings)
+    paths = _core.trace(scene, radar, **settings)
+    warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
+    return paths
 
 
 def rcs(scene, **settings):
@@ -207,3 +210,4 @@ def rcs(scene, **settings):
 for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):
     _function.__doc__ = (_of_core.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB, "
                          "with the edge length in m that would do.")
+trace.__doc__ += " Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches."

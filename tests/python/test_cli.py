@@ -75,6 +75,7 @@ def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
     assert "2 elements, 2 across x 1 up, 0.517 wavelengths across" in info and "overlaps, gaps" in info
 
 
+@pytest.mark.hard
 def test_run_twice_gives_the_same_bytes(scene_path, tmp_path):
     for out in ("one", "two"):
         assert call("run", scene_path, "--out", tmp_path / out).returncode == 0
@@ -149,6 +150,7 @@ def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("delay", [0.0, 0.7])
 def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path, delay):
     leader, follower = os.openpty()

@@ -136,6 +136,7 @@ def test_each_caustic_turns_a_field_by_a_quarter(shape, distance):
     assert abs(echo_over_integral(shape, distance) - 1) < CAUSTIC_TOLERANCE
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("shape, distance", [("trough", .4), ("dish", .4), ("dish", .93)])
 def test_the_echo_at_a_focus_is_rough_but_finite(shape, distance):
     assert 1 / FOCUS_FACTOR < abs(echo_over_integral(shape, distance)) < FOCUS_FACTOR

@@ -89,6 +89,7 @@ def seconds_to_stop(work) -> float:
     return 0.0
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_stops_work_on_a_large_record(ctrl_c_is_heard, paths, tmp_path_factory, name):
     folder = tmp_path_factory.getbasetemp()
@@ -105,6 +106,7 @@ def heed_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("delay", [0.08, 0.15, 0.25, 0.4])
 def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):
     arguments = [sys.executable, "-X", "importtime", "-m", "echopath", "demo", "--out", str(tmp_path / "out")]

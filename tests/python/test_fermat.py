@@ -153,6 +153,7 @@ def test_paths_without_such_points_keep_their_bits():
     assert np.array_equal(paths.amplitudes(times, replay="fermat"), paths.amplitudes(times))
 
 
+@pytest.mark.hard
 def test_moved_points_have_the_same_bits_for_any_number_of_threads():
     radar = frame_radar(num_chirps=8, receivers=[TRANSMITTER, (0, 0.002, 0)])
     paths = ep.trace(room(), radar, num_rays=3000)

@@ -263,6 +263,7 @@ def test_files_that_contradict_themselves_are_refused(saved, name):
     refuse(saved, reason)
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("name", ["record/paths/weight", "record/hits/u", "signal/cube"])
 def test_a_flipped_bit_is_noticed(saved, name):
     with h5py.File(saved) as file:
@@ -273,6 +274,7 @@ def test_a_flipped_bit_is_noticed(saved, name):
     refuse(saved, "damaged")
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
 def test_a_truncated_file_is_refused(saved, share):
     content = saved.read_bytes()
@@ -280,6 +282,7 @@ def test_a_truncated_file_is_refused(saved, share):
     refuse(saved, "damaged")
 
 
+@pytest.mark.hard
 def test_an_interrupted_write_leaves_the_old_file_alone(frame, saved, monkeypatch):
     before = saved.read_bytes()
 
@@ -293,6 +296,7 @@ def test_an_interrupted_write_leaves_the_old_file_alone(frame, saved, monkeypatc
     assert [path.name for path in saved.parent.iterdir()] == ["frame.h5"]
 
 
+@pytest.mark.hard
 def test_a_folder_that_cannot_be_made_is_a_file_error(frame, tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(ep.FileError, match="cannot be written"):
@@ -305,6 +309,7 @@ def test_a_negative_power_is_refused(frame, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.hard
 def test_an_empty_scene_is_written_and_read(tmp_path):
     paths = ep.trace(ep.Scene(), make_radar(), num_rays=100)
     paths.save(tmp_path / "empty.h5")

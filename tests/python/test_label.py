@@ -159,6 +159,7 @@ def test_partition_is_disjoint_and_complete(make_paths):
     assert {name: part.num_paths for name, part in split.items()} == dict(zip(names, np.bincount(wanted)))
 
 
+@pytest.mark.hard
 def test_no_paths_give_no_bits(make_paths):
     paths = make_paths([])
     assert matches("T . R", paths).shape == (0,)

@@ -109,6 +109,7 @@ def test_a_metal_sphere_over_ground(model, polarization):
     assert found == pytest.approx(SPHERE_OVER_METAL, abs=FOUR_PATH_TOLERANCE_DB)
 
 
+@pytest.mark.hard
 @both_models_of_metal_ground
 def test_a_metal_sphere_in_a_null_of_the_ground(model, polarization):
     found = four_over_direct(sphere((100, 0, .8), .1, 5), ground(MIRROR), .5, 1 << 15, True, model, polarization)
@@ -155,6 +156,7 @@ def test_the_pair_of_ghosts_fades_over_the_baseline(baseline, model):
 
 
 # Lambert walls of a sphere light each other evenly: lambda^2 rho / (4 pi^2 R^2 (1 - rho)) between two points inside.
+@pytest.mark.hard
 @pytest.mark.parametrize("rho, max_bounces", [(.3, 20), (.7, 60)])
 def test_an_integrating_sphere_conserves_energy(rho, max_bounces):
     radius = 3.0
@@ -197,6 +199,7 @@ def test_a_dielectric_dihedral_reflects_by_its_polarisation(polarization, expect
     assert found == pytest.approx(expected, abs=COEFFICIENT_TOLERANCE_DB)
 
 
+@pytest.mark.hard
 def test_the_deepest_diffuse_paths_have_finite_weights():
     scene = scene_of(shell=(sphere((0, 0, 0), 30.0, 2), lambert(1.0)))
     paths = ep.trace(scene, make_radar((0, 0, 0), (.7, .4, -.3)), num_rays=50, max_bounces=64)

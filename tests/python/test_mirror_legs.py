@@ -105,6 +105,7 @@ def test_targets_behind_a_rough_mirror_leave_its_own_echo_as_it_is():
     assert np.sum(np.abs(paths.select("T D'floor' R").amplitude) ** 2) == pytest.approx(expected, rel=CLUTTER_TOLERANCE)
 
 
+@pytest.mark.hard
 @pytest.mark.parametrize("images", [2, 3, 4, 6])
 def test_a_wedge_shows_its_images(images):
     """Angle pi / n, seen from its bisector: two images over each number of bounces below n, one behind the edge over n."""
@@ -121,6 +122,7 @@ def test_a_wedge_shows_its_images(images):
         assert lengths[here] == pytest.approx(2 * distance * math.sin(bounces * half))
 
 
+@pytest.mark.hard
 def test_many_bounces_between_mirrors_start_with_the_short_paths():
     # Eight mirrors and 64 bounces: more sequences than can be tried.
     walls = {"-x": ((-4, -3, -2), (0, 6, 0), (0, 0, 4)), "+x": ((4, -3, -2), (0, 6, 0), (0, 0, 4)),

@@ -315,6 +315,7 @@ def test_place_and_length_of_directions_do_not_matter():
     assert abs(decibel(far / near)) < 0.01  # dB: rounding moves hits by nanometres
 
 
+@pytest.mark.hard
 def test_rows_are_the_single_results_and_bits_repeat():
     directions = in_plane([0, 10, 50])
     keywords = dict(frequency=FREQUENCY, num_rays=3000, max_bounces=2)
@@ -331,6 +332,7 @@ def test_rows_are_the_single_results_and_bits_repeat():
         ep.set_num_threads(threads)
 
 
+@pytest.mark.hard
 def test_a_target_seen_edge_on_returns_nothing():
     assert ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(0, 1, 0), num_rays=1000) == 0.0
 

@@ -173,6 +173,7 @@ def rotor_scene(rate, radius):
     return scene
 
 
+@pytest.mark.hard
 def test_fast_rotor_has_the_delay_of_every_sample():
     """Blade tip of 0.3 m at 800 rad/s: the signal of one path is the phase model at every sample, its delay that of the circle."""
     rate, radius = 800.0, 0.3
@@ -198,6 +199,7 @@ def test_fast_rotor_has_the_delay_of_every_sample():
     assert phase_error("interpolated") > 0.04
 
 
+@pytest.mark.hard
 def test_static_scene_has_identical_chirps():
     scene = ep.Scene()
     scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1))
@@ -208,6 +210,7 @@ def test_static_scene_has_identical_chirps():
     assert np.array_equal(cube, np.broadcast_to(cube[:, :, :1], cube.shape))
 
 
+@pytest.mark.hard
 def test_parts_add_up_to_the_whole():
     radar = make_radar(receivers=[(0, 0.01, 1), (0, 0.02, 1)])
     paths = ep.trace(walking_scene(), radar, num_rays=5000)
@@ -228,6 +231,7 @@ def test_partition_is_disjoint_and_complete():
     assert paths.select(~ep.hits("wall")).num_paths == paths.num_paths - parts["wall"].num_paths
 
 
+@pytest.mark.hard
 def test_the_chain_has_the_same_bits_for_any_number_of_threads():
     radar = make_radar(num_chirps=16)
     cubes = []

@@ -57,6 +57,7 @@ def test_what_comes_in_the_way_takes_its_echoes_out():
     assert np.all(np.diff(between) <= 1e-3 * never.max())
 
 
+@pytest.mark.hard
 def test_a_scene_at_rest_keeps_its_bits():
     radar = radar_of(num_chirps=12)
     scene = ep.Scene()
@@ -136,6 +137,7 @@ def test_parts_of_renewed_frames_add_up():
     assert np.abs(sum(parts.values()) - whole).max() < 1e-12 * np.abs(whole).max()
 
 
+@pytest.mark.hard
 def test_bits_do_not_depend_on_threads():
     radar = radar_of(num_chirps=16)
     paths = ep.trace(sliding_scene(), radar, num_rays=20000, max_bounces=2)

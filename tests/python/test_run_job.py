@@ -13,6 +13,7 @@ LONG = 20.0  # s, longer than any test waits
 HALF_A_SECOND = 0.5  # s, the promise for Ctrl-C
 
 
+@pytest.mark.hard
 def test_ctrl_c_stops_a_job_within_half_a_second(ctrl_c_is_heard):
     sent = []
 

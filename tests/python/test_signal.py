@@ -54,11 +54,13 @@ def test_moving_echoes_equal_the_exact_phase_up_to_the_model_error(method):
     assert 0.004 < error < 2 * 0.0081  # 2 pi slope taudot (Tc / 2)^2 = 0.0080 rad for each
 
 
+@pytest.mark.hard
 def test_no_echoes_give_zeros():
     samples = _core.synthesize_echoes(reference(), np.zeros((1, 0)), np.zeros((1, 0)))
     assert samples.shape == (16, 512) and not samples.any()
 
 
+@pytest.mark.hard
 def test_bits_do_not_depend_on_threads():
     random = np.random.default_rng(1)
     delays = 2 * (5 + 60 * random.random((16, 500))) / C

@@ -36,6 +36,7 @@ def chains(paths):
         yield [paths.hits[k] for k in range(offset, offset + count)]
 
 
+@pytest.mark.hard
 def test_recorded_hits_are_those_of_a_slow_loop():
     soup = triangle_soup(seed=3)
     paths = ep.trace(soup_scene(soup, reflectivity=0.5, scattering=0.6), make_radar(), num_rays=3000, max_bounces=3)
@@ -62,6 +63,7 @@ def test_recorded_hits_are_those_of_a_slow_loop():
     assert checked > 500
 
 
+@pytest.mark.hard
 def test_every_path_ends_in_view_of_the_receiver():
     soup = triangle_soup(seed=4)
     radar = make_radar()
@@ -108,6 +110,7 @@ def test_arrays_give_the_paths_back():
         ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)
 
 
+@pytest.mark.hard
 def test_empty_scene_gives_zeros():
     radar = make_radar(num_chirps=4)
     paths = ep.trace(ep.Scene(), radar, num_rays=100)

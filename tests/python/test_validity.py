@@ -266,6 +266,7 @@ def test_nothing_is_wrong_at_the_trace_time():
     assert report.rms_phase_error < 1e-5
 
 
+@pytest.mark.hard
 def test_report_has_the_same_bits_for_any_number_of_threads():
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = ep.load_scene(path)
@@ -282,6 +283,7 @@ def test_report_has_the_same_bits_for_any_number_of_threads():
     assert texts[0] == texts[1] == texts[2]
 
 
+@pytest.mark.hard
 def test_no_paths_make_an_empty_report():
     scene = scene_of(ball=(BALL, ROUGH, (6, 0, 1), None))
     paths = ep.trace(scene, radar_of(), num_rays=1000).select("T 'ball' 'ball' R")

@@ -1,5 +1,5 @@
 """Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces,
-`run_labels(folder)` of parts and path expressions."""
+`run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases."""
 from .labels import run_labels
 from .physics import run_physics
 from .replay import run_replay

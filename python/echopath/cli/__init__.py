@@ -25,6 +25,9 @@ def main(arguments=None) -> int:
     except (ValueError, OSError, ModuleNotFoundError) as error:
         print(f"echopath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
+    except MemoryError:
+        print("echopath: not enough memory; fewer rays (--rays) need less", file=sys.stderr)
+        return EXIT_BAD_INPUT
     return 0
 
 
@@ -59,11 +62,12 @@ def _parser() -> argparse.ArgumentParser:
     info.set_defaults(command=_info)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay", "labels"],
+    bench.add_argument("what", choices=["physics", "replay", "labels", "hard"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
-                            "antenna; labels: cost of parts, rate of path expressions")
-    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its JSON file and figure")
-    bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look")
+                            "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
+                            "and coherent sums, each with its bound")
+    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
+    bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")
     bench.set_defaults(command=_bench)
@@ -153,7 +157,7 @@ def _info(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import labels, replay, report, run_labels, run_physics, run_replay
+    from ..bench import hard, labels, replay, report, run_labels, run_physics, run_replay
     from .progress import progress_bars
 
     with progress_bars() as progress:
@@ -161,6 +165,8 @@ def _bench(options) -> None:
             lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress))
         elif options.what == "labels":
             lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
+        elif options.what == "hard":
+            lines = hard.describe(hard.run_hard(options.out, quick=options.quick, progress=progress))
         else:
             lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
     print("\n".join(lines))

@@ -1,0 +1,247 @@
+"""Where rays, triangles and single precision meet badly."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+from echopath import _core
+
+from ...actors import shapes
+from .. import closed_forms as exact
+from .case import Cases
+from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, edge_points, field, make_radar, misses, plate_at, rcs_of,
+                     scene_of, traced)
+
+cases = Cases("Geometry")
+UTM = np.array([450_000.0, 5_400_000.0, 120.0])
+NO_MESH = 2 ** 32 - 1
+
+
+def level_error(paths, distance: float, truth: float, keep=slice(None)) -> float:
+    return abs(decibels(rcs_of(paths, distance, keep) / truth))
+
+
+def level_of(mesh, max_bounces: int = 1) -> float:
+    """Radar cross section in m^2 of a metal mesh 200 m ahead."""
+    scene = scene_of(("target", mesh, METAL, {"position": (200.0, 0.0, 0.0)}))
+    return rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=max_bounces), 200.0)
+
+
+@cases("hit positions", "points rebuilt from (u, v) lie in the plane of their facet, at 300 m too", bound=1e-12, unit="m")
+def hit_positions() -> float:
+    scene = scene_of(("far", shapes.sphere(2.0, subdivisions=8), ROUGH, {"position": (300.0, 3.0, 1.0)}))
+    paths = traced(scene, make_radar(), 20_000, max_bounces=1)
+    corners = np.asarray(scene.world_vertices(0, 0.0), np.longdouble)[np.asarray(scene.meshes[0].triangles, int)]
+    facet = corners[np.asarray(paths.triangle_id, int)]
+    normal = np.cross(facet[:, 1] - facet[:, 0], facet[:, 2] - facet[:, 0])
+    normal /= np.sqrt((normal ** 2).sum(axis=1, keepdims=True))
+    height = np.abs((normal * (paths.points(0.0) - facet[:, 0])).sum(axis=1))
+    return float(height.max() - 1e-15 * 302.0)
+
+
+def street(offset):
+    scene = scene_of(("ball", shapes.sphere(0.4), ROUGH, {"position": tuple(offset + [6.0, 0.5, 0.25])}),
+                     ("plate", shapes.plate(1.0, 2.0), METAL, {"position": tuple(offset + [8.0, -2.0, 0.0])}),
+                     ("wall", shapes.wall(32.0, 8.0), ep.Material(permittivity=5 - 0.3j, scattering=0.4, mirror=True),
+                      {"position": tuple(offset + [10.0, 2.0, -2.0])}))
+    return traced(scene, make_radar(offset, baseline=0.125), 20_000)
+
+
+@cases("world at UTM coordinates", "an offset of 5 400 km leaves the hits as they are (share of paths that differ)", bound=1e-4)
+def utm_hits() -> float:
+    near, far = street(np.zeros(3)), street(UTM)
+    if near.num_paths != far.num_paths:
+        return abs(near.num_paths - far.num_paths) / near.num_paths
+    differ = (near.hits["triangle_id"] != far.hits["triangle_id"]) | (np.abs(near.hits["u"] - far.hits["u"]) > 1e-5)
+    return float(differ.mean())
+
+
+@cases("signal at UTM coordinates", "double precision resolves 9e-10 m there: relative change of the signal", bound=1e-5)
+def utm_signal() -> float:
+    near, far = street(np.zeros(3)), street(UTM)
+    one, two = (ep.synthesize(paths, paths.radar) for paths in (near, far))
+    return float(np.linalg.norm(one - two) / np.linalg.norm(one))
+
+
+@cases("scene 10 km away", "a 1 m plate at broadside has its level", bound=0.1, unit="dB")
+def ten_kilometres() -> float:
+    paths = traced(scene_of(plate_at(1e4, 1.0)), make_radar(), 2 ** 15, max_bounces=1)
+    return level_error(paths, 1e4, broadside_rcs(1.0, 1e4))
+
+
+@cases("phase of a scene 10 km away", "a 1 m plate at broadside: phase of its echo beside that of its distance", bound=0.01, unit="rad")
+def ten_kilometres_phase() -> float:
+    far = traced(scene_of(plate_at(1e4, 1.0)), make_radar(), 2 ** 15, max_bounces=1)
+    total = np.sum(field(far)) * np.exp(2j * np.pi * np.mod(2e4 / exact.WAVELENGTH, 1.0))
+    curvature = exact.WAVENUMBER * (1.0 / 12.0) / 1e4 * 2.0  # mean of k rho^2 / R over the face: rho^2 = 1/6 m^2
+    return float(abs(np.angle(total / (-1j))) - curvature) if total != 0 else np.inf
+
+
+@cases("1 km beside 1 mm", "a plate of 1 mm over a ground of 1 km keeps its level", bound=0.1, unit="dB")
+def kilometre_beside_millimetre() -> float:
+    scene = scene_of(("ground", shapes.ground(1000.0, z=-1.0), ep.Material(reflectivity=0.3, scattering=1.0)), plate_at(3.0, 1e-3))
+    paths = traced(scene, make_radar(), 20_000, max_bounces=1)
+    on_plate = np.asarray(paths.mesh_id)[paths.offsets] == 1
+    return level_error(paths, 3.0, exact.plate_rcs(1e-3, 0.0), on_plate)
+
+
+@cases("self intersection", "a convex metal sphere at 300 m returns single bounces only (share of paths with more)", bound=0.0)
+def self_intersection() -> float:
+    scene = scene_of(("sphere", shapes.sphere(0.5, subdivisions=24), METAL, {"position": (300.0, 0.0, 0.0), "smooth": True}))
+    paths = traced(scene, make_radar(), 200_000, max_bounces=4)
+    assert paths.num_paths > 50_000
+    return float(np.mean(np.asarray(paths.num_bounces) > 1))
+
+
+@cases("corner reflector at 300 m", "a trihedral of 0.1 m loses no rays to its own surfaces: level of its triple bounce", bound=0.1,
+       unit="dB")
+def far_trihedral() -> float:
+    scene = scene_of(("corner", shapes.trihedral(0.1), METAL, {"position": (300.0, 0.0, 0.0)}))
+    paths = traced(scene, make_radar(), 2 ** 16, max_bounces=3)
+    return level_error(paths, 300.0, exact.trihedral_rcs(0.1), np.asarray(paths.num_bounces) == 3)
+
+
+@cases("edges of a closed box", "rays aimed from inside at shared edges that leak", bound=0.0, unit="rays")
+def box_edges() -> float:
+    box = shapes.box(2.0, edge=0.25)
+    return misses(scene_of(("box", box, METAL)), np.array([0.1, -0.2, 0.3]), edge_points(box, 300_000))
+
+
+@cases("edges of a closed sphere", "the same on an icosphere of 2 880 facets", bound=0.0, unit="rays")
+def sphere_edges() -> float:
+    ball = shapes.sphere(1.0, subdivisions=12)
+    return misses(scene_of(("ball", ball, METAL)), np.array([0.3, 0.1, -0.2]), edge_points(ball, 300_000))
+
+
+@cases("vertices", "of rays aimed exactly at vertices Embree may lose a few (its issues 181 and 188)", bound=1e-3, unit="of them")
+def vertices() -> float:
+    scene, lost, shot = scene_of(("ball", shapes.sphere(1.0, subdivisions=12), METAL)), 0, 0
+    targets = np.asarray(scene.world_vertices(0, 0.0))
+    for origin in np.random.default_rng(3).uniform(-0.5, 0.5, (20, 3)):
+        lost, shot = lost + misses(scene, origin, targets), shot + len(targets)
+    return lost / shot
+
+
+def sliver_wall(width: float, height: float, count: int, distance: float):
+    """A wall across the x axis of `count` pairs of slivers as high as the wall."""
+    y = np.linspace(-width / 2, width / 2, count + 1)
+    low, high = (np.column_stack([np.full(count + 1, distance), y, np.full(count + 1, z)]) for z in (-height / 2, height / 2))
+    k = np.arange(count)
+    top = k + count + 1
+    return ep.Mesh(np.vstack([low, high]), np.vstack([np.column_stack([k, k + 1, top]), np.column_stack([k + 1, top + 1, top])]))
+
+
+@cases("slivers", "a plate cut into slivers of 1 : 10 000 has the level of the sound one", bound=0.02, unit="dB")
+def slivers() -> float:
+    cut = scene_of(("plate", sliver_wall(0.1, 0.1, 10_000, 200.0), METAL))
+    whole, parts = (rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=1), 200.0) for scene in (scene_of(plate_at(200.0)), cut))
+    return abs(decibels(parts / whole))
+
+
+@cases("slivers of a wall", "of rays that meet slivers of 100 m by 5 mm few are lost, where single precision misplaces them by 1 mm",
+       bound=1e-2, unit="of them")
+def sliver_walls() -> float:
+    random, count = np.random.default_rng(2), 200_000
+    scene = scene_of(("wall", sliver_wall(2.0, 100.0, 400, 5.0), METAL))
+    targets = np.column_stack([np.full(count, 5.0), random.uniform(-0.999, 0.999, count), random.uniform(-40, 40, count)])
+    return misses(scene, np.zeros(3), targets) / count
+
+
+@cases("grazing incidence", "amplitudes stay finite and below that of a mirror that faces the radar (points on a ground of 20 m, 1 cm "
+       "below, are known to 1e-4 of their distance)", bound=1.0003, unit="of it")
+def grazing() -> float:
+    paths = traced(scene_of(("ground", shapes.ground(20.0, z=-1e-2), METAL)), make_radar(), 100_000, max_bounces=1)
+    largest = np.sqrt(POWER) / (4 * np.pi) / paths.frame.strata[-1].ray_density
+    amplitude = np.asarray(paths.amplitude)
+    assert paths.frame.statistics.num_grazing > 0
+    return float(np.abs(amplitude).max() / largest) if np.isfinite(amplitude).all() else np.inf
+
+
+@cases("coplanar duplicates", "a plate that is there twice has the level of one", bound=0.05, unit="dB")
+def duplicates() -> float:
+    one = shapes.plate(0.1, 0.1)
+    twice = ep.Mesh(np.vstack([one.vertices] * 2), np.vstack([one.triangles, np.asarray(one.triangles) + len(one.vertices)]))
+    levels = [level_of(mesh, max_bounces=2) for mesh in (one, twice)]
+    return abs(decibels(levels[1] / levels[0]))
+
+
+@cases("two meshes in one plane", "the first one met takes the ray: level of one", bound=0.05, unit="dB")
+def coplanar_meshes() -> float:
+    one = rcs_of(traced(scene_of(plate_at(200.0)), make_radar(), 2 ** 14, max_bounces=1), 200.0)
+    both = scene_of(plate_at(200.0), ("again", shapes.plate(0.1, 0.1), METAL, {"position": (200.0, 0.0, 0.0)}))
+    return abs(decibels(rcs_of(traced(both, make_radar(), 2 ** 14, max_bounces=1), 200.0) / one))
+
+
+@cases("triangles without area or with NaN", "they are removed and counted; the record keeps its bits (bytes that differ)", bound=0.0)
+def without_area() -> float:
+    plate = shapes.plate(0.1, 0.1)
+    bad_vertices = [[0, 0, 0], [0, 0.01, 0], [0, 0.02, 0], [np.nan, 0, 0], [np.inf, 1, 1]]
+    n = len(plate.vertices)
+    bad_triangles = [[0, 0, 1], [n, n + 1, n + 2], [0, 1, n + 3], [0, 1, n + 4]]
+    broken = ep.Mesh(np.vstack([plate.vertices, bad_vertices]), np.vstack([bad_triangles[:2], plate.triangles, bad_triangles[2:]]))
+    assert broken.num_removed_triangles == 4 and list(broken.original_triangle) == [2, 3]
+    records = [traced(scene_of(("plate", mesh, METAL, {"position": (200.0, 0.0, 0.0)})), make_radar(), 4000) for mesh in (plate, broken)]
+    hits = [np.asarray(paths.hits).tobytes() for paths in records]
+    weights = [np.asarray(paths.weight).tobytes() for paths in records]
+    return float((hits[0] != hits[1]) + (weights[0] != weights[1]))
+
+
+@cases("inverted normals", "a mesh turned inside out is the same target", bound=1e-12, unit="relative")
+def inverted() -> float:
+    corner = shapes.trihedral(0.2)
+    inside_out = ep.Mesh(corner.vertices, np.asarray(corner.triangles)[:, [0, 2, 1]])
+    one, two = (abs(np.sum(field(traced(scene_of(("corner", mesh, METAL, {"position": (20.0, 0.0, 0.0)})), make_radar(), 2 ** 13,
+                                        footprint="none")))) for mesh in (corner, inside_out))
+    return abs(one - two) / one if one > 0 else np.inf
+
+
+@cases("tiny triangles", "a plate of 180 000 triangles, a twentieth of a wavelength each, has the level of two", bound=0.02, unit="dB")
+def tiny_triangles() -> float:
+    levels = [level_of(shapes.plate(0.1, 0.1, edge=edge)) for edge in (None, 0.1 / 300)]
+    return abs(decibels(levels[1] / levels[0]))
+
+
+def defective(mesh):
+    """The mesh with duplicates, fins behind it on its edges, holes of no area, unused vertices, NaN and turned facets."""
+    vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles, int)
+    n = len(vertices)
+    extra = [[0.03, 0.0, 0.0], [9e9, 0.0, 0.0], [np.nan, 0.0, 0.0], [0.02, 0.0, 0.01]]  # x > 0: behind the plate
+    turned = triangles.copy()
+    turned[::2] = turned[::2, ::-1]
+    fins = [[*triangles[0, :2], n], [*triangles[0, :2], n + 3], [triangles[0, 0], n, n + 3]]
+    bad = [[0, 0, 1], [0, 1, n + 2], [1, 1, 1]]
+    return ep.Mesh(np.vstack([vertices, extra]), np.vstack([turned, triangles, fins, bad]))
+
+
+@cases("every defect at once", "a plate with duplicates, fins, inverted, degenerate and NaN facets has the level of the sound one",
+       bound=0.05, unit="dB")
+def every_defect() -> float:
+    sound = shapes.plate(0.1, 0.1, edge=0.02)
+    levels = [level_of(mesh) for mesh in (sound, defective(sound))]
+    return abs(decibels(levels[1] / levels[0]))
+
+
+@cases("parallel plates", "paths of up to 64 bounces between metal plates: length beside that of the images, per bounce",
+       bound=1e-6, unit="m")
+def parallel_plates() -> float:
+    gap = 0.5
+    scene = scene_of(("low", shapes.ground(60.0, z=-0.2), METAL), ("high", shapes.ground(60.0, z=gap - 0.2), METAL))
+    radar = make_radar((0.0, 0.0, 0.0), baseline=0.01)
+    paths = traced(scene, radar, 600, max_bounces=64)
+    keep = np.flatnonzero(np.asarray(paths.flags) == 0)
+    lengths, points = paths.lengths([paths.frame.trace_time])[0], paths.points(0.0)
+    count, worst = np.asarray(paths.num_bounces, int), 0.0
+    assert count.max() > 40
+    for path in keep:
+        hits = points[paths.offsets[path]:paths.offsets[path] + count[path]]
+        expected = np.linalg.norm(hits[-1] - _image_over(hits[:-1, 2])) + np.linalg.norm(hits[-1] - [0.0, 0.01, 0.0])
+        worst = max(worst, abs(lengths[path] - expected) / count[path])
+    return worst
+
+
+def _image_over(heights) -> np.ndarray:
+    """The origin's image over level planes at these heights, in order of travel."""
+    image = np.zeros(3)
+    for z in heights:
+        image[2] = 2 * round(float(z), 9) - image[2]
+    return image

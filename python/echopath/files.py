@@ -8,6 +8,8 @@ from pathlib import Path
 
 import echopath as ep
 
+from .interrupts import heed, interrupts_are_kept
+
 
 @contextmanager
 def written_whole(path):
@@ -16,7 +18,11 @@ def written_whole(path):
     Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Both have the
     same suffix. Raises ep.FileError when the folder or the file cannot be written.
     """
-    path = Path(path)
+    with interrupts_are_kept():
+        yield from _written(Path(path))
+
+
+def _written(path: Path):
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -24,6 +30,7 @@ def written_whole(path):
         os.close(handle)
         os.chmod(temporary, 0o666 & ~_umask())
         yield Path(temporary)
+        heed()
         _flush(temporary)
         os.replace(temporary, path)
         temporary = None

@@ -10,6 +10,8 @@ import numpy as np
 
 import echopath as ep
 
+from ..interrupts import heed, interrupts_are_kept
+
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 CHUNK_BYTES = 1 << 20   # of compression and of check sums
 SMALL_BYTES = 1 << 12   # below it a dataset is one piece without compression
@@ -61,6 +63,7 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
     dataset.attrs["unit"] = unit
     for rows in _row_blocks(values.shape, values.itemsize):
         dataset[rows] = values[rows]
+        heed()
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
@@ -73,6 +76,7 @@ def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
     dataset.attrs["unit"] = unit
     for index, values in enumerate(arrays):
         dataset[index] = values
+        heed()
 
 
 def _row_blocks(shape: tuple, itemsize: int):
@@ -108,6 +112,7 @@ def read_array(group, name: str, dtype, shape: tuple):
     values = np.empty(dataset.shape, dataset.dtype)
     for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
         values[rows] = dataset[rows]
+        heed()
     return values
 
 
@@ -145,7 +150,7 @@ def _item(group, name: str, kind):
 def reading(path):
     """Opens an HDF5 file; whatever is wrong with it becomes an ep.FileError that names the file and the reason."""
     try:
-        with h5py.File(path, "r") as file:
+        with interrupts_are_kept(), h5py.File(path, "r") as file:
             yield file
     except ep.FileError as error:
         raise ep.FileError(f"{path}: {error}") from None

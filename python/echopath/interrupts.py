@@ -1,0 +1,43 @@
+"""Ctrl-C that nothing swallows.
+
+Python raises KeyboardInterrupt in whatever runs when the signal comes. In a finaliser or a callback of a weak reference, of
+which h5py has many, it is printed and lost. Within `interrupts_are_kept` it is raised again at the next `heed`.
+"""
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from contextlib import contextmanager
+
+_heard = threading.Event()
+
+
+@contextmanager
+def interrupts_are_kept():
+    """Makes sure that Ctrl-C ends the block: at a `heed` in it, or behind it."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield
+        return
+
+    def remember(number, frame):
+        _heard.set()
+        before(number, frame)
+
+    print_ignored = sys.unraisablehook
+    signal.signal(signal.SIGINT, remember)
+    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, KeyboardInterrupt) else print_ignored(told)
+    try:
+        yield
+        heed()
+    finally:
+        sys.unraisablehook = print_ignored
+        signal.signal(signal.SIGINT, before)
+        _heard.clear()
+
+
+def heed() -> None:
+    """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and nobody has seen it."""
+    if _heard.is_set():
+        raise KeyboardInterrupt

@@ -10,6 +10,7 @@ import numpy as np
 import echopath as ep
 
 from ..files import written_whole
+from ..interrupts import interrupts_are_kept
 from ..simulate import Frame, with_spectra
 from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
 from .paths import read_paths, write_paths
@@ -30,6 +31,7 @@ class LeftOut:
     power: float
 
 
+@interrupts_are_kept()
 def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
     """Writes paths with their scene and radar to an HDF5 file.
 
@@ -40,12 +42,14 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
         return _write_record(file, paths, paths.effects, min_power)[0]
 
 
+@interrupts_are_kept()
 def load_paths(path):
     """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""
     with _our_file(path) as file:
         return _read_record(file)
 
 
+@interrupts_are_kept()
 def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `save_paths`.
 
@@ -60,6 +64,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     return missing
 
 
+@interrupts_are_kept()
 def load_frame(path) -> Frame:
     """Reads the frame file at `path`: the same bits that were written. Raises ep.FileError.
 
@@ -76,6 +81,7 @@ def load_frame(path) -> Frame:
     return with_spectra(frame)
 
 
+@interrupts_are_kept()
 def left_out(path) -> LeftOut:
     """What a frame file does not hold. Raises ep.FileError."""
     with _our_file(path) as file:

@@ -155,7 +155,8 @@ try:
     work()
     print("ended")
 except KeyboardInterrupt:
-    print("stopped", len([name for name in os.listdir(os.path.dirname(sys.argv[1])) if name.startswith(".")]))
+    half_written = [name for name in os.listdir(os.path.dirname(sys.argv[1])) if name.startswith(".")]
+    sys.stdout.write(f"stopped {len(half_written)}\\n")  # at once: nobody reads half a line
 """
 
 

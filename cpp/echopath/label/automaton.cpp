@@ -97,18 +97,6 @@ class NfaBuilder {
   std::map<const HitPattern*, int> index_of_;  // a repeated pattern is one pattern
 };
 
-// Every full name of a mesh and of the groups above it.
-std::vector<std::string> names_with_ancestors(const std::vector<std::string>& mesh_names) {
-  std::set<std::string> names;
-  for (const std::string& name : mesh_names) {
-    for (size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1)) {
-      names.insert(name.substr(0, slash));
-    }
-    names.insert(name);
-  }
-  return {names.begin(), names.end()};
-}
-
 [[noreturn]] void throw_takes_no_mesh(const PathExpression& expression, const HitPattern::Glob& glob,
                                       const std::vector<std::string>& mesh_names) {
   std::string what = "expected a glob that takes a mesh, got '" + glob.text + "'; ";

@@ -120,6 +120,12 @@ bool AntennaPattern::is_dark_behind() const {
   return kind == Kind::kTable ? table->is_dark_behind() : kind == Kind::kCosinePower;
 }
 
+Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
+  Vec3 sum = Vec3::Zero();
+  for (const Antenna& antenna : antennas) sum += world_from_radar * antenna.position;
+  return sum / static_cast<double>(antennas.size());
+}
+
 void Radar::validate() const {
   waveform.validate();
   validate_antennas(transmitters, "transmitters");

@@ -64,6 +64,9 @@ struct Antenna {
   Vec3 polarization = Vec3::UnitZ();                   // in the antenna's frame, unit
 };
 
+// In the world, m. At least one antenna.
+Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
+
 enum class Multiplexing { kTdm };  // one transmitter per slot
 
 struct Radar {

@@ -1,3 +1,5 @@
+#include <set>
+
 #include "echopath/scene/scene.h"
 
 namespace echopath {
@@ -30,6 +32,17 @@ bool glob_takes(std::string_view glob, std::string_view full_name) {
     if (matches(glob, full_name.substr(0, end))) return true;
   }
   return matches(glob, full_name);
+}
+
+std::vector<std::string> names_with_ancestors(const std::vector<std::string>& mesh_names) {
+  std::set<std::string> names;
+  for (const std::string& name : mesh_names) {
+    for (size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1)) {
+      names.insert(name.substr(0, slash));
+    }
+    names.insert(name);
+  }
+  return {names.begin(), names.end()};
 }
 
 }  // namespace echopath

@@ -65,6 +65,8 @@ class Scene {
 
 // A glob takes a mesh if it takes its full name or that of an ancestor; '*' crosses '/', '?' is one character.
 bool glob_takes(std::string_view glob, std::string_view full_name);
+// Every full name of a mesh and of the groups above it, sorted: what a glob may be meant to take.
+std::vector<std::string> names_with_ancestors(const std::vector<std::string>& mesh_names);
 
 // Vertices [V] of one mesh in world coordinates; poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);

@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
+#include "echopath/trace/scene_objects.h"
 
 namespace echopath {
 namespace {
@@ -14,70 +15,10 @@ constexpr size_t kMaxCones = 254;
 // Difference of axes and versines, relative to the latter: planes at right angles have one image in both orders.
 constexpr double kSameCone = 1e-9;
 
-struct Sphere {
-  Vec3 centre = Vec3::Zero();
-  double radius = 0.0;
-};
-
-Sphere bounding_sphere(const EmbreeScene& geometry, const std::vector<uint32_t>& mesh_ids) {
-  Eigen::AlignedBox3d box;
-  for (const uint32_t id : mesh_ids) {
-    for (const Vec3& vertex : geometry.vertices(id)) box.extend(vertex);
-  }
-  Sphere sphere{box.center(), 0.0};
-  for (const uint32_t id : mesh_ids) {
-    for (const Vec3& vertex : geometry.vertices(id)) sphere.radius = std::max(sphere.radius, (vertex - sphere.centre).norm());
-  }
-  return sphere;
-}
-
-Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name) {
-  const Vec3 line = sphere.centre - apex;
-  const double distance = line.norm();
-  const double sine = std::min(1.0, sphere.radius / distance);
-  Stratum stratum;
-  stratum.axis = line / distance;
-  // Without cancellation, and widened a little so that single precision loses no edge.
-  stratum.versine = std::min(2.0, sine * sine / (1.0 + std::sqrt(1.0 - sine * sine)) * (1.0 + 1e-4));
-  stratum.name = std::move(name);
-  return stratum;
-}
-
 // As the antenna sees it over a sequence of mirrors (in travel order from there).
 Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
   for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
   return point;
-}
-
-// No wider than the vertices need, as `image` shows them to `apex`: a long object seen end-on fills little of its bounding
-// sphere.
-template <class Image>
-void tighten(Stratum& cone, const EmbreeScene& geometry, const std::vector<uint32_t>& mesh_ids, const Vec3& apex,
-             const Image& image) {
-  double widest = 0.0;
-  for (const uint32_t id : mesh_ids) {
-    for (const Vec3& vertex : geometry.vertices(id)) {
-      const Vec3 toward = (image(vertex) - apex).normalized();
-      widest = std::max(widest, 0.5 * (toward - cone.axis).squaredNorm());
-    }
-  }
-  cone.versine = std::min(cone.versine, widest * (1.0 + 1e-4));
-}
-
-// Meshes that are not mirrors, by child of the root.
-std::vector<std::pair<int, std::vector<uint32_t>>> objects_of(const Scene& scene) {
-  std::vector<std::pair<int, std::vector<uint32_t>>> objects;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    if (scene.node_of(id).material->mirror) continue;
-    const int object = scene.meshes()[id].object;
-    const auto found = std::find_if(objects.begin(), objects.end(), [&](const auto& entry) { return entry.first == object; });
-    if (found == objects.end()) {
-      objects.emplace_back(object, std::vector<uint32_t>{id});
-    } else {
-      found->second.push_back(id);
-    }
-  }
-  return objects;
 }
 
 struct Cone {
@@ -94,7 +35,7 @@ struct Cone {
 };
 
 // A cone around each image of an object that a beam may show.
-std::vector<Cone> aim_at_images(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+std::vector<Cone> aim_at_images(const Scene& scene, const VerticesOf& vertices_of, const std::vector<Mirror>& mirrors,
                                 const std::vector<Beam>& beams, const std::vector<uint32_t>& mesh_ids, const Sphere& sphere,
                                 const Cone& direct, const Vec3& apex) {
   std::vector<Cone> cones;
@@ -106,7 +47,7 @@ std::vector<Cone> aim_at_images(const Scene& scene, const EmbreeScene& geometry,
       name += " over " + scene.node_of(mirrors[static_cast<size_t>(beam.mirrors[k])].mesh_id).name;
     }
     Cone cone{cone_around({image(sphere.centre), sphere.radius}, apex, name), static_cast<int>(beam.mirrors.size())};
-    tighten(cone.stratum, geometry, mesh_ids, apex, image);
+    tighten(cone.stratum, vertices_of, mesh_ids, apex, image);
     const bool is_new = std::none_of(cones.begin(), cones.end(), [&](const Cone& other) { return cone.is_same(other); });
     if (is_new) cones.push_back(std::move(cone));
   }
@@ -121,12 +62,13 @@ Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mir
   Cones cones;
   const Vec3& apex = settings.transmitter;
   const std::vector<Beam> beams = find_beams(apex, mirrors, settings.max_image_mirrors);
+  const VerticesOf vertices_of = [&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); };
   for (const auto& [object, mesh_ids] : objects_of(scene)) {
-    const Sphere sphere = bounding_sphere(geometry, mesh_ids);
-    if ((sphere.centre - apex).norm() <= sphere.radius) continue;
+    const Sphere sphere = bounding_sphere(vertices_of, mesh_ids);
+    if (sphere.holds(apex)) continue;
     Cone direct{cone_around(sphere, apex, scene.nodes()[static_cast<size_t>(object)].name)};
-    tighten(direct.stratum, geometry, mesh_ids, apex, [](const Vec3& vertex) { return vertex; });
-    const std::vector<Cone> images = aim_at_images(scene, geometry, mirrors, beams, mesh_ids, sphere, direct, apex);
+    tighten(direct.stratum, vertices_of, mesh_ids, apex, [](const Vec3& vertex) { return vertex; });
+    const std::vector<Cone> images = aim_at_images(scene, vertices_of, mirrors, beams, mesh_ids, sphere, direct, apex);
     cones.objects.push_back(std::move(direct));
     cones.images.insert(cones.images.end(), images.begin(), images.end());
   }
@@ -204,13 +146,7 @@ int LaunchPlan::batch_of(int stratum, int64_t ray) const {
 
 Vec3 LaunchPlan::direction(int index, int64_t ray) const {
   const auto k = static_cast<size_t>(index);
-  const Stratum& stratum = strata[k];
-  const Eigen::Vector2d point = points[k]->point(ray - first_ray[k]);
-  // In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
-  const double versine = stratum.versine * std::min(1.0, point.squaredNorm());
-  const Eigen::Vector2d across = point * std::sqrt(stratum.versine * (2.0 - versine));
-  const Vec3 first = stratum.axis.unitOrthogonal(), second = stratum.axis.cross(first);
-  return ((1.0 - versine) * stratum.axis + across[0] * first + across[1] * second).normalized();
+  return strata[k].direction(points[k]->point(ray - first_ray[k]));
 }
 
 double LaunchPlan::ray_density(const Vec3& direction, int own, double aimed_share) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
@@ -60,6 +61,14 @@ HitSet used_hits(const Paths& paths) {
 double Stratum::solid_angle() const { return kTwoPi * versine; }
 
 bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - axis).squaredNorm() <= versine; }
+
+Vec3 Stratum::direction(const Eigen::Vector2d& point) const {
+  // In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
+  const double here = versine * std::min(1.0, point.squaredNorm());
+  const Eigen::Vector2d across = point * std::sqrt(versine * (2.0 - here));
+  const Vec3 first = axis.unitOrthogonal(), second = axis.cross(first);
+  return ((1.0 - here) * axis + across[0] * first + across[1] * second).normalized();
+}
 
 void Paths::validate() const {
   const size_t size = offsets.size();

@@ -10,12 +10,6 @@ namespace {
 
 constexpr int64_t kRaysPerBlock = 1024;
 
-Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
-  Vec3 sum = Vec3::Zero();
-  for (const Antenna& antenna : antennas) sum += world_from_radar * antenna.position;
-  return sum / static_cast<double>(antennas.size());
-}
-
 // The whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
 void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
   const auto boresight = [](const Antenna& antenna) -> Vec3 { return antenna.orientation * Vec3::UnitX(); };

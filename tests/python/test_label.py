@@ -5,91 +5,34 @@ import echopath as ep
 import numpy as np
 import pytest
 from echopath import _core
-from support.slow_matcher import glob_takes, slow_matches
-
-GROUPS = ["street", "pedestrian", "pedestrian/arms"]
-MESHES = ["street/wall_left", "street/wall_right", "street/floor", "pedestrian/torso", "pedestrian/arms/left",
-          "pedestrian/arms/right"]
-GLOBS = ["street", "street/wall*", "*left", "pedestrian/*", "pedestrian/arms", "*/arms/righ?", "*", "*e*"]
-HIT = np.dtype([("mesh_id", np.uint32), ("triangle_id", np.uint32), ("u", np.float32), ("v", np.float32)])
+from support.hand_made import GLOBS, MESHES, hand_made_paths, make_street, random_expression, random_routes
+from support.slow_matcher import Words, glob_takes, slow_matches
 
 
 @pytest.fixture(scope="module")
-def street():
-    scene = ep.Scene()
-    triangle = ep.Mesh([[5, -1, -1], [5, 1, -1], [5, 0, 1]], [[0, 1, 2]])
-    for name in GROUPS + MESHES:
-        parent, _, own = name.rpartition("/")
-        is_mesh = name in MESHES
-        scene.add(triangle if is_mesh else None, name=own, parent=parent or None,
-                  material=ep.Material.metal() if is_mesh else None)
-    assert [mesh.name for mesh in scene.meshes] == MESHES
-    return scene
-
-
-@pytest.fixture(scope="module")
-def make_paths(street):
+def make_paths():
     """make_paths([[("street/floor", "S"), ...], ...]) -> ep.Paths"""
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=1e6, num_chirps=2,
-                                chirp_interval=60e-6)
-    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
-    frame = ep.trace(street, radar, num_rays=100).frame
-
-    def make(routes):
-        counts = np.array([len(route) for route in routes], np.uint8)
-        hits = np.zeros(int(counts.sum(dtype=int)), HIT)
-        hits["mesh_id"] = [MESHES.index(name) for route in routes for name, _ in route]
-        diffuse = [sum((event == "D") << k for k, (_, event) in enumerate(route)) for route in routes]
-        zeros = np.zeros(len(routes))
-        return ep.Paths.from_arrays(
-            hits=hits, offsets=np.cumsum(counts, dtype=np.int64) - counts, num_bounces=counts,
-            diffuse=np.array(diffuse, np.uint64), weight=zeros.astype(np.complex64), stratum=zeros.astype(np.uint8),
-            batch=zeros.astype(np.uint8), flags=zeros.astype(np.uint32), scene=street, radar=radar, frame=frame)
-
-    return make
-
-
-def random_routes(count, max_hits, seed):
-    draw = random.Random(seed)
-    return [[(draw.choice(MESHES), draw.choice("SD")) for _ in range(draw.randint(1, max_hits))] for _ in range(count)]
-
-
-def random_expression(draw: random.Random) -> str:
-    def choice(depth):
-        return " | ".join(sequence(depth) for _ in range(draw.choice([1, 1, 2])))
-
-    def sequence(depth):
-        return " ".join(repeat(depth) for _ in range(draw.randint(1, 3)))
-
-    def repeat(depth):
-        low = draw.randint(0, 2)
-        counts = f"{{{low}}}", f"{{{low},}}", f"{{{low}, {low + draw.randint(0, 2)}}}"
-        atom = f"({choice(depth - 1)})" if depth and draw.random() < 0.3 else hit()
-        return atom + draw.choice(["", "", "", "*", "+", "?", *counts])
-
-    def hit():
-        globs = " ".join(f"'{draw.choice(GLOBS)}'" for _ in range(draw.randint(1, 3)))
-        meshes = draw.choice([f"'{draw.choice(GLOBS)}'", f"[{globs}]", f"[^ {globs}]"])
-        return draw.choice([".", "(S)", "(D)", meshes, "S" + meshes, "D" + meshes])
-
-    return f"T {choice(2)} R"
+    street = make_street()
+    return lambda routes: hand_made_paths(street, routes)
 
 
 def matches(selection, paths):
     return ep.Selection(selection).matches(paths)
 
 
-def test_selections_agree_with_the_slow_matcher_on_random_expressions(make_paths):
-    routes, per_expression = random_routes(10_000, 6, seed=1), 40
-    paths, draw, num_taken = make_paths(routes), random.Random(2), 0
-    for index in range(250):
+def test_selections_agree_with_the_slow_matchers_on_random_expressions(make_paths):
+    num_paths, num_expressions, by_backtracking = 100_000, 500, 20
+    routes = random_routes(num_paths, 6, seed=1)
+    paths, words, draw, num_taken = make_paths(routes), Words(routes), random.Random(2), 0
+    for index in range(num_expressions):
         text = random_expression(draw)
         taken = matches(text, paths)
-        assert taken.dtype == bool and taken.shape == (len(routes),)
-        for path in range(index * per_expression, (index + 1) * per_expression):
+        assert taken.dtype == bool and taken.shape == (num_paths,)
+        assert np.array_equal(taken, words.taken_by(text)), text
+        for path in range(index * by_backtracking, (index + 1) * by_backtracking):
             assert taken[path] == slow_matches(text, routes[path]), (text, routes[path])
-            num_taken += taken[path]
-    assert 0.05 < num_taken / len(routes) < 0.5  # both answers are common, else the comparison proves little
+        num_taken += taken.sum()
+    assert 0.05 < num_taken / (num_paths * num_expressions) < 0.5  # both answers are common, else it proves little
 
 
 def test_globs_take_names_and_ancestors(make_paths):

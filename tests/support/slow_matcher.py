@@ -1,10 +1,14 @@
-"""Path expressions by backtracking over their syntax: slow, and written from the grammar alone.
+"""Path expressions without an automaton, written from the grammar alone: by backtracking over their syntax, and for many
+paths at once by the sets of places that it reaches.
 
     slow_matches("T S+ 'wall*' R", [("floor", "S"), ("wall_left", "D")])
+    Words([[("floor", "S"), ("wall_left", "D")], ...]).taken_by("T S+ 'wall*' R")
 
 A hit is (full mesh name, "S" or "D").
 """
 import re
+
+import numpy as np
 
 TOKEN = re.compile(r"\s*('[^']*'|\{\s*\d+\s*(?:,\s*\d*\s*)?\}|\[\s*\^|[][TRSD.*+?|()])")
 
@@ -121,3 +125,50 @@ def repeat_ends(tree, hits, start):
         seen |= reached
         rounds += 1
     yield from seen
+
+
+class Words:
+    """Paths [P] of at most 15 hits: bit k of a u16 stands for the place before hit k, of all paths at once."""
+
+    def __init__(self, routes):
+        self.num_hits = np.array([len(route) for route in routes], np.uint16)
+        self.places_of = {}  # (mesh name, event) -> u16 [P], where a path has such a hit
+        for path, route in enumerate(routes):
+            for k, hit in enumerate(route):
+                self.places_of.setdefault(hit, np.zeros(len(routes), np.uint16))[path] |= 1 << k
+
+    def taken_by(self, text):
+        """Bool [P]: which of the paths the expression takes."""
+        reached = self._reached(parse(text), np.ones(len(self.num_hits), np.uint16))
+        return (reached >> self.num_hits & 1).astype(bool)
+
+    def _reached(self, tree, start):
+        """The places that `tree` can read up to from any of the places `start` [P]."""
+        kind = tree[0]
+        if kind == "hit":
+            fits = [places for hit, places in self.places_of.items() if hit_fits(tree, *hit)]
+            return self._after(fits, start)
+        if kind == "choice":
+            return np.bitwise_or.reduce([self._reached(branch, start) for branch in tree[1]])
+        if kind == "sequence":
+            for item in tree[1]:
+                start = self._reached(item, start)
+            return start
+        return self._repeated(tree, start)
+
+    @staticmethod
+    def _after(fits, start):
+        places = np.bitwise_or.reduce(fits) if fits else np.zeros_like(start)
+        return (places & start) << 1
+
+    def _repeated(self, tree, start):
+        _, item, low, high = tree
+        for _ in range(low):
+            start = self._reached(item, start)
+        seen, rounds = start, 0
+        while high is None or rounds < high - low:
+            start = self._reached(item, start) & ~seen
+            if not start.any():
+                break
+            seen, rounds = seen | start, rounds + 1
+        return seen

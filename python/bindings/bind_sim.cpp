@@ -6,8 +6,10 @@
 
 #include "array.h"
 #include "choice.h"
+#include "echopath/sim/decompose.h"
 #include "echopath/sim/replay_stream.h"
 #include "echopath/sim/synthesize.h"
+#include "grouping.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -50,49 +52,23 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
   }));
 }
 
-std::vector<NamedSelection> named_selections(const py::dict& parts) {
-  std::vector<NamedSelection> named;
-  for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
-  return named;
-}
-
-// All values are dicts: several partitions; none is: one.
-bool is_nested(const py::dict& parts) {
-  size_t num_dicts = 0;
-  for (const auto& [name, value] : parts) num_dicts += py::isinstance<py::dict>(value) ? 1 : 0;
-  require(num_dicts == 0 || num_dicts == parts.size(), "parts", "must be all selections or all dicts of selections, dicts",
-          num_dicts);
-  return num_dicts > 0;
-}
-
-py::dict decompose_cubes(const Paths& paths, const Radar* radar, const py::dict& parts, double tolerance,
+py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vector<KeyedGrouping>& views, double tolerance,
                          const std::string& method, const std::string& replay, const std::string& evaluate,
                          double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
                          const py::kwargs& unknown) {
   refuse_unknown(unknown, "decompose", kKeywords);
   const CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
-  const bool nested = is_nested(parts);
-  std::vector<std::string> names;
-  std::vector<std::vector<NamedSelection>> partitions;
-  if (nested) {
-    for (const auto& [name, value] : parts) {
-      names.push_back(name.cast<std::string>());
-      partitions.push_back(named_selections(value.cast<py::dict>()));
-    }
-  } else {
-    partitions.push_back(named_selections(parts));
-  }
+  std::vector<Grouping> rules;
+  for (const KeyedGrouping& view : views) rules.push_back(view.rule);
   auto cubes = run_job("decompose", progress, [&](Job& job) {
-    return decompose(paths, radar_or_own(paths, radar), partitions, settings, &job);
+    return decompose(paths, radar_or_own(paths, radar), rules, settings, &job);
   });
-  const auto mapping = [](std::vector<PartCube>& made) {
-    py::dict out;
-    for (PartCube& part : made) out[py::str(part.name)] = cube_array(std::move(part.cube));
-    return out;
-  };
-  if (!nested) return mapping(cubes.front());
-  py::dict out;
-  for (size_t i = 0; i < cubes.size(); ++i) out[py::str(names[i])] = mapping(cubes[i]);
+  py::list out;
+  for (size_t view = 0; view < views.size(); ++view) {
+    py::dict parts;
+    for (PartCube& part : cubes[view]) parts[views[view].key_of(part.name)] = cube_array(std::move(part.cube));
+    out.append(parts);
+  }
   return out;
 }
 
@@ -124,16 +100,15 @@ retrace: "never" (one record serves the frame), "invalid" (shadow rays and point
 keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
 progress: callable(stage, fraction) or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
-  m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar") = py::none(), py::arg("parts") = py::dict(),
-        py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
+  m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
+        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
         py::arg("keyframes") = 0, py::arg("progress") = py::none(),
-        R"(The signals of parts of the paths, in one pass.
+        R"(The signals of parts of the paths, several views of them replayed once.
 
-parts: {name: selection}, where the first that takes a path has it; or {view: {name: selection}} for several views at once
-Returns {name: cube} with "other" for the rest, the cubes [tx, rx, chirp, sample] adding up to the whole; one such mapping
-per view for several views. radar, tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes and progress are
-as in synthesize.)");
+views: list of Grouping
+Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
+tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes and progress are as in synthesize.)");
 }
 
 }  // namespace echopath::bindings

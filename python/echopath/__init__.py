@@ -13,7 +13,7 @@ answer_ctrl_c_while_loading()
 from . import _core
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CosinePower, Deformation,
-    DeviceError, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
+    DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
     Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
     Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
     cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
@@ -27,10 +27,12 @@ from .tessellation import TessellationWarning, rcs, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part
+from .families import Families, families
 from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .simulate import Frame, simulate
+from .visibility import ObjectVisibility, Sight, visibility
 from .frame_file import load_frame, save_frame
 from .scene_file import SceneFile, load_scene
 from .xarray_maps import to_xarray
@@ -62,13 +64,15 @@ def _viewer():
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "ChirpSequence",
-    "CosinePower", "Deformation", "DeviceError", "Effect", "FileError", "Frame", "GainTable", "Isotropic", "Joint",
-    "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "Part", "Parts", "PathCells", "Paths", "Radar",
-    "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Skin", "Stratum",
+    "CosinePower", "Deformation", "DeviceError", "Effect", "Families", "Family",
+    "FileError", "Frame", "GainTable", "Isotropic", "Joint",
+    "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "ObjectVisibility", "Part", "Parts", "PathCells",
+    "Paths", "Radar",
+    "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "Skin", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
     "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "cfar", "compensate_tdm", "decompose",
-    "effects", "estimate_angles", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
+    "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
     "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
-    "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array",
+    "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array", "visibility",
 ]

@@ -56,6 +56,8 @@ WORK = {
     "lengths": lambda paths, folder: paths.lengths(TIMES),
     "points": lambda paths, folder: [paths.points(time) for time in TIMES],
     "received power": lambda paths, folder: ep.received_power(paths),
+    "families": lambda paths, folder: ep.families(paths, ["plate"]),
+    "visibility": lambda paths, folder: ep.visibility(paths.scene, paths.radar, num_directions=1 << 22),
     "rcs of two directions": lambda paths, folder: rcs_of_two_directions(),
     "save": lambda paths, folder: paths.save(folder / "paths.h5", min_power=1e-30),
     "load": lambda paths, folder: ep.Paths.load(saved_once(paths, folder)),

@@ -245,6 +245,12 @@ def test_paths_with_parts_are_viewed_as_the_frame_is(frame):
         from_paths(ep.Scene(), frame.paths)
 
 
+def test_signals_by_families_are_shown_by_their_names(frame):
+    found = ep.families(frame.paths, ["walker"])
+    parts = from_paths(frame.scene, frame.paths, {"ghosts": ep.decompose(frame.paths, frame.radar, found)}).parts
+    assert [part.name for part in parts if part.group == "ghosts"] == [str(family) for family in found]
+
+
 # --- channels and time ---
 
 def test_each_channel_has_its_own_cells_powers_and_maps(session, frame):

@@ -10,7 +10,8 @@ std::vector<SceneObject> objects_of(const Scene& scene) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     if (scene.node_of(id).material->mirror) continue;
     const int node = scene.meshes()[id].object;
-    const auto found = std::find_if(objects.begin(), objects.end(), [&](const SceneObject& known) { return known.node == node; });
+    const auto is_its = [&](const SceneObject& object) { return object.node == node; };
+    const auto found = std::find_if(objects.begin(), objects.end(), is_its);
     if (found == objects.end()) {
       objects.push_back({node, {id}});
     } else {

@@ -7,6 +7,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/scene/readers.h"
+#include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "support/scenes.h"
@@ -81,8 +82,10 @@ TEST(Chain, MeshFileBecomesADecomposedMap) {
   TraceSettings settings;
   settings.num_rays = 20000;
   const Paths paths = trace(scene, radar, settings);
-  const auto views = decompose(paths, radar, {{{"front", "T 'car/front' R"}, {"back", "T 'car/back' R"}, {"wall", "T .* 'wall' .* R"}},
-                                              {{"one", Selection::num_bounces(1, 1)}, {"ghosts", Selection::touches("wall") & Selection::touches("car/front") & Selection::num_bounces(2, 2)}}});
+  const Selection ghosts = Selection::touches("wall") & Selection::touches("car/front") & Selection::num_bounces(2, 2);
+  const Grouping route = by_selections({{"front", "T 'car/front' R"}, {"back", "T 'car/back' R"}, {"wall", "T .* 'wall' .* R"}});
+  const Grouping bounces = by_selections({{"one", Selection::num_bounces(1, 1)}, {"ghosts", ghosts}});
+  const auto views = decompose(paths, radar, {route, bounces});
   ASSERT_EQ(views.size(), 2u);
   ASSERT_EQ(views[0].size(), 4u);
   EXPECT_EQ(views[0][3].name, "other");

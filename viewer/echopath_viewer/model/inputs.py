@@ -79,7 +79,7 @@ def _parts_of(partition: str, group, signals: Signals) -> list[Part]:
     cubes, selections = group, getattr(group, "selections", None)
     if not any(isinstance(value, np.ndarray) for value in group.values()):
         cubes, selections = ep.decompose(signals.paths, None, group, **signals.settings), group
-    spectra = {name: signals.map_of(cube) for name, cube in cubes.items()}
+    spectra = {str(name): signals.map_of(cube) for name, cube in cubes.items()}
     if selections is None:
         none = np.zeros(signals.paths.num_paths, bool)
         return [Part(partition, name, spectrum, none, is_known=False) for name, spectrum in spectra.items()]

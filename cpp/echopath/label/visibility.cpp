@@ -1,0 +1,212 @@
+#include "echopath/label/visibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/trace/embree_scene.h"
+#include "echopath/trace/sampler.h"
+#include "echopath/trace/scene_objects.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kDirectionsPerTask = 1024;
+// Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
+constexpr double kSameDepth = 1e-5;
+
+// The antennas of one end of the radar.
+struct End {
+  Vec3 position;  // mean, relative to the origin
+  const std::vector<Antenna>& antennas;
+  Mat3 radar_from_world;
+
+  bool looks_toward(const Vec3& direction) const {
+    const Vec3 in_radar = radar_from_world * direction;
+    return std::any_of(antennas.begin(), antennas.end(), [&](const Antenna& antenna) {
+      return antenna.pattern.toward(antenna.orientation.conjugate() * in_radar).power > 0.0;
+    });
+  }
+};
+
+double distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
+  const Vec3 edge = b - a;
+  const double along = std::clamp((point - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (a + along * edge - point).norm();
+}
+
+double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const Vec3 normal = (b - a).cross(c - a).normalized();
+  bool is_above = true;  // all three edges leave the foot of the perpendicular on the inner side
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    is_above = is_above && normal.cross(to - from).dot(point - from) >= 0.0;
+    least = std::min(least, distance_to_segment(point, from, to));
+  }
+  return is_above ? std::abs(normal.dot(point - a)) : least;
+}
+
+// The nodes of a scene in their places, with some of the meshes.
+Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
+  std::vector<bool> is_kept(scene.nodes().size());
+  for (const uint32_t mesh : surfaces.meshes_of(object)) is_kept[static_cast<size_t>(scene.meshes()[mesh].node)] = true;
+  Scene part;
+  for (size_t i = 0; i < scene.nodes().size(); ++i) {
+    Node node = scene.nodes()[i];
+    node.name = node.name.substr(node.name.rfind('/') + 1);
+    if (!is_kept[i]) {
+      node.mesh.reset();
+      node.material.reset();
+      node.deformation.reset();
+    }
+    part.add(std::move(node));
+  }
+  return part;
+}
+
+// What some directions found.
+struct Tally {
+  int64_t num_found = 0, num_visible = 0;
+  std::vector<int64_t> hidden_by;  // by surface
+  bool in_view = false;
+
+  explicit Tally(size_t num_surfaces = 0) : hidden_by(num_surfaces) {}
+  void add(const Tally& other) {
+    num_found += other.num_found;
+    num_visible += other.num_visible;
+    for (size_t i = 0; i < hidden_by.size(); ++i) hidden_by[i] += other.hidden_by[i];
+    in_view = in_view || other.in_view;
+  }
+};
+
+// One object in its scene.
+class Onlooker {
+ public:
+  Onlooker(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
+           uint32_t object)
+      : scene_(scene), whole_(whole), alone_(alone), surfaces_(surfaces), object_(object),
+        mesh_ids_(surfaces.meshes_of(object)) {}
+
+  Sight look(const End& end, int num_directions, Job* job) const {
+    const Stratum cone = cone_from(end.position);
+    int64_t count = num_directions;
+    Tally tally = scan(end, cone, count, job);
+    if (2 * tally.num_found < num_directions) {
+      count = std::min<int64_t>(kFinestLattice, num_directions / std::max<int64_t>(1, tally.num_found)) * num_directions;
+      tally = scan(end, cone, count, job);
+    }
+    return sight_of(tally, cone.solid_angle() / static_cast<double>(count), end);
+  }
+
+ private:
+  Stratum cone_from(const Vec3& apex) const {
+    const VerticesOf vertices_of = [&](uint32_t id) -> const std::vector<Vec3>& { return whole_.vertices(id); };
+    const Sphere sphere = bounding_sphere(vertices_of, mesh_ids_);
+    if (sphere.holds(apex)) return Stratum{};  // all around
+    Stratum cone = cone_around(sphere, apex, surfaces_.names[object_]);
+    tighten(cone, vertices_of, mesh_ids_, apex, [](const Vec3& vertex) { return vertex; });
+    return cone;
+  }
+
+  Tally scan(const End& end, const Stratum& cone, int64_t count, Job* job) const {
+    const auto points = disc_points(Sampler::kLattice, count, {Eigen::Vector2d(0.5, 0.5)});
+    const int64_t num_tasks = (count + kDirectionsPerTask - 1) / kDirectionsPerTask;
+    std::vector<Tally> tallies(static_cast<size_t>(num_tasks), Tally(surfaces_.names.size()));
+    parallel_for(num_tasks, [&](int64_t task) {
+      if (job) job->throw_if_cancelled();
+      const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
+      for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
+        look_along(cone.direction(points->point(i)), end, tallies[static_cast<size_t>(task)]);
+      }
+    });
+    Tally sum(surfaces_.names.size());
+    for (const Tally& tally : tallies) sum.add(tally);
+    return sum;
+  }
+
+  void look_along(const Vec3& direction, const End& end, Tally& tally) const {
+    RayHit object, nearest;
+    if (alone_.intersect(end.position, direction, object) != EmbreeScene::Verdict::kHit) return;
+    const EmbreeScene::Verdict verdict = whole_.intersect(end.position, direction, nearest);
+    if (verdict == EmbreeScene::Verdict::kFalseHit) return;
+    ++tally.num_found;
+    tally.in_view = tally.in_view || end.looks_toward(direction);
+    const uint32_t surface = verdict == EmbreeScene::Verdict::kHit ? surfaces_.of_mesh[nearest.hit.mesh_id] : object_;
+    if (surface == object_ || nearest.distance >= object.distance * (1.0 - kSameDepth)) ++tally.num_visible;
+    else ++tally.hidden_by[surface];
+  }
+
+  Sight sight_of(const Tally& tally, double solid_angle_each, const End& end) const {
+    Sight sight;
+    sight.in_view = tally.in_view;
+    sight.distance = distance_from(end.position);
+    if (tally.num_found == 0) return sight;
+    const auto found = static_cast<double>(tally.num_found);
+    sight.solid_angle = found * solid_angle_each;
+    sight.visible_share = static_cast<double>(tally.num_visible) / found;
+    for (size_t i = 0; i < tally.hidden_by.size(); ++i) {
+      const auto hidden = static_cast<double>(tally.hidden_by[i]);
+      if (hidden > 0) sight.occluders.emplace_back(surfaces_.names[i], hidden / found);
+    }
+    std::stable_sort(sight.occluders.begin(), sight.occluders.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    return sight;
+  }
+
+  double distance_from(const Vec3& point) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const uint32_t mesh : mesh_ids_) {
+      const auto num_triangles = static_cast<uint32_t>(scene_.node_of(mesh).mesh->triangles().size());
+      for (uint32_t i = 0; i < num_triangles; ++i) {
+        least = std::min(least, distance_to_triangle(point, whole_.corners(mesh, i)));
+      }
+    }
+    return least;
+  }
+
+  const Scene& scene_;
+  const EmbreeScene& whole_;
+  const EmbreeScene& alone_;
+  const SurfaceMap& surfaces_;
+  uint32_t object_;
+  std::vector<uint32_t> mesh_ids_;
+};
+
+}  // namespace
+
+std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar, const SurfaceMap& surfaces,
+                                         const VisibilitySettings& settings, Job* job) {
+  radar.validate();
+  require(settings.num_directions >= 1, "num_directions", "must be at least 1", settings.num_directions);
+  const size_t num_meshes = surfaces.of_mesh.size();
+  require(num_meshes == scene.meshes().size(), "surfaces", "must be of the scene, meshes", num_meshes);
+  scene.require_times(settings.time, settings.time);
+  const Transform world_from_radar = radar.world_from_radar(settings.time);
+  const Mat3 radar_from_world = world_from_radar.linear().transpose();
+  const Vec3 transmitter = mean_position(radar.transmitters, world_from_radar);
+  const Vec3 receiver = mean_position(radar.receivers, world_from_radar);
+  const Pose pose(scene, settings.time);
+  const Vec3 origin = EmbreeScene::origin_near(scene, pose, transmitter);
+  const EmbreeScene whole(scene, pose, origin, job);
+  const End sending{transmitter - origin, radar.transmitters, radar_from_world};
+  const End receiving{receiver - origin, radar.receivers, radar_from_world};
+
+  std::vector<ObjectVisibility> seen;
+  if (job) job->start(surfaces.num_objects);
+  for (uint32_t object = 0; object < surfaces.num_objects; ++object) {
+    const Scene part = only(scene, surfaces, object);
+    const EmbreeScene alone(part, Pose(part, settings.time), origin, job);
+    const Onlooker onlooker(scene, whole, alone, surfaces, object);
+    seen.push_back({surfaces.names[object], onlooker.look(sending, settings.num_directions, job),
+                    onlooker.look(receiving, settings.num_directions, job)});
+    if (job) job->advance(1);
+  }
+  return seen;
+}
+
+}  // namespace echopath

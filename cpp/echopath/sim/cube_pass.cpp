@@ -1,0 +1,76 @@
+#include "echopath/sim/cube_pass.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "echopath/sim/replay_stream.h"
+
+namespace echopath {
+namespace {
+
+void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::span<Echoes> blocks) {
+  auto path = indices.begin();
+  for (Echoes& block : blocks) {
+    block.group.clear();
+    if (!way.group) continue;
+    for (int64_t i = 0; i < block.num_echoes; ++i) block.group.push_back((*way.group)[static_cast<size_t>(*path++)]);
+  }
+}
+
+}  // namespace
+
+Cube Cube::zeros(const Radar& radar) {
+  Cube cube{static_cast<int>(radar.transmitters.size()), static_cast<int>(radar.receivers.size()), radar.waveform.num_chirps,
+            radar.waveform.num_samples, {}};
+  cube.values.resize(static_cast<size_t>(cube.num_tx) * cube.num_rx * cube.num_chirps * cube.num_samples);
+  return cube;
+}
+
+void Cube::add(const Cube& other) {
+  for (size_t i = 0; i < values.size(); ++i) values[i] += other.values[i];
+}
+
+void Cube::insert_chirps(const Cube& stretch, int first_chirp) {
+  const size_t size = static_cast<size_t>(stretch.num_chirps) * stretch.num_samples;
+  const size_t frame_size = static_cast<size_t>(num_chirps) * num_samples;
+  const size_t first = static_cast<size_t>(first_chirp) * num_samples;
+  for (size_t channel = 0; channel < static_cast<size_t>(num_tx) * num_rx; ++channel) {
+    std::copy_n(stretch.values.data() + channel * size, size, values.data() + channel * frame_size + first);
+  }
+}
+
+CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<PathGroups>& ways, CubeSettings settings,
+                   Job* job)
+    : radar_(radar) {
+  settings.replay.per_sample = settings.synthesis.per_sample;
+  const ReplayStream stream(paths, radar, settings.replay, job);
+  for (const PathGroups& way : ways) {
+    synthesizers_.emplace_back(radar.waveform, stream.num_channels(), way.num_groups, paths.num_paths(),
+                               settings.synthesis);
+  }
+  if (job) job->start(paths.num_paths() * stream.num_channels() * static_cast<int64_t>(ways.size()));
+  stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
+    for (size_t way = 0; way < ways.size(); ++way) {
+      set_groups(ways[way], indices, blocks);
+      synthesizers_[way].add(channel, blocks, job);
+    }
+  });
+}
+
+Cube CubePass::cube(size_t way, int group, Job* job) const {
+  return {static_cast<int>(radar_.transmitters.size()), static_cast<int>(radar_.receivers.size()), radar_.waveform.num_chirps,
+          radar_.waveform.num_samples, synthesizers_[way].cube(group, job)};
+}
+
+std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
+  const int count = num_keyframes(paths, radar, settings.keyframes, settings.replay.specular, job);
+  return stretches_of(radar, paths.frame.start_time, count);
+}
+
+CubeSettings within_stretch(CubeSettings settings) {
+  settings.keyframes = {};
+  return settings;
+}
+
+}  // namespace echopath

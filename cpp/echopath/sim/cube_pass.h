@@ -1,0 +1,54 @@
+#pragma once
+// Cubes, and the pass of replay and synthesis that fills them.
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "echopath/replay/replay.h"
+#include "echopath/sim/keyframes.h"
+#include "echopath/signal/synthesizer.h"
+
+namespace echopath {
+
+struct CubeSettings {
+  SynthesisOptions synthesis;  // the method is chosen from the whole set of paths, never per part
+  ReplaySettings replay;
+  KeyframeSettings keyframes;
+};
+
+// IF samples [tx, rx, chirp, sample] in sqrt(W), noise-free.
+struct Cube {
+  int num_tx = 0, num_rx = 0, num_chirps = 0, num_samples = 0;
+  std::vector<std::complex<double>> values;
+
+  static Cube zeros(const Radar& radar);
+  void add(const Cube& other);
+  // Puts the chirps of a stretch of the frame into their place.
+  void insert_chirps(const Cube& stretch, int first_chirp);
+};
+
+// One way to sort paths into groups.
+struct PathGroups {
+  const std::vector<uint32_t>* group = nullptr;  // [P] below num_groups; null: all in group 0
+  int num_groups = 1;
+};
+
+// The signals of all groups of several ways to sort the paths, replayed once. Keyframes are no matter of a pass.
+class CubePass {
+ public:
+  // Runs the pass. Raises what Replayer and Synthesizer do, Cancelled.
+  CubePass(const Paths& paths, const Radar& radar, const std::vector<PathGroups>& ways, CubeSettings settings, Job* job);
+
+  Cube cube(size_t way, int group, Job* job) const;
+
+ private:
+  const Radar& radar_;
+  std::vector<Synthesizer> synthesizers_;  // by way
+};
+
+// The stretches of a frame that needs several records (settings.keyframes).
+std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job);
+// The settings inside a stretch, which has one record.
+CubeSettings within_stretch(CubeSettings settings);
+
+}  // namespace echopath

@@ -1,0 +1,120 @@
+#include "echopath/sim/decompose.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace echopath {
+namespace {
+
+using Views = std::vector<std::vector<PartCube>>;
+
+// Combinations of parts that are worth their memory, since each path is then synthesised once for several views.
+constexpr size_t kFewGroups = 64;
+constexpr size_t kMostGroups = 1 << 16;
+
+// Views that are filled together.
+struct ViewSet {
+  std::vector<size_t> views;   // their indices
+  CombinedPartition combined;  // in that order
+
+  PathGroups groups() const { return {&combined.group, std::max(1, static_cast<int>(combined.num_groups))}; }
+};
+
+// With one more view, unless that makes many combinations.
+std::optional<CombinedPartition> joined(const CombinedPartition& set, const Partition& view, Job* job) {
+  const size_t most = std::max(kFewGroups, set.num_groups + view.names.size());
+  if (set.num_groups * view.names.size() > kMostGroups) return std::nullopt;
+  std::vector<Partition> partitions = set.partitions;
+  partitions.push_back(view);
+  CombinedPartition combined = combine(std::move(partitions), job);
+  if (combined.num_groups > most) return std::nullopt;
+  return combined;
+}
+
+void place(size_t view, Partition partition, std::vector<ViewSet>& sets, Job* job) {
+  for (ViewSet& set : sets) {
+    std::optional<CombinedPartition> combined = joined(set.combined, partition, job);
+    if (!combined) continue;
+    set.combined = std::move(*combined);
+    set.views.push_back(view);
+    return;
+  }
+  ViewSet& set = sets.emplace_back();
+  set.views = {view};
+  std::vector<Partition> alone;
+  alone.push_back(std::move(partition));
+  set.combined = combine(std::move(alone), job);
+}
+
+std::vector<ViewSet> sort_paths(const Paths& paths, const std::vector<Grouping>& views, Job* job) {
+  std::vector<ViewSet> sets;
+  for (size_t view = 0; view < views.size(); ++view) place(view, views[view](paths, job), sets, job);
+  for (ViewSet& set : sets) {
+    for (Partition& partition : set.combined.partitions) partition.group = {};  // only the combination is needed now
+  }
+  return sets;
+}
+
+// Adds up the groups of a set, in ascending order, to the parts of its views.
+void sum_groups(const CubePass& pass, size_t way, const ViewSet& set, Views& out, Job* job) {
+  for (uint32_t group = 0; group < set.combined.num_groups; ++group) {
+    const Cube cube = pass.cube(way, static_cast<int>(group), job);
+    for (size_t i = 0; i < set.views.size(); ++i) {
+      Cube& part = out[set.views[i]][set.combined.part_in(group, i)].cube;
+      if (part.values.empty()) part = cube;
+      else part.add(cube);
+    }
+  }
+}
+
+Views decompose_record(const Paths& paths, const Radar& radar, const std::vector<Grouping>& views,
+                       const CubeSettings& settings, Job* job) {
+  const std::vector<ViewSet> sets = sort_paths(paths, views, job);
+  std::vector<PathGroups> ways;
+  Views out(views.size());
+  for (const ViewSet& set : sets) {
+    ways.push_back(set.groups());
+    for (size_t i = 0; i < set.views.size(); ++i) {
+      for (const std::string& name : set.combined.partitions[i].names) out[set.views[i]].push_back({name, {}});
+    }
+  }
+  const CubePass pass(paths, radar, ways, settings, job);
+  for (size_t way = 0; way < sets.size(); ++way) sum_groups(pass, way, sets[way], out, job);
+  for (std::vector<PartCube>& parts : out) {
+    for (PartCube& part : parts) {
+      if (part.cube.values.empty()) part.cube = Cube::zeros(radar);
+    }
+  }
+  return out;
+}
+
+// The part of that name; one that no earlier stretch has is put before the last.
+PartCube& part_named(const std::string& name, std::vector<PartCube>& parts, const Radar& radar) {
+  const auto found = std::find_if(parts.begin(), parts.end(), [&](const PartCube& part) { return part.name == name; });
+  if (found != parts.end()) return *found;
+  return *parts.insert(parts.empty() ? parts.end() : parts.end() - 1, {name, Cube::zeros(radar)});
+}
+
+}  // namespace
+
+Views decompose(const Paths& paths, const Radar& radar, const std::vector<Grouping>& views, const CubeSettings& settings,
+                Job* job) {
+  const Retrace retrace = settings.keyframes.retrace;
+  if (retrace == Retrace::kNever) return decompose_record(paths, radar, views, settings, job);
+  Views frame(views.size());
+  for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
+    const Paths record = record_of(paths, stretch, retrace, job);
+    const Views parts = decompose_record(record, stretch.radar, views, within_stretch(settings), job);
+    const bool is_first = stretch.first_chirp == 0;
+    for (size_t view = 0; view < views.size(); ++view) {
+      for (const PartCube& part : parts[view]) {
+        if (is_first) frame[view].push_back({part.name, Cube::zeros(radar)});
+        part_named(part.name, frame[view], radar).cube.insert_chirps(part.cube, stretch.first_chirp);
+      }
+    }
+  }
+  return frame;
+}
+
+}  // namespace echopath

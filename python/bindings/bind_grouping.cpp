@@ -1,0 +1,163 @@
+#include "grouping.h"
+
+#include <pybind11/stl.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "array.h"
+#include "echopath/label/families.h"
+#include "echopath/label/visibility.h"
+#include "run_job.h"
+
+namespace echopath::bindings {
+namespace {
+
+using Objects = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+py::object text_key(const std::string& name) { return py::str(name); }
+
+KeyedGrouping selections_grouping(const std::vector<std::pair<std::string, Selection>>& parts) {
+  std::vector<NamedSelection> named;
+  for (const auto& [name, selection] : parts) named.push_back({name, selection});
+  return {by_selections(std::move(named)), &text_key};
+}
+
+// Remembers the families that it meets, also those of later records.
+KeyedGrouping families_grouping(SurfaceMap surfaces) {
+  auto known = std::make_shared<std::map<std::string, Family>>();
+  Grouping rule = [surfaces = std::move(surfaces), known](const Paths& paths, Job* job) {
+    const Families found = find_families(paths, surfaces, job);
+    for (const Family& family : found.families) known->try_emplace(family.name(), family);
+    return found.partition();
+  };
+  return {std::move(rule), [known](const std::string& name) { return py::cast(known->at(name)); }};
+}
+
+py::object batch_key(const std::string& name) {
+  if (name == kAllBatches) return py::make_tuple(py::none(), "coherent");
+  const size_t number = name.find(' ') + 1, kind = name.rfind(' ') + 1;
+  return py::make_tuple(std::stoi(name.substr(number)), name.substr(kind));
+}
+
+KeyedGrouping all_of(const std::vector<KeyedGrouping>& groupings) {
+  std::vector<Grouping> rules;
+  for (const KeyedGrouping& grouping : groupings) rules.push_back(grouping.rule);
+  const auto key_of = [groupings](const std::string& name) {
+    py::tuple key(groupings.size());
+    size_t begin = 0;
+    for (size_t i = 0; i < groupings.size(); ++i) {
+      const size_t end = name.find(kBetweenNames, begin);
+      key[i] = groupings[i].key_of(name.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return py::object(key);
+  };
+  return {by_all(std::move(rules)), key_of};
+}
+
+SurfaceMap surfaces_of(const Scene& scene, const std::optional<Objects>& objects, double time, const Vec3& antenna) {
+  if (!objects) return map_surfaces(scene, time, antenna);
+  std::vector<NamedGlobs> named;
+  for (const auto& [name, globs] : *objects) named.push_back({name, globs});
+  return map_surfaces(scene, named);
+}
+
+py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects) {
+  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  Families found = run_job("families", py::none(), [&](Job& job) { return find_families(paths, surfaces, &job); });
+  const std::vector<std::string> names(surfaces.names.begin(), surfaces.names.begin() + surfaces.num_objects);
+  return py::make_tuple(names, found.families, numpy_take(std::move(found.family_of_path)), families_grouping(surfaces));
+}
+
+std::vector<ObjectVisibility> visibility_of(const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
+                                            std::optional<double> time, int num_directions, const py::object& progress) {
+  const double at = time.value_or(0.5 * radar.frame_duration());
+  return run_job("visibility", progress, [&](Job& job) {
+    radar.validate();
+    const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(at));
+    return visibility(scene, radar, surfaces_of(scene, objects, at, antenna), {at, num_directions}, &job);
+  });
+}
+
+void bind_visibility(py::module_& m) {
+  const auto occluders = [](const Sight& sight) {
+    py::dict out;
+    for (const auto& [name, share] : sight.occluders) out[py::str(name)] = share;
+    return out;
+  };
+  const auto as_tuple = [occluders](const Sight& sight) {
+    return py::make_tuple(sight.visible_share, occluders(sight), sight.in_view, sight.distance, sight.solid_angle);
+  };
+  m.def("visibility", [as_tuple](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
+                              std::optional<double> time, int num_directions, const py::object& progress) {
+    py::list out;
+    for (const ObjectVisibility& object : visibility_of(scene, radar, objects, time, num_directions, progress)) {
+      out.append(py::make_tuple(object.name, as_tuple(object.transmitter), as_tuple(object.receiver)));
+    }
+    return out;
+  }, py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"), py::arg("progress"),
+        "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.");
+}
+
+void bind_family(py::module_& m) {
+  const auto via = [](const Family& self) { return py::tuple(py::cast(self.via)); };
+  const auto state = [via](const Family& self) {
+    return py::make_tuple(self.object, self.ghost_type, self.order, via(self));
+  };
+  const auto make = [](std::string object, int ghost_type, int order, std::vector<std::string> surfaces) {
+    return Family{std::move(object), ghost_type, order, std::move(surfaces)};
+  };
+  py::class_<Family>(m, "Family", R"(Paths of one object that went the same way.
+
+After the Radar Ghost Dataset (Kraus et al. 2021).
+
+object: name, "" for the background: paths that touch no object
+ghost_type: 0 for real echoes (and the background), 1 for ghosts whose last bounce is on the object, 2 on something else
+order: number of bounces; hits that follow each other on one object are one. 1 for real echoes, 0 for the background
+via: names of what mirrored it, each once, in the order of the first bounce there)")
+      .def(py::init(make), py::arg("object"), py::arg("ghost_type"), py::arg("order"), py::arg("via"))
+      .def_readonly("object", &Family::object, "name of the object, \"\" for the background")
+      .def_readonly("ghost_type", &Family::ghost_type, "0: real echo or background; 1, 2: of a ghost")
+      .def_readonly("order", &Family::order, "number of bounces; 0: background")
+      .def_property_readonly("via", via, "tuple of the names of what mirrored it")
+      .def_property_readonly("class_code", &Family::class_code,
+                             R"(Label of the Radar Ghost Dataset without the object's class, to which 1000 C is to be added
+(C: 1 pedestrian, 2 cyclist, 3 car, 4 large vehicle, 5 motorcycle): 111 real, 112 type 1 of order 2, 122 type 2 of order
+2, 124 type 2 of order 3; 100 every other ghost, which the dataset leaves undecided; 0 background (no class).)")
+      .def_property_readonly("is_ghost", [](const Family& self) { return self.ghost_type > 0; },
+                             "neither real nor background")
+      .def("__eq__", [](const Family& a, const Family& b) { return a == b; }, py::is_operator())
+      .def("__hash__", [state](const Family& self) { return py::hash(state(self)); })
+      .def("__str__", &Family::name)
+      .def("__repr__", [](const Family& self) { return "<Family " + self.name() + ">"; })
+      .def(py::pickle(state, [make](const py::tuple& saved) {
+        return make(saved[0].cast<std::string>(), saved[1].cast<int>(), saved[2].cast<int>(),
+                    saved[3].cast<std::vector<std::string>>());
+      }));
+}
+
+}  // namespace
+
+void bind_grouping(py::module_& m) {
+  bind_family(m);
+  bind_visibility(m);
+  py::class_<KeyedGrouping>(m, "Grouping", "A rule that sorts the paths of any record of a scene into parts, for decompose.")
+      .def_static("selections", &selections_grouping, py::arg("parts"),
+                  "parts: [(name, selection), ...]; the first that takes a path has it. Keys: names, \"other\" last.")
+      .def_static("batches", [] { return KeyedGrouping{by_batches(), &batch_key}; },
+                  "Keys: (batch, \"coherent\") and (batch, \"diffuse\"); last (None, \"coherent\"), paths by images, which "
+                  "stand in each batch's estimate in full.")
+      .def_static("all_of", &all_of, py::arg("groupings"), "Combinations that occur. Keys: tuples of keys.");
+  m.def("find_families", &families_of, py::arg("paths"), py::arg("objects"),
+        R"(The family of each path.
+
+objects: [(name, [glob, ...]), ...] or None for the children of the scene's root that do not surround the antenna
+Returns the names of the objects, the families that occur (background last), uint32 [P] indices into them, and the
+Grouping by them.)");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,90 @@
+"""Which objects a radar can see, and what hides the others."""
+from __future__ import annotations
+
+import dataclasses
+
+from . import _core
+from .families import named_globs
+
+
+@dataclasses.dataclass(frozen=True)
+class Sight:
+    """An object as one end of the radar sees it, from the mean position of its antennas.
+
+    visible_share: of the solid angle that the object would fill alone, 0 to 1; an object does not hide itself
+    occluders: {name: share of that solid angle where this one is nearest}, largest first; with visible_share they add up
+        to 1. Names are those of objects, and of other surfaces as in `Family.via`
+    in_view: an antenna has gain toward a part of it, hidden or not
+    distance: m, to the nearest point of its triangles
+    solid_angle: sr that it would fill alone; 0: seen edge-on, and then the shares are 0
+    """
+
+    visible_share: float
+    occluders: dict
+    in_view: bool
+    distance: float
+    solid_angle: float
+
+    def __repr__(self) -> str:
+        hidden = "".join(f", {share:.1%} behind {name}" for name, share in self.occluders.items())
+        view = "" if self.in_view else ", out of view"
+        return f"<Sight {self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}>"
+
+
+@dataclasses.dataclass(frozen=True)
+class ObjectVisibility:
+    """How much of an object the radar can see; made by `visibility`.
+
+    name: of the object
+    transmitter, receiver: Sight of each end, with distances in m
+    """
+
+    name: str
+    transmitter: Sight
+    receiver: Sight
+
+    @property
+    def worse(self) -> Sight:
+        """The Sight of the end that sees less of it: an echo needs both."""
+        return self.receiver if self.receiver.visible_share < self.transmitter.visible_share else self.transmitter
+
+    @property
+    def visible_share(self) -> float:
+        """Share of its solid angle that the end sees which sees less, 0 to 1."""
+        return self.worse.visible_share
+
+    @property
+    def occluders(self) -> dict:
+        """{name: share of the solid angle that it hides} from that end, largest first."""
+        return self.worse.occluders
+
+    @property
+    def in_view(self) -> bool:
+        """Whether both ends have an antenna with gain toward a part of it."""
+        return self.transmitter.in_view and self.receiver.in_view
+
+    @property
+    def distance(self) -> float:
+        """Half the way from the transmitter to its nearest point and from its nearest point to the receiver, m."""
+        return 0.5 * (self.transmitter.distance + self.receiver.distance)
+
+    def __repr__(self) -> str:
+        return f"<ObjectVisibility {self.name}: {repr(self.worse)[7:]}"
+
+
+def visibility(scene, radar, objects=None, *, time=None, num_directions=4096, progress=None) -> list:
+    """How much of each object the radar can see, and what hides the rest, by shadow rays.
+
+    Directions over the cone that holds an object: where it would be hit if it were alone, is something else nearer? Straight
+    lines only: what an object sends over mirrors is a matter of its paths (`families`).
+    scene: what is looked at; radar: whose antennas look, each end from their mean position
+    objects: as in `families`
+    time: s, of scene and radar; None: the middle of a frame that starts at 0
+    num_directions: on each object, about; the error of a share is below 0.003 for compact outlines and 4096, and falls with
+        the power -3/4
+    progress: callable (stage, fraction) or None
+    Returns a list of ObjectVisibility, in the order of the objects; the same for any number of threads. Raises ValueError
+    for bad names, globs that take no mesh and motions that do not cover the time.
+    """
+    found = _core.visibility(scene, radar, named_globs(objects), time, num_directions, progress)
+    return [ObjectVisibility(name, Sight(*transmitter), Sight(*receiver)) for name, transmitter, receiver in found]

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cpp/label/hand_made_paths.h"
+#include "echopath/label/surfaces.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+using Names = std::vector<std::string>;
+
+std::string error_of(const std::vector<NamedGlobs>& objects) {
+  try {
+    map_surfaces(*make_street(), objects);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void add_group(Scene& scene, const std::string& name, int parent = -1) {
+  Node node;
+  node.name = name;
+  node.parent = parent;
+  scene.add(std::move(node));
+}
+
+// A square of that half width at a place, facing x.
+void add_square(Scene& scene, const std::string& name, const Vec3& centre, double half, const Material& material,
+                int parent = -1) {
+  Node node;
+  node.name = name;
+  node.parent = parent;
+  const Vec3 y(0, half, 0), z(0, 0, half);
+  node.mesh = std::make_shared<const Mesh>(std::vector<Vec3>{centre - y - z, centre + y - z, centre + y + z, centre - y + z},
+                                           std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+  node.material = std::make_shared<const Material>(material);
+  scene.add(std::move(node));
+}
+
+TEST(SurfaceMap, FirstObjectTakesAMesh) {
+  const SurfaceMap map = map_surfaces(*make_street(), {{"arm", {"*/left"}}, {"person", {"pedestrian"}}});
+  EXPECT_EQ(map.names, (Names{"arm", "person", "street"}));
+  EXPECT_EQ(map.num_objects, 2u);
+  EXPECT_EQ(map.of_mesh, (std::vector<uint32_t>{2, 2, 2, 1, 0, 1}));
+  EXPECT_EQ(map.meshes_of(1), (std::vector<uint32_t>{kTorso, kArmRight}));
+}
+
+TEST(SurfaceMap, GroupsThatHoldObjectsAreLookedInto) {
+  const SurfaceMap map = map_surfaces(*make_street(), {{"wall", {"street/wall_left"}}});
+  EXPECT_EQ(map.names, (Names{"wall", "street/wall_right", "street/floor", "pedestrian"}));
+}
+
+TEST(SurfaceMap, EachMirrorOfAGroupIsASurface) {
+  Scene scene;
+  add_group(scene, "street");
+  add_square(scene, "left", {5, 0, 0}, 1, Material::metal(true), 0);
+  add_square(scene, "right", {6, 0, 0}, 1, Material::metal(true), 0);
+  add_group(scene, "house");
+  add_square(scene, "front", {7, 0, 0}, 1, Material::metal(true), 3);
+  add_square(scene, "roof", {8, 0, 0}, 1, Material::metal(), 3);
+  EXPECT_EQ(map_surfaces(scene, {}).names, (Names{"street/left", "street/right", "house"}));
+}
+
+TEST(SurfaceMap, ObjectsAreChildrenOfTheRootAwayFromTheAntennaAndNoMirrors) {
+  Scene scene;
+  add_square(scene, "plate", {5, 0, 0}, 1, Material::metal());
+  add_square(scene, "mirror", {6, 0, 0}, 1, Material::metal(true));
+  add_square(scene, "around", {1, 0, 0}, 3, Material::metal());  // sphere of radius 4.2 m
+  add_group(scene, "car");
+  add_square(scene, "door", {0, 8, 0}, 1, Material::metal(), 3);
+  add_square(scene, "window", {0, 9, 0}, 1, Material::metal(true), 3);
+  const SurfaceMap map = map_surfaces(scene, 0.0, Vec3::Zero());
+  EXPECT_EQ(map.names, (Names{"plate", "car", "mirror", "around", "car/window"}));
+  EXPECT_EQ(map.num_objects, 2u);
+  const SurfaceMap from_afar = map_surfaces(scene, 0.0, Vec3(-3.3, 0, 0));  // outside of that sphere by 0.06 m
+  EXPECT_EQ(from_afar.num_objects, 3u);
+}
+
+TEST(SurfaceMap, BadObjectsAreErrors) {
+  EXPECT_NE(error_of({{"", {"street"}}}).find("objects: must have non-empty names"), std::string::npos);
+  EXPECT_NE(error_of({{"a", {"street"}}, {"a", {"pedestrian"}}}).find("a twice"), std::string::npos);
+  EXPECT_NE(error_of({{"a", {"pedestrain"}}}).find("nearest names: pedestrian"), std::string::npos);
+  EXPECT_NE(error_of({{"a", {"*"}}, {"b", {"street"}}}).find("none before it takes"), std::string::npos);
+  EXPECT_NE(error_of({{"a", {}}}).find("none before it takes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "echopath/base/parallel.h"
+#include "echopath/label/visibility.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+// Of a share, for 4096 directions on a compact outline: 64 lattice cells along an edge, each off by half at random.
+constexpr double kShareError = 3e-3;
+constexpr double kRounding = 1e-12;  // m
+
+// Solid angle of the rectangle 0 <= y <= a, 0 <= z <= b at x = d, signed; seen from the origin.
+double corner_angle(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
+
+double rectangle_angle(double y0, double y1, double z0, double z1, double d) {
+  return corner_angle(y1, z1, d) - corner_angle(y0, z1, d) - corner_angle(y1, z0, d) + corner_angle(y0, z0, d);
+}
+
+void add_facing(Scene& scene, const std::string& name, double x, double y0, double y1, double z0, double z1) {
+  add_rectangle(scene, name, {x, y0, z0}, {0, y1 - y0, 0}, {0, 0, z1 - z0}, share(Material::metal()));
+}
+
+void add_disc(Scene& scene, const std::string& name, double x, double radius) {
+  constexpr int kSides = 256;  // area short of the circle's by 1e-4
+  std::vector<Vec3> vertices{{x, 0, 0}};
+  std::vector<Triangle> triangles;
+  for (uint32_t k = 0; k < kSides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kSides;
+    vertices.emplace_back(x, radius * std::cos(angle), radius * std::sin(angle));
+    triangles.push_back({0, 1 + k, 1 + (k + 1) % kSides});
+  }
+  add_mesh(scene, name, vertices, triangles, share(Material::metal()));
+}
+
+std::vector<ObjectVisibility> seen_in(const Scene& scene, const std::vector<std::string>& names,
+                                      const Radar& radar = plain_radar(Vec3::Zero(), Vec3::Zero())) {
+  std::vector<NamedGlobs> objects;
+  for (const std::string& name : names) objects.push_back({name, {name}});
+  return visibility(scene, radar, map_surfaces(scene, objects));
+}
+
+double occluded_by(const Sight& sight, const std::string& name) {
+  for (const auto& [occluder, share] : sight.occluders) {
+    if (occluder == name) return share;
+  }
+  return 0.0;
+}
+
+TEST(Visibility, ScreenHidesWhatItCoversOfAPlate) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -2, 0.2, -2, 2);  // up to y = 0.4 of the plate
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const double whole = rectangle_angle(-1, 1, -1, 1, 10);
+  const double visible = rectangle_angle(0.4, 1, -1, 1, 10) / whole;
+  EXPECT_NEAR(sight.solid_angle, whole, kShareError * whole);
+  EXPECT_NEAR(sight.visible_share, visible, kShareError);
+  ASSERT_EQ(sight.occluders.size(), 1u);
+  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
+  EXPECT_NEAR(sight.distance, 10.0, kRounding);
+}
+
+TEST(Visibility, DiscHidesTheMiddleOfADisc) {
+  Scene scene;
+  add_disc(scene, "far", 10, 1);
+  add_disc(scene, "near", 5, 0.3);
+  const auto angle = [](double x, double radius) { return 2 * std::numbers::pi * (1 - x / std::hypot(x, radius)); };
+  const std::vector<ObjectVisibility> seen = seen_in(scene, {"far", "near"});
+  const double hidden = angle(5, 0.3) / angle(10, 1);
+  EXPECT_NEAR(seen[0].transmitter.visible_share, 1 - hidden, kShareError);
+  EXPECT_NEAR(occluded_by(seen[0].transmitter, "near"), hidden, kShareError);
+  EXPECT_EQ(seen[1].transmitter.visible_share, 1.0);
+  EXPECT_TRUE(seen[1].transmitter.occluders.empty());
+}
+
+TEST(Visibility, SphereHidesOnlyItself) {
+  Scene scene;
+  const Surface ball = ellipsoid({8, 1, 0.5}, {1, 1, 1}, 4);
+  add_mesh(scene, "ball", ball.vertices, ball.triangles, share(Material::metal()));
+  const Sight sight = seen_in(scene, {"ball"}).front().transmitter;
+  const double distance = std::hypot(8.0, 1.0, 0.5);
+  const double angle = 2 * std::numbers::pi * (1 - std::sqrt(1 - 1 / (distance * distance)));
+  EXPECT_EQ(sight.visible_share, 1.0);
+  EXPECT_NEAR(sight.solid_angle, angle, 2 * kShareError * angle);  // facets of 1/20 rad lie up to 1e-3 inside
+  EXPECT_NEAR(sight.distance, distance - 1, 2e-3);
+}
+
+TEST(Visibility, PartsOfAnObjectDoNotHideEachOther) {
+  Scene scene;
+  add_facing(scene, "front", 5, -1, 1, -1, 1);
+  add_facing(scene, "back", 6, -1, 1, -1, 1);
+  const SurfaceMap both = map_surfaces(scene, {{"both", {"front", "back"}}});
+  EXPECT_EQ(visibility(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), both).front().transmitter.visible_share, 1.0);
+  EXPECT_EQ(seen_in(scene, {"back"}).front().transmitter.visible_share, 0.0);
+}
+
+TEST(Visibility, NearestOccluderHasTheDirection) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "left", 5, 0, 2, -2, 2);
+  add_facing(scene, "all", 7, -2, 2, -2, 2);
+  const Sight sight = seen_in(scene, {"plate", "left"}).front().transmitter;
+  EXPECT_EQ(sight.visible_share, 0.0);
+  EXPECT_NEAR(occluded_by(sight, "left"), 0.5, kShareError);
+  EXPECT_NEAR(occluded_by(sight, "all"), 0.5, kShareError);
+  double sum = 0.0;
+  for (const auto& [name, share] : sight.occluders) sum += share;
+  EXPECT_NEAR(sum, 1.0, 1e-15);
+  EXPECT_GE(sight.occluders[0].second, sight.occluders[1].second);
+}
+
+TEST(Visibility, EachEndSeesForItself) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -1, 1, -1, 1);
+  const ObjectVisibility seen = seen_in(scene, {"plate"}, plain_radar(Vec3::Zero(), {0, 8, 0})).front();
+  EXPECT_EQ(seen.transmitter.visible_share, 0.0);
+  EXPECT_EQ(seen.receiver.visible_share, 1.0);
+  EXPECT_EQ(seen.worse().visible_share, 0.0);
+  EXPECT_NEAR(seen.receiver.distance, std::hypot(10.0, 7.0), kRounding);  // the middle of an edge
+}
+
+TEST(Visibility, AntennasLookForwardOnly) {
+  Scene scene;
+  add_facing(scene, "ahead", 10, -1, 1, -1, 1);
+  add_facing(scene, "behind", -10, -1, 1, -1, 1);
+  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  radar.transmitters.front().pattern = AntennaPattern::cosine_power(4);
+  const std::vector<ObjectVisibility> seen = seen_in(scene, {"ahead", "behind"}, radar);
+  EXPECT_TRUE(seen[0].in_view());
+  EXPECT_FALSE(seen[1].transmitter.in_view);
+  EXPECT_TRUE(seen[1].receiver.in_view);
+  EXPECT_FALSE(seen[1].in_view());
+  EXPECT_EQ(seen[1].transmitter.visible_share, 1.0);
+  radar.transmitters.front().orientation = Quaternion(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
+  EXPECT_TRUE(seen_in(scene, {"behind"}, radar).front().in_view());
+}
+
+TEST(Visibility, LatticeIsRefinedForThinObjects) {
+  Scene scene;
+  add_facing(scene, "pole", 20, -0.05, 0.05, -3, 3);
+  add_facing(scene, "screen", 10, -1, 1, -2, 0);
+  const Sight sight = seen_in(scene, {"pole"}).front().transmitter;
+  EXPECT_NEAR(sight.visible_share, 0.5, 0.01);  // about 900 directions on it, in rows along it
+  EXPECT_NEAR(sight.solid_angle, rectangle_angle(-0.05, 0.05, -3, 3, 20), 0.03 * sight.solid_angle);
+}
+
+TEST(Visibility, EdgeOnNothingIsSeen) {
+  Scene scene;
+  add_rectangle(scene, "plate", {5, -1, 0}, {1, 0, 0}, {0, 2, 0}, share(Material::metal()));
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  EXPECT_EQ(sight.solid_angle, 0.0);
+  EXPECT_EQ(sight.visible_share, 0.0);
+  EXPECT_TRUE(sight.occluders.empty());
+  EXPECT_NEAR(sight.distance, 5.0, kRounding);
+}
+
+TEST(Visibility, FarFromTheWorldOriginNothingChanges) {
+  const Vec3 far(4.5e5, 5.4e6, 100);
+  Scene scene;
+  add_rectangle(scene, "plate", far + Vec3(10, -1, -1), {0, 2, 0}, {0, 0, 2}, share(Material::metal()));
+  add_rectangle(scene, "screen", far + Vec3(5, -2, -2), {0, 2, 0}, {0, 0, 4}, share(Material::metal()));
+  EXPECT_NEAR(seen_in(scene, {"plate"}, plain_radar(far, far)).front().transmitter.visible_share, 0.5, kShareError);
+}
+
+TEST(Visibility, NumberOfThreadsDoesNotMatter) {
+  Scene scene;
+  add_disc(scene, "far", 10, 1);
+  add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
+  std::vector<Sight> sights;
+  for (const int threads : {1, 4}) {
+    set_num_threads(threads);
+    sights.push_back(seen_in(scene, {"far"}).front().transmitter);
+  }
+  set_num_threads(0);
+  EXPECT_EQ(sights[0].visible_share, sights[1].visible_share);
+  EXPECT_EQ(sights[0].occluders, sights[1].occluders);
+  EXPECT_EQ(sights[0].distance, sights[1].distance);
+}
+
+TEST(Visibility, CancelledJobStops) {
+  Scene scene;
+  add_disc(scene, "far", 10, 1);
+  Job job;
+  job.cancel();
+  EXPECT_THROW(visibility(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), map_surfaces(scene, {{"far", {"far"}}}), {}, &job),
+               Cancelled);
+}
+
+TEST(Visibility, EmptySceneHasNoObjects) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  EXPECT_TRUE(visibility(Scene(), radar, map_surfaces(Scene(), 0.0, Vec3::Zero())).empty());
+}
+
+TEST(Visibility, BadSettingsAreErrors) {
+  Scene scene;
+  add_disc(scene, "far", 10, 1);
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  EXPECT_THROW(visibility(scene, radar, map_surfaces(scene, 0.0, Vec3::Zero()), {0.0, 0}), std::invalid_argument);
+  EXPECT_THROW(visibility(scene, radar, map_surfaces(Scene(), 0.0, Vec3::Zero())), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace echopath

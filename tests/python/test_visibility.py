@@ -1,0 +1,72 @@
+"""Which objects a radar can see, against geometry."""
+import echopath as ep
+import pytest
+
+SHARE_ERROR = 3e-3  # of 4096 directions: some sixty lattice cells along an edge, each off by half at random
+
+
+def radar_at(position, **antenna):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=1e6, num_chirps=2,
+                                chirp_interval=60e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(position, **antenna)], receivers=[ep.Antenna(position, **antenna)])
+
+
+def person_and_car(gap):
+    """A person whose middle is `gap` m aside of the middle of a box as large as a van, 2 m wide, before it."""
+    scene = ep.Scene()
+    scene.add(ep.actors.ground((60.0, 40.0)), name="ground", material="asphalt")
+    scene.add(ep.actors.box((4.0, 2.0, 2.4)), name="car", material="metal", position=(8.0, 0.0, 1.2))
+    scene.add(ep.actors.pedestrian(height=1.7), name="person", position=(12.0, gap, 0.0))
+    return scene
+
+
+def test_a_person_behind_a_car_is_hidden_by_it():
+    seen = {sight.name: sight for sight in ep.visibility(person_and_car(gap=0.0), radar_at((0, 0, 0.6)))}
+    assert list(seen) == ["car", "person"]
+    assert seen["person"].visible_share == 0.0 and seen["person"].occluders == {"car": 1.0}
+    assert seen["person"].in_view and 11.0 < seen["person"].distance < 12.0
+    assert seen["car"].visible_share == 1.0 and seen["car"].distance == pytest.approx(6.0, abs=0.01)
+    assert repr(seen["person"]).startswith("<ObjectVisibility person: 0.0% visible, 100.0% behind car, 11.")
+
+
+def test_beside_the_car_the_person_is_seen():
+    person = ep.visibility(person_and_car(gap=4.0), radar_at((0, 0, 0.6)))[1]
+    assert person.visible_share == 1.0 and person.occluders == {}
+    assert person.transmitter == person.receiver
+
+
+def test_a_low_wall_hides_half_of_a_door():
+    """Named parts may be objects; a part may hide another one, but an object not itself."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(4.0, 1.0), name="low wall", material="concrete", position=(6.0, 0.0, 0.5))
+    scene.add(ep.actors.plate(1.0, 2.0), name="door", material="metal", position=(6.001, 0.0, 1.0))
+    radar = radar_at((0, 0, 1.0))
+    door, = ep.visibility(scene, radar, ["door"], num_directions=20_000)
+    assert door.visible_share == pytest.approx(0.5, abs=SHARE_ERROR)
+    assert door.occluders == {"low wall": pytest.approx(0.5, abs=SHARE_ERROR)}
+    both, = ep.visibility(scene, radar, {"all": ["door", "low wall"]})
+    assert both.name == "all" and both.visible_share == 1.0
+
+
+def test_antennas_that_look_away_have_it_out_of_view():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(-8.0, 0.0, 1.0))
+    sight, = ep.visibility(scene, radar_at((0, 0, 1), pattern=ep.CosinePower(exponent=2.0)))
+    assert not sight.in_view and sight.visible_share == 1.0 and "out of view" in repr(sight)
+
+
+def test_time_moves_what_hides():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(10.0, 0.0, 0.0))
+    scene.add(ep.actors.plate(2.0, 2.0), name="screen", material="metal", position=(5.0, 0.0, 0.0),
+              motion=ep.LinearMotion(velocity=(0.0, 10.0, 0.0)))
+    shares = [ep.visibility(scene, radar_at((0, 0, 0)), ["plate"], time=time)[0].visible_share for time in (0.0, 0.1, 0.2)]
+    # The screen's near edge is at y = 10 t - 1; the plate's shadow at 5 m reaches from -0.25 m to 0.25 m.
+    assert shares == [0.0, pytest.approx(0.5, abs=SHARE_ERROR), 1.0]
+
+
+def test_bad_objects_are_named():
+    with pytest.raises(ValueError, match="nearest names: car"):
+        ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), ["cart"])
+    with pytest.raises(ValueError, match="num_directions: must be at least 1"):
+        ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), num_directions=0)

@@ -8,7 +8,7 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/spectrum/cfar.h"
+#include "echopath/spectrum/peaks.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -44,10 +44,10 @@ CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::strin
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
 }
 
-py::array_t<int64_t> cells_of(const CfarResult& result) {
-  py::array_t<int64_t> cells({static_cast<py::ssize_t>(result.cells.size()), py::ssize_t{2}});
-  for (size_t i = 0; i < result.cells.size(); ++i) {
-    for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = result.cells[i][axis];
+py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
+  py::array_t<int64_t> cells({static_cast<py::ssize_t>(values.size()), py::ssize_t{2}});
+  for (size_t i = 0; i < values.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = values[i][axis];
   }
   return cells;
 }
@@ -57,6 +57,19 @@ py::array_t<bool> mask_of(const CfarResult& result) {
   std::fill_n(mask.mutable_data(), mask.size(), false);
   for (const auto& [velocity, range] : result.cells) mask.mutable_at(velocity, range) = true;
   return mask;
+}
+
+py::dict peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& found, const py::object& progress) {
+  Peaks peaks = run_job("find_peaks", progress, [&](Job& job) { return find_peaks(map, radar, found, &job); });
+  py::dict out;
+  out["cells"] = cells_array(peaks.cells);
+  out["velocity"] = numpy_take(std::move(peaks.velocity));
+  out["range"] = numpy_take(std::move(peaks.range));
+  out["power"] = numpy_take(std::move(peaks.power));
+  out["noise"] = numpy_take(std::move(peaks.noise));
+  out["velocity_offset"] = numpy_take(std::move(peaks.velocity_offset));
+  out["range_offset"] = numpy_take(std::move(peaks.range_offset));
+  return out;
 }
 
 std::string text_of(const CfarResult& result) {
@@ -78,7 +91,8 @@ void bind_cfar(py::module_& m) {
         return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
       }, "[velocity, range] W, mean over channels")
       .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
-      .def_property_readonly("cells", &cells_of, "[D, 2] (velocity, range) indices of the cells found, ascending")
+      .def_property_readonly("cells", [](const CfarResult& self) { return cells_array(self.cells); },
+                             "[D, 2] (velocity, range) indices of the cells found, ascending")
       .def_property_readonly("noise", [](const py::object& self) {
         return numpy_view(self.cast<const CfarResult&>().noise, self);
       }, "[D] W, mean power of the noise about each cell found, as its training cells tell it")
@@ -103,6 +117,12 @@ void bind_cfar(py::module_& m) {
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
         py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(), kCfarDoc);
+  m.def("find_peaks", &peaks_of, py::arg("spectrum"), py::arg("radar"), py::arg("found"), py::arg("progress") = py::none(),
+        R"(Local maxima among the cells found, and where between the cells they lie.
+
+found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
+Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
+channels), velocity_offset, range_offset (cells). Raises ValueError.)");
 }
 
 }  // namespace echopath::bindings

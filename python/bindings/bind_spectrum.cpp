@@ -48,6 +48,8 @@ void bind_spectrum(py::module_& m) {
         return numpy_view(self.cast<const RangeDoppler&>().range, self);
       }, "[range] in m, ascending from 0")
       .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
+      .def_property_readonly("window", [](const RangeDoppler& self) { return window_value(self.window); },
+                             "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", &text_of);

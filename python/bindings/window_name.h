@@ -21,4 +21,10 @@ inline Window as_window(const py::object& value) {
   return Window::named(parts[0].cast<std::string>(), parts[1].cast<double>());
 }
 
+// The same back.
+inline py::object window_value(const Window& window) {
+  if (window.kind != WindowKind::kChebyshev) return py::str(window.name());
+  return py::make_tuple(window.name(), window.sidelobe_db);
+}
+
 }  // namespace echopath::bindings

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kNegligible = 1e-10;  // of the largest eigenvalue: rounding, not a degree of freedom
+constexpr double kNegligible = 1e-6;  // of the largest eigenvalue: power of a degree of freedom that changes nothing
 
 // F with F F^T = correlation matrix of `num_cells` neighbours.
 MatrixXd factor_of(const std::vector<double>& samples, int zero_pad, int num_cells) {

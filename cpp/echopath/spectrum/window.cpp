@@ -11,6 +11,9 @@
 namespace echopath {
 namespace {
 
+// In the order of WindowKind.
+const std::vector<std::string> kNames = {"rect", "hann", "hamming", "blackman_harris", "chebyshev"};
+
 // sum_k (-1)^k coefficients[k] cos(2 pi k (i + shift) / n)
 std::vector<double> cosine_window(int n, double shift, const std::vector<double>& coefficients) {
   std::vector<double> samples(n);
@@ -73,14 +76,15 @@ double sum_of(const std::vector<double>& samples) { return std::accumulate(sampl
 }  // namespace
 
 Window Window::named(const std::string& name, double sidelobe_db) {
-  const std::vector<std::string> names = {"rect", "hann", "hamming", "blackman_harris", "chebyshev"};
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) {
     throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris or chebyshev, got '" + name +
-                                "'; nearest: " + nearest_names(name, names, 1).front());
+                                "'; nearest: " + nearest_names(name, kNames, 1).front());
   }
-  return {static_cast<WindowKind>(found - names.begin()), sidelobe_db};
+  return {static_cast<WindowKind>(found - kNames.begin()), sidelobe_db};
 }
+
+std::string Window::name() const { return kNames.at(static_cast<size_t>(kind)); }
 
 std::vector<double> window_samples(const Window& window, int n) { return samples_of(window, n, 0.0); }
 

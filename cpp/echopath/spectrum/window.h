@@ -15,6 +15,7 @@ struct Window {
 
   // "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
   static Window named(const std::string& name, double sidelobe_db = 80.0);
+  std::string name() const;
   bool operator==(const Window&) const = default;
 };
 

@@ -14,8 +14,8 @@ def measure_false_alarms(num_cells: int = 10_000_000, *, windows=WINDOWS, rates=
     """Thermal noise through the range-Doppler transform and CFAR, map after map until there are enough cells.
 
     num_cells: at least, for each row; windows: (window, zero_pad, receivers) of each row; rates: of false alarms
-    Returns rows {window, zero_pad, channels, method, rate, cells, false_alarms, ratio, standard_error}: false alarms per cell
-    over the rate, with its standard error from the scatter between maps.
+    Returns rows {window, zero_pad, channels, method, rate, cells, false_alarms, ratio, standard_error}: ratio is that of the
+    false alarms per cell to the rate, with its standard error from the scatter between maps.
     """
     return [row for window, zero_pad, receivers in windows
             for row in _measure(num_cells, window, zero_pad, receivers, rates)]

@@ -1,0 +1,5 @@
+"""Detections: echoes above the noise with their place, their label and the paths behind them."""
+from .detect import detect
+from .detections import Detections
+
+__all__ = ["Detections", "detect"]

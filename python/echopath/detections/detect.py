@@ -1,0 +1,77 @@
+"""From a range-Doppler map to a labelled point cloud."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .. import _core
+from ..same_radar import difference
+from . import labelling
+from .detections import Detections, centre_of
+from .directions import directions_of
+from .echo_fields import EchoFields
+
+
+def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocity=None, guard_range=None,
+           training_velocity=None, training_range=None, rank=0.75, angles=None, paths=None, parts=None, labels=None,
+           objects=None, progress=None) -> Detections:
+    """Echoes that stand out of the noise of a range-Doppler map, with what made them.
+
+    Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
+    window, directions by `estimate_angles`. A detection has the label of the largest power in its cell without noise; it is
+    "noise" where echoes hold less than half of its power.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise
+    radar: that of the spectrum
+    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
+    angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
+    paths: of `trace` with that radar: objects, ghosts and the paths behind each detection
+    parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`
+    labels: Labels of the map instead of parts; without paths their objects and ghosts too
+    objects: of `families`, with paths
+    progress: callable(stage, fraction) or None
+    Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
+    Ctrl-C.
+    """
+    if parts is not None and labels is not None:
+        raise ValueError("labels: cannot be given beside parts")
+    if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
+        raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
+    found = ep.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
+                    guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
+                    progress=progress)
+    peaks = _core.find_peaks(spectrum, radar, found, progress)
+    cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
+    echoes = None if paths is None else EchoFields(paths, spectrum)
+    columns = _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes)
+    return _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
+
+
+def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes) -> dict:
+    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
+    part, share = np.full(len(cells), "", dtype=str), np.full(len(cells), np.nan)
+    families, whole = [None] * len(cells), None
+    if paths is not None:
+        families, whole = labelling.families_of_cells(paths, ep.families(paths, objects), echoes, cells)
+    elif labels is not None:
+        families = labelling.families_of_labels(labels, cells)
+    if parts is not None or labels is not None:
+        names, powers, whole = (labelling.label_powers(spectrum, labels, cells) if parts is None else
+                                labelling.part_powers(spectrum, radar, parts, cells))
+        part, share = labelling.strongest_part(names, powers)
+    is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, power)
+    part, share = labelling.with_noise(part, share, is_noise)
+    return {"part": part, "share": share} | labelling.as_columns(families, is_noise)
+
+
+def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) -> Detections:
+    """Peaks [N] and their directions [D] as detections [D]. power: [N] W, of the cells."""
+    index, waveform = directions["index"], radar.waveform
+    velocity = peaks["velocity"][index] + directions["fold"]
+    # Beams have their power in the cell; what the windows lost between cells is put back to them too.
+    in_beam = directions["power"] * (peaks["power"] / power)[index]
+    return Detections(cells=peaks["cells"][index], velocity=velocity,
+                      range=peaks["range"][index] - waveform.centre_frequency * velocity / waveform.slope,
+                      azimuth=directions["azimuth"], elevation=directions["elevation"],
+                      power=np.where(np.isnan(in_beam), peaks["power"][index], in_beam), noise=peaks["noise"][index],
+                      echoes=echoes, centre=centre_of(radar), **{name: values[index] for name, values in columns.items()})

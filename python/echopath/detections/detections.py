@@ -1,0 +1,110 @@
+"""A labelled point cloud."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+
+import numpy as np
+
+from ..files import written_whole
+from .directions import toward
+from .echo_fields import EchoFields
+
+NOISE = "noise"  # part of a detection that no echo made
+COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
+           "class_code", "share", "velocity_index", "range_index")
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Detections:
+    """Echoes that stand out of the noise of a range-Doppler map, D of them by cell; made by `detect`.
+
+    cells: [D, 2] (velocity, range) indices; several detections of one cell have several directions
+    range: [D] m, without the shift that velocity makes in the map
+    velocity: [D] m/s, receding positive, folded as in the map unless `folds` were tried
+    azimuth, elevation: [D] rad, left and up positive, in the radar's frame; NaN where the antennas cannot tell
+    power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell
+    part: [D] text, of the largest power in the cell; "noise": no echo made it; "" where nobody asked
+    share: [D] of that part in the sum of the powers of all parts, NaN without one
+    object: [D] text, whose echo it is, "" for the surroundings and noise; ghost_type, order, class_code: i32 [D], as of
+        `families`, 0 without an object
+    echoes: which paths make which cell, None without paths
+    centre: [3] m, in the radar's frame, from which points are counted: half-way between transmitters and receivers
+    """
+
+    cells: np.ndarray
+    range: np.ndarray
+    velocity: np.ndarray
+    azimuth: np.ndarray
+    elevation: np.ndarray
+    power: np.ndarray
+    noise: np.ndarray
+    part: np.ndarray
+    share: np.ndarray
+    object: np.ndarray
+    ghost_type: np.ndarray
+    order: np.ndarray
+    class_code: np.ndarray
+    echoes: EchoFields | None = None
+    centre: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def snr_db(self) -> np.ndarray:
+        """Power over noise, [D] dB; infinite in a map without noise."""
+        with np.errstate(divide="ignore"):
+            return 10.0 * np.log10(self.power / self.noise)
+
+    @property
+    def points(self) -> np.ndarray:
+        """[D, 3] m, in the radar's frame; in the xy-plane where no elevation is known, NaN where no azimuth is."""
+        return self.centre + self.range[:, None] * toward(self.azimuth, np.nan_to_num(self.elevation))
+
+    def paths(self, i: int) -> tuple:
+        """The paths behind detection i: (indices i64 [N], shares [N] of the power), largest share first.
+
+        Model: the length, its rate and the change of that at mid-frame for the first antennas, and the response of the
+        windows; taken are the strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares are.
+        i: index, 0 to D - 1. Empty for "noise". Raises ValueError where `detect` was given no paths, IndexError.
+        """
+        if self.echoes is None:
+            raise ValueError("paths: detect(..., paths=) was not given any")
+        if not -len(self) <= i < len(self):
+            raise IndexError(f"i: must be in [0, {len(self)}), got {i}")
+        if self.part[i] == NOISE:
+            return np.zeros(0, np.int64), np.zeros(0)
+        return self.echoes.paths(self.cells[i])
+
+    def to_csv(self, path) -> None:
+        """Writes a table with a row for each detection, whole or not at all.
+
+        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell; unknown numbers are
+        left empty. Raises ep.FileError.
+        """
+        columns = [getattr(self, name) for name in COLUMNS[:-2]] + [self.cells[:, 0], self.cells[:, 1]]
+        with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            writer.writerows([_as_text(value) for value in row] for row in zip(*columns))
+
+    def __len__(self) -> int:
+        return len(self.range)
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return "Detections(0)"
+        names, counts = np.unique(self.part[self.part != ""], return_counts=True)
+        of_parts = "".join(f", {count} {name}" for name, count in zip(names, counts))
+        return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():.2f} to "
+                f"{self.velocity.max():.2f} m/s{of_parts})")
+
+
+def _as_text(value) -> str:
+    if isinstance(value, (float, np.floating)):
+        return "" if np.isnan(value) else repr(float(value))
+    return str(value)
+
+
+def centre_of(radar):
+    """[3] m, in the radar's frame: half-way between the mean transmitter and the mean receiver."""
+    return 0.5 * sum(np.mean([antenna.position for antenna in antennas], axis=0)
+                     for antennas in (radar.transmitters, radar.receivers))

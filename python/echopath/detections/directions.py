@@ -1,0 +1,40 @@
+"""Where the echoes of detected cells come from."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+
+def toward(azimuth, elevation):
+    """Unit vectors [D, 3] of directions [D] in rad."""
+    level = np.cos(elevation)
+    return np.stack([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1)
+
+
+def directions_of(spectrum, radar, cells, settings: dict, progress) -> dict:
+    """Directions of the echoes in cells [N, 2], at least one for each cell.
+
+    settings: keywords of `estimate_angles`
+    Returns index [D] of the cell, azimuth, elevation [D] in rad (NaN where the antennas cannot tell), fold [D] m/s, to be
+    added to the velocity, power [D] W, NaN where no beams were made.
+    """
+    azimuths, elevations = ep.virtual_array(radar).default_angles()
+    count = len(cells)
+    unknown = {"index": np.arange(count), "azimuth": np.full(count, np.nan), "elevation": np.full(count, np.nan),
+               "fold": np.zeros(count), "power": np.full(count, np.nan)}
+    if count == 0 or len(azimuths) == len(elevations) == 1:
+        return unknown
+    found = ep.estimate_angles(spectrum, radar, cells=cells, progress=progress, **settings)
+    sees = {"azimuth": len(azimuths) > 1, "elevation": len(elevations) > 1}
+    known = {"index": found.cell, "fold": found.velocity - spectrum.velocity[cells[found.cell, 0]], "power": found.power}
+    known |= {name: getattr(found, name) if seen else np.full(len(found), np.nan) for name, seen in sees.items()}
+    return _with_the_rest(known, unknown)
+
+
+def _with_the_rest(known: dict, unknown: dict) -> dict:
+    """Cells in which no beam has power keep their place."""
+    rest = np.setdiff1d(unknown["index"], known["index"])
+    joined = {name: np.concatenate([known[name], unknown[name][rest]]) for name in unknown}
+    order = np.argsort(joined["index"], kind="stable")
+    return {name: values[order] for name, values in joined.items()}

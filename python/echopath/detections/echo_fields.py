@@ -1,0 +1,170 @@
+"""What each path gives to a cell of a range-Doppler map: the step from detections back to paths."""
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+import echopath as ep
+
+from ..path_cells import OUTSIDE
+
+FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
+STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
+SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame
+MAX_SWEEP = 32.0       # bins
+SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
+MAX_SEGMENTS = 32
+HELD = 0.9999          # of the power of single paths, by the paths that are named
+
+
+class Response:
+    """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
+
+    In parts, one for each segment of the samples. reach: bins, within which it is known
+    """
+
+    def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
+        samples = _window_samples(window, n)
+        self._n = n
+        self._middle = int(np.ceil(min(largest_sweep, MAX_SWEEP) / SWEEP_STEP))
+        self._sweeps = SWEEP_STEP * np.arange(-self._middle, self._middle + 1)
+        self.reach = min(_reach(samples) + 0.5 * self._sweeps[-1], 0.5 * n)
+        self._half = int((self.reach + 1.0) * STEPS_PER_BIN)
+        place = (np.arange(n) - 0.5 * (n - 1)) / n
+        bent = samples / samples.sum() * np.exp(1j * np.pi * np.outer(self._sweeps, place ** 2))
+        parts = np.array_split(np.arange(n), segments)
+        self.centres = np.array([place[part].mean() for part in parts])  # [segments], -1/2 to 1/2
+        self._table = np.stack([self._transform(bent * np.isin(np.arange(n), part)) for part in parts])
+
+    def __call__(self, y, sweep=0.0):
+        """y: bins [N] or [segments, N], folded into the axis; sweep: bins [N] or one. Returns complex [segments, N]."""
+        turns = np.rint(y / self._n)
+        sign = 1.0 - 2.0 * np.mod(turns * (self._n - 1), 2)  # phases are those of the samples' middle
+        row = np.clip(np.rint(np.asarray(sweep) / SWEEP_STEP).astype(int) + self._middle, 0, len(self._sweeps) - 1)
+        step = (y - turns * self._n) * STEPS_PER_BIN + self._half
+        low = np.clip(step.astype(int), 0, 2 * self._half - 1)
+        part = np.clip(step - low, 0.0, 1.0)
+        return sign * ((1.0 - part) * self._table[:, row, low] + part * self._table[:, row, low + 1])
+
+    def _transform(self, rows):
+        """Of rows [sweeps, n] at the steps of the table."""
+        steps = np.arange(-self._half, self._half + 1)
+        values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
+        return values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)
+
+
+class EchoFields:
+    """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
+
+    Model: delay, its rate and the change of that for the first antennas.
+    paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
+    """
+
+    def __init__(self, paths, spectrum):
+        self._paths, self._spectrum = paths, spectrum
+
+    def fields(self, cell) -> tuple:
+        """(indices i64 [N], fields complex [N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""
+        velocity, distance = (int(index) for index in cell)
+        echoes, pad = self._echoes, self._spectrum.zero_pad
+        near = self._candidates(velocity, distance)
+        along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
+        onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
+        across = self._range_response((distance - echoes["range"][near]) / pad - onward)[0]
+        return echoes["index"][near], np.sum(along * across, axis=0) * echoes["field"][near]
+
+    def paths(self, cell) -> tuple:
+        """(indices i64 [N], shares [N]) of the strongest paths of a cell (velocity, range), largest first."""
+        index, field = self.fields(cell)
+        power = np.abs(field) ** 2
+        order = np.argsort(-power, kind="stable")
+        held = np.cumsum(power[order])
+        if not len(held) or held[-1] == 0.0:
+            return np.zeros(0, np.int64), np.zeros(0)
+        count = int(np.searchsorted(held, HELD * held[-1])) + 1
+        return index[order[:count]], power[order[:count]] / held[-1]
+
+    @cached_property
+    def _echoes(self) -> dict:
+        """Of the paths within the map, in the order of their nearest cells: place in cells, field, index."""
+        paths, spectrum = self._paths, self._spectrum
+        waveform, pad = paths.radar.waveform, spectrum.zero_pad
+        cells = ep.path_cells(paths, spectrum)
+        inside = np.flatnonzero(cells.range_index != OUTSIDE)
+        number = cells.velocity_index[inside].astype(np.int64) * len(spectrum.range) + cells.range_index[inside]
+        order = np.argsort(number, kind="stable")
+        index = inside[order]
+        doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
+        bin_width = 2.0 * waveform.max_velocity(len(paths.radar.transmitters)) / waveform.num_chirps
+        range_step = ep.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
+        return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
+                "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
+                "sweep": _speed_change(paths, cells.length)[index] / bin_width,
+                "travel": cells.velocity[index] * _duration(paths) / (range_step * pad),
+                "field": _start_fields(paths, cells.length)[index]}
+
+    @cached_property
+    def _velocity_response(self) -> Response:
+        num_chirps = self._paths.radar.waveform.num_chirps
+        segments = int(np.clip(np.ceil(SEGMENTS_PER_BIN * self._largest("travel")), 1, min(MAX_SEGMENTS, num_chirps)))
+        return Response(self._spectrum.window, num_chirps, self._largest("sweep"), segments)
+
+    @cached_property
+    def _range_response(self) -> Response:
+        return Response(self._spectrum.window, self._paths.radar.waveform.num_samples)
+
+    def _largest(self, name: str) -> float:
+        return float(np.abs(self._echoes[name]).max(initial=0.0))
+
+    def _candidates(self, velocity: int, distance: int):
+        """Places in the echoes of those whose nearest cell is within reach of a cell."""
+        num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
+        pad, number = self._spectrum.zero_pad, self._echoes["number"]
+        slow = min(int(self._velocity_response.reach * pad), num_velocities // 2)
+        far = int((self._range_response.reach + 0.5 * self._largest("travel")) * pad)
+        rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
+        first = np.searchsorted(number, rows + max(distance - far, 0))
+        last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
+        return np.concatenate([np.arange(*pair) for pair in zip(first, last)])
+
+
+def _window_samples(window, n: int):
+    name, *level = (window,) if isinstance(window, str) else window
+    return ep._core.window(name, n, *level)
+
+
+def _reach(samples) -> int:
+    """Bins beyond which the response stays FLOOR_DB below its peak."""
+    response = np.abs(np.fft.rfft(samples, 8 * len(samples))) / samples.sum()
+    return int(np.ceil(np.flatnonzero(response > 10.0 ** (-FLOOR_DB / 20.0))[-1] / 8)) + 1
+
+
+def _chirp_times(paths):
+    """First, middle and last of the frame for the first transmitter, s."""
+    first, last = (paths.radar.chirp_time(0, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
+    return paths.frame.start_time + np.array([first, 0.5 * (first + last), last])
+
+
+def _duration(paths) -> float:
+    """Of all chirps of one transmitter and the slots between them, s."""
+    radar = paths.radar
+    return radar.waveform.num_chirps * len(radar.transmitters) * radar.waveform.chirp_interval
+
+
+def _speed_change(paths, length):
+    """By how much half the rate of each length [P] in m rises over all chirps, m/s."""
+    first, _, last = _chirp_times(paths)
+    num_chirps = paths.radar.waveform.num_chirps
+    if num_chirps < 3:
+        return np.zeros(len(length))
+    before, after = paths.lengths([first, last], 0, 0)
+    return 2.0 * (before + after - 2.0 * length) / (last - first) * num_chirps / (num_chirps - 1)
+
+
+def _start_fields(paths, length):
+    """The signal of each path in the middle of the frame and of the chirp, complex [P] in sqrt(W)."""
+    waveform = paths.radar.waveform
+    delay = length / ep.speed_of_light
+    cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
+    return np.conj(paths.amplitudes([_chirp_times(paths)[1]], 0, 0)[0]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))

@@ -1,0 +1,94 @@
+"""Which part and which object made a detected cell."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .detections import NOISE
+
+HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
+
+
+def part_powers(spectrum, radar, parts: dict, cells) -> tuple:
+    """Names [K], powers [K, N] of the parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels.
+
+    parts: {name: cube or RangeDoppler} of one partition; Raises ValueError.
+    """
+    velocity, distance = cells[:, 0], cells[:, 1]
+    powers, whole = [], 0.0
+    for name, part in parts.items():
+        values = _map_of(name, part, spectrum, radar).values[:, :, velocity, distance]
+        powers.append(np.mean(np.abs(values) ** 2, axis=(0, 1)))
+        whole = whole + values
+    return list(parts), np.array(powers), np.mean(np.abs(whole) ** 2, axis=(0, 1))
+
+
+def _map_of(name: str, part, spectrum, radar):
+    if isinstance(part, dict):
+        raise ValueError(f"parts: must be those of one view, got several, such as {name!r}")
+    if not isinstance(part, ep.RangeDoppler):
+        return ep.range_doppler(part, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
+    if part.values.shape != spectrum.values.shape:
+        raise ValueError(f"parts: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
+                         f"of {name!r}")
+    return part
+
+
+def label_powers(spectrum, labels, cells) -> tuple:
+    """As part_powers, from Labels of the range-Doppler map."""
+    if labels.plane != "range_doppler" or labels.whole.shape != spectrum.values.shape[2:]:
+        raise ValueError(f"labels: must be of the spectrum's cells {spectrum.values.shape[2:]}, got {labels!r}")
+    velocity, distance = cells[:, 0], cells[:, 1]
+    return list(labels.part_names), labels.power[:, velocity, distance], labels.whole[velocity, distance]
+
+
+def strongest_part(names, powers):
+    """(part text [N], share [N]) of the largest of powers [K, N] in W; "" and NaN where all are zero."""
+    total = powers.sum(axis=0)
+    best = powers.argmax(axis=0)
+    share = np.divide(powers.max(axis=0), total, out=np.full(len(total), np.nan), where=total > 0.0)
+    return np.where(total > 0.0, np.array(names, dtype=str)[best], ""), share
+
+
+def families_of_cells(paths, families, echoes, cells) -> tuple:
+    """The family of the largest power in each of cells [N, 2], None without echoes, and power [N] of all as fields, W."""
+    found, whole = [], np.zeros(len(cells))
+    for i, cell in enumerate(cells):
+        index, field = echoes.fields(cell)
+        of_path = families.family_of_path[index]
+        sums = np.bincount(of_path, field.real, len(families)) + 1j * np.bincount(of_path, field.imag, len(families))
+        power = np.abs(sums) ** 2
+        found.append(families.families[int(power.argmax())] if power.any() else None)
+        whole[i] = np.abs(sums.sum()) ** 2
+    return found, whole
+
+
+def families_of_labels(labels, cells) -> list:
+    """Family of each of cells [N, 2] by the maps of Labels, None: neither object nor ghost."""
+    def family(cell):
+        of_object, of_ghost = labels.object_map[tuple(cell)], labels.ghost_map[tuple(cell)]
+        if of_ghost >= 0:
+            ghost = labels.ghosts[of_ghost]
+            return ep.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via)
+        return ep.Family(labels.objects[of_object].name, 0, 1, ()) if of_object >= 0 else None
+
+    return [family(cell) for cell in cells]
+
+
+def as_columns(families, is_noise) -> dict:
+    """object, ghost_type, order, class_code [N] of families, empty and 0 for None and noise [N]."""
+    known = [None if noise else family for family, noise in zip(families, is_noise)]
+    columns = {"object": np.array([family.object if family else "" for family in known], dtype=str)}
+    return columns | {name: np.array([getattr(family, name) if family else 0 for family in known], np.int32)
+                      for name in ("ghost_type", "order", "class_code")}
+
+
+def noise_cells(whole, power):
+    """Which cells noise made: bool [N] from the power of echoes without noise and of the cell, [N] W."""
+    return whole < HALF * power
+
+
+def with_noise(part, share, is_noise) -> tuple:
+    """part and share, "noise" and NaN where noise made the cell."""
+    return np.where(is_noise, NOISE, part), np.where(is_noise, np.nan, share)

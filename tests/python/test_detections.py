@@ -1,0 +1,306 @@
+"""Detections: places of targets in closed form, labels of known parts, the paths behind a cell against their own signal."""
+from __future__ import annotations
+
+import csv
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.detections.echo_fields import Response
+
+C = ep.speed_of_light
+WAVELENGTH = C / 77.5e9
+POWER = 300.0  # W, for small spheres and isotropic antennas
+RADIUS = 0.05  # m, of spheres that stand for points: their echo comes from the nearest point of them
+# Cells; what remains of tones in closed form is 1e-6, a sphere's footprint and the noise at 30 dB add the rest.
+PLACE = 0.05
+TABLE = 0.006  # of the peak: straight lines between the steps of the table
+MODEL = 0.1    # of fields: the third derivative of a length, and the first antennas' states for all chirps
+HELD = 0.95    # of a cell's power, by the paths named
+
+
+def radar_with(receivers=8, transmitters=1, num_chirps=64, num_samples=256, chirp_interval=50e-6):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
+                                num_chirps=num_chirps, chirp_interval=chirp_interval)
+    half = 0.5 * WAVELENGTH
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, k * receivers * half, 0)) for k in range(transmitters)],
+                    receivers=[ep.Antenna((0, k * half, 0)) for k in range(receivers)], transmit_power=POWER)
+
+
+def at(distance, azimuth):
+    return distance * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+
+
+TARGETS = {"near": (6.3, 0.35, 4.0), "middle": (11.1, -0.2, -2.5), "far": (16.4, 0.1, 0.0)}  # m, rad, m/s outward
+
+
+def scene_of(targets):
+    scene = ep.Scene()
+    for name, (distance, azimuth, speed) in targets.items():
+        scene.add(ep.actors.sphere(RADIUS), name=name, material="metal", smooth=True,
+                  position=tuple(at(distance + RADIUS, azimuth)),
+                  motion=ep.LinearMotion(velocity=tuple(at(speed, azimuth))))
+    return scene
+
+
+@pytest.fixture(scope="module")
+def spheres():
+    """(radar, paths, spectrum with noise) of three spheres at known places and speeds."""
+    radar = radar_with()
+    paths = ep.trace(scene_of(TARGETS), radar, num_rays=6000, max_bounces=1)
+    return radar, paths, ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+
+
+def nearest(found, name):
+    distance, azimuth, speed = TARGETS[name]
+    return int(np.argmin(np.abs(found.range - distance) + np.abs(found.velocity - speed)))
+
+
+def test_targets_are_found_once_where_they_are_and_with_their_speed(spheres):
+    radar, _, spectrum = spheres
+    found = ep.detect(spectrum, radar)
+    assert len(found) == len(TARGETS)
+    middle = 0.5 * radar.frame_duration
+    step = spectrum.range[1], spectrum.velocity[1] - spectrum.velocity[0]
+    for name, (distance, azimuth, speed) in TARGETS.items():
+        i = nearest(found, name)
+        assert found.range[i] == pytest.approx(distance + speed * middle, abs=PLACE * step[0])
+        assert found.velocity[i] == pytest.approx(speed, abs=PLACE * step[1])
+        assert found.azimuth[i] == pytest.approx(azimuth, abs=0.01) and np.isnan(found.elevation[i])
+        expected = at(found.range[i], found.azimuth[i]) + [0, 3.5 * WAVELENGTH / 4, 0]  # from the middle of the antennas
+        np.testing.assert_allclose(found.points[i], expected, atol=1e-9)
+        assert found.snr_db[i] > 25.0
+    assert set(found.part) == set(found.object) == {""} and np.isnan(found.share).all()
+
+
+def test_power_is_what_the_radar_equation_gives(spheres):
+    """Pt G^2 lambda^2 sigma / ((4 pi)^3 R^4), sigma = pi a^2, wherever between the cells the target lies."""
+    radar, _, spectrum = spheres
+    found = ep.detect(spectrum, radar)
+    for name, (distance, _, speed) in TARGETS.items():
+        range_now = distance + speed * 0.5 * radar.frame_duration
+        expected = radar.transmit_power * WAVELENGTH ** 2 * np.pi * RADIUS ** 2 / ((4 * np.pi) ** 3 * range_now ** 4)
+        assert 10 * np.log10(found.power[nearest(found, name)] / expected) == pytest.approx(0.0, abs=0.5), name
+
+
+def test_parts_label_their_own_targets(spheres):
+    radar, paths, spectrum = spheres
+    parts = ep.decompose(paths, radar, {name: f"T '{name}' R" for name in list(TARGETS)[:2]})
+    found = ep.detect(spectrum, radar, parts=parts)
+    of_maps = ep.detect(spectrum, radar, parts={name: ep.range_doppler(cube, radar) for name, cube in parts.items()})
+    for name, part in zip(TARGETS, ["near", "middle", "other"]):
+        i = nearest(found, name)
+        assert found.part[i] == part and found.share[i] > 0.99
+    assert np.array_equal(found.part, of_maps.part) and np.array_equal(found.share, of_maps.share)
+
+
+def test_labels_of_cells_are_taken_over(spheres):
+    """Parts by their powers, objects and ghosts by the maps of their indices."""
+    radar, _, spectrum = spheres
+    bare = ep.detect(spectrum, radar)
+    shape = spectrum.values.shape[2:]
+    power, object_map, ghost_map = np.zeros((2, *shape)), np.full(shape, -1), np.full(shape, -1)
+    near, middle, far = (tuple(bare.cells[nearest(bare, name)]) for name in TARGETS)
+    for cell, shares in ((near, (0.75, 0.25)), (middle, (0.1, 0.9))):  # the third has no echo at all
+        power[(slice(None), *cell)] = np.array(shares) * ep.cfar(spectrum, radar).power[cell]
+    object_map[near], ghost_map[middle] = 1, 0
+    labels = SimpleNamespace(plane="range_doppler", part_names=["a", "b"], power=power, whole=power.sum(axis=0),
+                             object_map=object_map, ghost_map=ghost_map, objects=[None, SimpleNamespace(name="car")],
+                             ghosts=[SimpleNamespace(object="walker", ghost_type=2, order=3, via=("wall",))])
+    found = ep.detect(spectrum, radar, labels=labels)
+    by_name = {name: i for i, name in ((nearest(found, name), name) for name in TARGETS)}
+    columns = ("part", "object", "ghost_type", "order", "class_code")
+    assert [tuple(getattr(found, column)[by_name[name]] for column in columns) for name in TARGETS] == [
+        ("a", "car", 0, 1, 111), ("b", "walker", 2, 3, 124), ("noise", "", 0, 0, 0)]
+    assert found.share[by_name["near"]] == pytest.approx(0.75) and found.share[by_name["middle"]] == pytest.approx(0.9)
+    labels.plane = "range_azimuth"
+    with pytest.raises(ValueError, match="labels: must be of the spectrum"):
+        ep.detect(spectrum, radar, labels=labels)
+
+
+def test_a_false_alarm_is_called_noise(spheres):
+    radar, paths, spectrum = spheres
+    parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
+    found = ep.detect(spectrum, radar, false_alarm_rate=0.01, paths=paths, parts=parts)
+    is_noise = found.part == "noise"
+    assert is_noise.sum() > 30 and (~is_noise).sum() >= len(TARGETS)
+    i = int(np.flatnonzero(is_noise)[0])
+    assert found.object[i] == "" and found.order[i] == 0 and np.isnan(found.share[i]) and len(found.paths(i)[0]) == 0
+    assert not is_noise[[nearest(found, name) for name in TARGETS]].any()
+
+
+def test_objects_and_ghosts_are_those_of_the_paths():
+    """A metal wall beside a sphere: the direct echo, the pair over the wall one way, and the echo over it both ways."""
+    radar = radar_with(num_samples=512)
+    scene = scene_of({"ball": (10.0, 0.0, 0.0)})
+    scene.add(ep.actors.wall(40, 6), name="wall", material=ep.materials["metal"].replace(mirror=True), position=(15, 3, 0))
+    paths = ep.trace(scene, radar, num_rays=20_000, max_bounces=3)
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, paths=paths, objects=["ball"])
+    image = np.hypot(10.0 + RADIUS, 6.0) - RADIUS  # m, distance of the sphere's mirror image
+    for distance, ghost_type, order in ((10.0, 0, 1), (0.5 * (10.0 + image), None, 2), (image, 2, 3)):
+        i = int(np.argmin(np.abs(found.range - distance)))
+        assert found.range[i] == pytest.approx(distance, abs=0.08)  # m: half a cell, the pair's points of reflection differ
+        assert found.object[i] == "ball" and found.order[i] == order
+        assert ghost_type is None or found.ghost_type[i] == ghost_type
+    assert found.ghost_type[np.argmin(np.abs(found.range - 0.5 * (10.0 + image)))] in (1, 2)
+
+
+def synthesised_power(paths, chosen, radar, spectrum, cell):
+    """Power in W of the chosen paths alone in a cell, mean over channels."""
+    mask = np.zeros(paths.num_paths, bool)
+    mask[chosen] = True
+    cube = ep.synthesize(paths.select(mask), radar)
+    part = ep.range_doppler(cube, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
+    return np.mean(np.abs(part.values[:, :, cell[0], cell[1]]) ** 2)
+
+
+def expect_paths_hold(found, paths, radar, spectrum, i):
+    """Synthesised alone they make the cell, and all others little of it."""
+    index, share = found.paths(i)
+    assert len(index) and np.all(np.diff(share) <= 0.0) and 0.99 < share.sum() <= 1.0 + 1e-12
+    whole = synthesised_power(paths, np.arange(paths.num_paths), radar, spectrum, found.cells[i])
+    others = np.setdiff1d(np.arange(paths.num_paths), index)
+    assert synthesised_power(paths, index, radar, spectrum, found.cells[i]) == pytest.approx(whole, rel=1.0 - HELD)
+    assert synthesised_power(paths, others, radar, spectrum, found.cells[i]) < (1.0 - HELD) * whole
+    return index
+
+
+def test_the_paths_behind_a_detection_make_its_cell_and_the_others_do_not(spheres):
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, paths=paths)
+    mesh = paths.mesh_id[paths.offsets]
+    for number, name in enumerate(TARGETS):
+        index = expect_paths_hold(found, paths, radar, spectrum, nearest(found, name))
+        assert set(mesh[index]) == {number}
+
+
+@pytest.fixture(scope="module")
+def movers():
+    """(radar, paths, signal) of limbs, which speed up during the frame, and of a plate at 30 m/s, which shows three axes away
+    and goes on by three cells of range; two transmitters in turn."""
+    radar = radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6)
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="clothing", position=(14, -1, 0),
+              motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=2)
+    return radar, paths, ep.synthesize(paths, radar)
+
+
+@pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 1), ("hann", 2)])
+def test_the_paths_behind_limbs_and_folded_speeds_are_found(movers, window, zero_pad):
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar, window=window, zero_pad=zero_pad)
+    found = ep.detect(spectrum, radar, paths=paths)
+    for i in np.argsort(-found.snr_db)[:4]:
+        expect_paths_hold(found, paths, radar, spectrum, i)
+    assert {"walker", "plate"} <= set(found.object)
+
+
+def test_the_fields_of_all_paths_add_up_to_the_map(movers):
+    """Also in the sidelobes of a window without taper, far from the echo."""
+    radar, paths, cube = movers
+    clean = ep.range_doppler(cube, radar, window="rect")
+    found = ep.detect(ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar, window="rect"), radar, paths=paths)
+    exact = clean.values[0, 0, found.cells[:, 0], found.cells[:, 1]]
+    model = np.array([found.echoes.fields(cell)[1].sum() for cell in found.cells])
+    assert np.median(np.abs(np.abs(model) / np.abs(exact) - 1.0)) < MODEL
+
+
+@pytest.mark.parametrize("n", [16, 15])
+def test_the_response_of_a_swept_tone_is_its_slow_sum(n):
+    """Also whole turns of the axis away, and in segments."""
+    y, sweep = np.array([0.0, -0.37, 2.81, n + 1.3, -2 * n - 0.6]), np.array([0.0, 0.5, -0.25, 1.0, -1.0])
+    place = (np.arange(n) - 0.5 * (n - 1)) / n
+    terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * np.outer(sweep, place ** 2)) / n
+    parts = Response("rect", n, largest_sweep=2.0, segments=3)(y, sweep)
+    np.testing.assert_allclose(parts.sum(axis=0), terms.sum(axis=1), rtol=0, atol=TABLE)
+    np.testing.assert_allclose(parts[1], terms[:, np.array_split(np.arange(n), 3)[1]].sum(axis=1), rtol=0, atol=TABLE)
+
+
+def test_several_targets_of_a_cell_have_directions_of_their_own():
+    radar = radar_with(receivers=16)
+    targets = {"left": (10.0, 0.4, 0.0), "right": (10.0, -0.4, 0.0)}
+    paths = ep.trace(scene_of(targets), radar, num_rays=4000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, angles={"max_peaks": 2, "peak_range_db": 6.0})
+    assert len(found) == 2 and np.array_equal(found.cells[0], found.cells[1])
+    np.testing.assert_allclose(sorted(found.azimuth), [-0.4, 0.4], atol=0.02)
+
+
+def test_folds_give_the_velocity_and_the_range_without_its_shift():
+    radar = radar_with(receivers=4, transmitters=3, num_samples=512, chirp_interval=60e-6)  # +-5.4 m/s
+    speed = 9.0
+    paths = ep.trace(scene_of({"ball": (9.0, 0.1, speed)}), radar, num_rays=3000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, angles={"folds": 1})
+    i = int(found.power.argmax())
+    assert found.velocity[i] == pytest.approx(speed, abs=0.05)
+    assert found.range[i] == pytest.approx(9.0 + speed * 0.5 * radar.frame_duration, abs=0.005)  # the shift: 18 mm
+
+
+def test_one_antenna_gives_no_directions(spheres):
+    radar = radar_with(receivers=1)
+    spectrum = ep.range_doppler(ep.add_noise(np.zeros((1, 1, 64, 256), complex), radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, false_alarm_rate=1e-3)
+    assert len(found) and np.isnan(found.azimuth).all() and np.isnan(found.points).any()
+
+
+def test_csv_holds_what_the_arrays_hold(spheres, tmp_path):
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"}))
+    found.to_csv(tmp_path / "points.csv")
+    with open(tmp_path / "points.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == len(found)
+    for i, row in enumerate(rows):
+        for name in ("range", "velocity", "azimuth", "power", "snr_db", "share"):
+            assert float(row[name]) == getattr(found, name)[i]
+        assert row["elevation"] == "" and row["part"] == found.part[i]
+        assert (int(row["velocity_index"]), int(row["range_index"])) == tuple(found.cells[i])
+
+
+def test_a_file_that_cannot_be_written_leaves_none(spheres, tmp_path):
+    radar, _, spectrum = spheres
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ep.FileError):
+        ep.detect(spectrum, radar).to_csv(tmp_path / "file" / "points.csv")
+
+
+def test_nothing_found_is_a_well_shaped_result(spheres, tmp_path):
+    radar, paths, _ = spheres
+    empty = ep.range_doppler(np.zeros((1, 8, 64, 256), complex), radar)
+    found = ep.detect(empty, radar, paths=paths, parts=ep.decompose(paths, radar, {}))
+    assert len(found) == 0 and found.points.shape == (0, 3) and found.cells.shape == (0, 2)
+    assert repr(found) == "Detections(0)"
+    found.to_csv(tmp_path / "none.csv")
+    assert len((tmp_path / "none.csv").read_text().splitlines()) == 1
+
+
+def test_the_text_counts_the_parts(spheres):
+    radar, paths, spectrum = spheres
+    assert "1 near" in repr(ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"})))
+
+
+def test_bad_arguments_are_named(spheres):
+    radar, paths, spectrum = spheres
+    parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
+    with pytest.raises(ValueError, match="labels"):
+        ep.detect(spectrum, radar, parts=parts, labels=object())
+    with pytest.raises(ValueError, match="paths: must be traced with the radar"):
+        other = radar_with(num_chirps=32)
+        ep.detect(ep.range_doppler(np.zeros((1, 8, 32, 256), complex), other), other, paths=paths)
+    with pytest.raises(ValueError, match="parts: must be those of one view"):
+        ep.detect(spectrum, radar, parts={"view": parts})
+    with pytest.raises(ValueError, match="parts: maps must be as"):
+        ep.detect(spectrum, radar, parts={name: ep.range_doppler(cube, radar, zero_pad=2) for name, cube in parts.items()})
+    with pytest.raises(ValueError, match="false_alarm_rate"):
+        ep.detect(spectrum, radar, false_alarm_rate=2.0)
+    found = ep.detect(spectrum, radar)
+    with pytest.raises(ValueError, match="paths"):
+        found.paths(0)
+    with pytest.raises(IndexError, match="i: must be"):
+        ep.detect(spectrum, radar, paths=paths).paths(99)

@@ -249,6 +249,20 @@ def test_one_antenna_gives_no_directions(spheres):
     assert len(found) and np.isnan(found.azimuth).all() and np.isnan(found.points).any()
 
 
+def test_detections_do_not_depend_on_the_number_of_threads(movers):
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar)
+    found = []
+    try:
+        for count in (1, 4):
+            ep.set_num_threads(count)
+            found.append(ep.detect(spectrum, radar, method="os", paths=paths))
+    finally:
+        ep.set_num_threads(0)
+    for name in ("range", "velocity", "azimuth", "power", "noise", "object"):
+        np.testing.assert_array_equal(getattr(found[0], name), getattr(found[1], name))
+
+
 def test_csv_holds_what_the_arrays_hold(spheres, tmp_path):
     radar, paths, spectrum = spheres
     found = ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"}))

@@ -163,9 +163,12 @@ def test_combinations_of_groupings_are_those_of_both(traced):
 
 def test_many_combinations_are_filled_view_by_view(traced):
     """More combinations than are worth their memory: the cubes stay the same to rounding."""
-    many = {str(index): (ep.num_bounces >= 1) & ep.Selection("T .* R") & (ep.power >= 10.0**-index)
-            for index in range(120, 180)}
-    views = {"many": many, "ghosts": ep.families(traced), "batches": _core.Grouping.batches()}
+    levels = np.quantile(traced.power, np.linspace(0.95, 0.05, 40))
+    many = {f"above {level} W": ep.power >= level for level in levels}
+    found = ep.families(traced)
+    views = {"many": many, "ghosts": found, "batches": _core.Grouping.batches()}
+    level = np.searchsorted(levels[::-1], traced.power, side="right")
+    assert len(set(zip(level, found.family_of_path, traced.batch))) > 500
     together = ep.decompose(traced, parts=views)
     for name, view in views.items():
         alone = ep.decompose(traced, parts={name: view})[name]

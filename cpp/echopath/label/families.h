@@ -6,6 +6,8 @@
 //  * The owner is the first object of the list that the path touches; paths that touch none are background.
 //  * Consecutive hits on one object are one bounce, also on another object than the owner: whatever happens within an
 //    object (torso, then arm), the echo appears at it. Each hit on another surface is a bounce, since each makes an image.
+//  * Ghosts over the same surfaces are one family wherever between them they meet the object: wall, object, floor and
+//    object, wall, floor lie at two ranges, and are both of type 2 and order 3 via wall, floor.
 //  * An echo of one bounce is real, whatever its number of hits. Of the others, type 1 left the scene from the owner last,
 //    type 2 from something else; the order is the number of bounces.
 #include <compare>

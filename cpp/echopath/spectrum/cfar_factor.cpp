@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"

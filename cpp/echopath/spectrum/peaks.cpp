@@ -1,5 +1,6 @@
 #include "echopath/spectrum/peaks.h"
 
+#include <cmath>
 #include <optional>
 
 #include "echopath/base/errors.h"

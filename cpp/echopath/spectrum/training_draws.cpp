@@ -1,6 +1,7 @@
 #include "echopath/spectrum/training_draws.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cmath>
 
 #include "echopath/base/constants.h"

@@ -1,6 +1,7 @@
 #include "echopath/spectrum/training_power.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "echopath/base/simd.h"
 

@@ -119,4 +119,11 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
   return range_doppler(cube.data(), static_cast<int64_t>(cube.size()), radar, window, zero_pad, job);
 }
 
+double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window) {
+  const int num_samples = waveform.num_samples, num_chirps = waveform.num_chirps;
+  const double range_bandwidth = equivalent_noise_bandwidth(window_samples(window, num_samples));
+  const double doppler_bandwidth = equivalent_noise_bandwidth(window_samples(window, num_chirps));
+  return sample_power * range_bandwidth * doppler_bandwidth / (static_cast<double>(num_samples) * num_chirps);
+}
+
 }  // namespace echopath

@@ -29,6 +29,7 @@ from . import actors
 from .actors import Actor, Part
 from .detections import Detections, detect
 from .families import Families, families
+from .labels import GhostLabel, Labels, ObjectLabel, annotate
 from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
@@ -65,15 +66,15 @@ def _viewer():
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "ChirpSequence",
-    "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family",
-    "FileError", "Frame", "GainTable", "Isotropic", "Joint",
-    "KeyframeMotion", "LinearMotion", "Material", "Mesh", "Motion", "ObjectVisibility", "Part", "Parts", "PathCells",
-    "Paths", "Radar",
-    "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "Skin", "Stratum",
+    "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame",
+    "GainTable", "GhostLabel", "Isotropic", "Joint", "KeyframeMotion", "Labels", "LinearMotion", "Material", "Mesh",
+    "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth",
+    "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "Skin", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
-    "VirtualArray", "actors", "add_noise", "angle_fft", "beamform", "boltzmann", "cfar", "compensate_tdm", "decompose", "detect",
-    "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_mesh", "load_meshes",
-    "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays",
-    "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "set_num_threads", "simulate",
-    "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array", "visibility",
+    "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "beamform", "boltzmann", "cfar", "compensate_tdm",
+    "decompose", "detect", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna",
+    "load_frame", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads",
+    "parse_selection", "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs",
+    "received_power", "renew", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray",
+    "trace", "validity", "view", "virtual_array", "visibility",
 ]

@@ -8,9 +8,14 @@ import echopath as ep
 
 from .azimuth_map import checked_settings, sees_azimuth
 from .effects import of_paths
+from .labels.annotate import label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
 from .stages import Stage, StageClock
+
+_FAMILIES = object()  # a view that has the name of no partition
+_LABEL_KEYWORDS = ("plane", "objects", "noise", "noise_margin_db", "dynamic_range_db", "errors")
+
 
 @dataclasses.dataclass
 class Frame:
@@ -25,6 +30,8 @@ class Frame:
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
+    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not asked
+        for
     stages: time and peak memory of each stage
     """
 
@@ -44,6 +51,7 @@ class Frame:
     evaluate: str = "interpolated"
     retrace: str = "never"
     keyframes: int = 0
+    labels: dict = dataclasses.field(default_factory=dict)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -94,7 +102,7 @@ class Frame:
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
              parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
-             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, progress=None) -> Frame:
+             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
@@ -103,11 +111,15 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     tolerance, method, replay, evaluate, retrace, keyframes: as in `synthesize`; window, zero_pad: as in `range_doppler`
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
+    labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors): the
+        frame carries the labels of its map, from the same pass, with the cubes of all families in memory; None: none, and nothing
+        is spent on them
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
+    request = _label_request(radar, labels, _num_batches(batches, target_error_db), window, zero_pad, angle_settings)
     clock = StageClock()
     with clock("trace"):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
@@ -116,11 +128,12 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     with clock("synthesis"):
         settings = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate, "retrace": retrace,
                     "keyframes": keyframes, "progress": progress}
-        cubes, whole = _cubes(paths, radar, partitions, settings)
+        families = ep.families(paths, request.objects) if request else None
+        cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings)
     with clock("labels"):
-        labels = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
+        group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
-                  part_of_path=labels, noise_seed=noise_seed,
+                  part_of_path=group_of_path, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
                   angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
                   keyframes=keyframes,
@@ -130,6 +143,10 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     if sees_azimuth(radar):
         with clock("angles"):
             frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
+    if request:
+        with clock("annotation"):
+            parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
+            frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
     return frame
 
 
@@ -156,12 +173,32 @@ def as_partitions(parts) -> dict:
     return {ONLY_PARTITION: dict(parts)}
 
 
-def _cubes(paths, radar, partitions: dict, settings: dict):
-    """{partition: {part: cube}} and the whole, from one pass."""
-    if not partitions:
-        return {}, ep.synthesize(paths, radar, **settings)
-    cubes = ep.decompose(paths, radar, partitions, **settings)
-    return cubes, sum(next(iter(cubes.values())).values())
+def _cubes(paths, radar, partitions: dict, families, settings: dict):
+    """{partition: {part: cube}}, the whole, and {Family: cube} ({} without families), from one pass."""
+    if not partitions and families is None:
+        return {}, ep.synthesize(paths, radar, **settings), {}
+    views = partitions if families is None else {**partitions, _FAMILIES: families}
+    cubes = ep.decompose(paths, radar, views, **settings)
+    whole = sum(next(iter(cubes.values())).values())
+    return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
+
+
+def _label_request(radar, labels, num_batches: int, window, zero_pad, angles: dict):
+    """How to label, None: not at all."""
+    if not labels:
+        return None
+    keywords = {} if labels is True else dict(labels)
+    unknown = [word for word in keywords if word not in _LABEL_KEYWORDS]
+    if unknown:
+        raise TypeError(f"labels: unknown keyword '{unknown[0]}', known are {', '.join(_LABEL_KEYWORDS)}")
+    if keywords.get("plane") == "range_azimuth":
+        keywords["angles"] = angles
+    return make_request(radar, num_batches, window=window, zero_pad=zero_pad, **keywords)
+
+
+def _num_batches(batches, target_error_db) -> int:
+    """Of a trace with these settings."""
+    return (1 if target_error_db is None else 8) if batches is None else batches
 
 
 def _as_text(partitions: dict) -> dict:

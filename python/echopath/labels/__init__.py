@@ -1,0 +1,5 @@
+"""Labels of the cells of a map: which part of the paths made each, and what the map shows of each object."""
+from .annotate import annotate
+from .labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
+
+__all__ = ["AzimuthBox", "AzimuthPeak", "Box", "GhostLabel", "Labels", "ObjectLabel", "Peak", "annotate"]

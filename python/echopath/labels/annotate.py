@@ -1,0 +1,188 @@
+"""Labels of every cell of a map, of every object and of every ghost."""
+from __future__ import annotations
+
+import dataclasses
+import inspect
+
+import numpy as np
+
+import echopath as ep
+
+from .. import _core
+from .labels import Labels
+from .objects import family_cells, label_ghosts, label_objects
+from .planes import make_plane
+from .powers import CubeSet, add_powers, decomposed
+from .standard_errors import require_batches, share_errors
+
+NOISE_MARGIN_DB = 10.0
+DYNAMIC_RANGE_DB = 60.0
+SIGNAL_SETTINGS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
+_PARTS, _FAMILIES = "parts", "families"
+
+
+def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_doppler", window="hann", zero_pad=1, angles=None,
+             noise=True, noise_margin_db=NOISE_MARGIN_DB, dynamic_range_db=DYNAMIC_RANGE_DB, errors=False, progress=None,
+             **settings) -> Labels:
+    """Labels the cells of a map: which part of the paths made each, and what the map shows of each object of the scene.
+
+    Model: powers without noise; |field|^2 of each part, mean over the channels, of the one realisation of the random phases
+    that the map of `synthesize` has. A cell of the mask belongs to whatever has the largest power in it. Where parts
+    interfere, their powers do not add up to that of the whole.
+    paths: of `trace`, all of them
+    parts: Parts of `decompose`, or selections as `decompose` takes them, {name: selection}: then no cube outlives its use.
+        None: all paths are "other"
+    radar: that of the signals, None: of the parts or of the trace
+    objects: as in `families`, what to report on
+    plane: "range_doppler" or "range_azimuth" (beams of each part); window, zero_pad: as in `range_doppler`
+    angles: keywords of `range_azimuth` for that plane, None: {"combine": "peak"}; Bartlett beams only
+    noise: False: no cell is in the noise; noise_margin_db: dB, cells count as above the noise where the power of the whole is
+        this much above the mean of the noise in a cell (k T0 F fs and the noise bandwidths of the window; of a range-azimuth
+        map, measured on noise alone). Noise alone passes 10 dB in one cell of 22 000, of one channel
+    dynamic_range_db: dB below the strongest cell that the mask goes down to, None: no limit
+    errors: True: standard errors too, which needs trace(batches=2 or more; 8 are good) and one more pass over the paths
+    progress: callable (stage, fraction) or None
+    settings: tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace and keyframes, as in
+        `synthesize`; those of the parts where these are given
+    Returns Labels. Memory: the cubes of all parts and families at as many receivers as 1 GiB holds, one at least, all for
+    range_azimuth; and 8 bytes per cell for each part and family, with errors for each part and batch three times.
+    Raises ValueError for bad input, for errors without batches, KeyboardInterrupt on Ctrl-C.
+    """
+    _refuse_unknown(settings)
+    radar = _radar_of(paths, parts, radar)
+    request = make_request(radar, paths.frame.num_batches, objects=objects, plane=plane, window=window, zero_pad=zero_pad,
+                           angles=angles, noise=noise, noise_margin_db=noise_margin_db, dynamic_range_db=dynamic_range_db,
+                           errors=errors)
+    selections, cubes = _selections_and_cubes(parts, radar, errors)
+    settings = settings | {"progress": progress}
+    families = ep.families(paths, objects)
+    views = {_FAMILIES: families} if cubes else {_FAMILIES: families, _PARTS: selections}
+    num_parts = len(families) + (0 if cubes else len(selections) + 1)
+    powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, settings), request.plane)
+    if cubes:
+        powers |= add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
+    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[_PARTS].whole)
+    return label_parts(request, paths, powers[_PARTS], selections, scene_labels, settings)
+
+
+@dataclasses.dataclass(frozen=True)
+class Request:
+    """How the cells of a radar's map are to be labelled, checked; made by `make_request`. Fields as in `annotate`."""
+
+    radar: object
+    objects: object
+    plane: object
+    noise: bool
+    noise_margin_db: float
+    dynamic_range_db: float
+    errors: bool
+
+    @property
+    def noise_floor(self) -> float:
+        """Power in W that cells above the noise exceed."""
+        return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
+
+    def masks(self, whole):
+        """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W."""
+        return _core.cell_masks(whole, self.noise_floor, 10.0 ** (-self.dynamic_range_db / 10.0))
+
+
+def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler", window="hann", zero_pad=1, angles=None,
+                 noise=True, noise_margin_db=NOISE_MARGIN_DB, dynamic_range_db=DYNAMIC_RANGE_DB, errors=False) -> Request:
+    """Checks what can be checked before the long work. num_batches: of the trace; the others as in `annotate`.
+
+    Raises ValueError.
+    """
+    dynamic_range_db = np.inf if dynamic_range_db is None else float(dynamic_range_db)
+    if not np.isfinite(noise_margin_db):
+        raise ValueError(f"noise_margin_db: must be finite, in dB, got {noise_margin_db}")
+    if not dynamic_range_db >= 0.0:
+        raise ValueError(f"dynamic_range_db: must not be negative, in dB, got {dynamic_range_db}")
+    if errors:
+        require_batches(num_batches)
+    made = make_plane(plane, radar, window, zero_pad, angles)
+    if errors:
+        made.require_errors()
+    return Request(radar, objects, made, bool(noise), float(noise_margin_db), dynamic_range_db, bool(errors))
+
+
+def label_scene(request: Request, paths, families, powers, whole) -> dict:
+    """The fields of Labels that tell of objects and ghosts.
+
+    powers: ViewPowers of the families; whole: power [V, R] in W
+    """
+    found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane)
+    seen = ep.visibility(paths.scene, paths.radar, request.objects, time=paths.frame.trace_time)
+    visibility = {of_object.name: of_object for of_object in seen}
+    objects, object_map = label_objects(families.objects, found, visibility, request.plane)
+    ghosts, ghost_map = label_ghosts(found, request.plane)
+    return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
+
+
+def label_parts(request: Request, paths, powers, selections: dict, scene_labels: dict, settings: dict) -> Labels:
+    """Labels of a partition. powers: its ViewPowers; scene_labels: of `label_scene`; settings: signal settings."""
+    names, plane = list(powers.cells), request.plane
+    power = np.stack([powers.cells[name] for name in names])
+    above_noise, mask = request.masks(powers.whole)
+    labels = Labels(plane=plane.name, velocity=plane.velocity, azimuth=plane.azimuth, range=plane.range,
+                    part_names=[str(name) for name in names], power=power, whole=powers.whole,
+                    share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
+                    noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
+                    dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, **scene_labels)
+    return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
+
+
+def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict, settings: dict) -> dict:
+    """{partition: Labels} from {partition: {part: cube}} and {Family: cube}, cubes [tx, rx, chirp, sample] in sqrt(W).
+
+    selections: {partition: {name: selection}}; settings: signal settings.
+    """
+    views = cubes | {_FAMILIES: family_cubes}
+    powers = {view: add_powers([CubeSet(request.radar, 1.0, {view: views[view]})], request.plane)[view] for view in views}
+    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(cubes))].whole)
+    return {view: label_parts(request, paths, powers[view], selections.get(view, {}), scene_labels, settings)
+            for view in cubes}
+
+
+def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict) -> Labels:
+    found = share_errors(paths, request.radar, selections, labels.part_names, labels.dominant, request.plane, settings)
+    names = ("mean_power", "power_error", "mean_share", "share_error", "certain")
+    return dataclasses.replace(labels, **dict(zip(names, found)))
+
+
+def _refuse_unknown(settings: dict) -> None:
+    for word in settings:
+        if word not in SIGNAL_SETTINGS:
+            nearest = _core.nearest_names(word, [*SIGNAL_SETTINGS, *inspect.signature(annotate).parameters], 1)[0]
+            raise TypeError(f"annotate: unknown keyword '{word}', the nearest right one is '{nearest}'")
+
+
+def _radar_of(paths, parts, radar):
+    if radar is None:
+        radar = getattr(parts, "radar", None)
+    return paths.radar if radar is None else radar
+
+
+def _selections_and_cubes(parts, radar, errors: bool):
+    """({name: selection}, {name: cube} or {}) of what the caller gave as parts."""
+    parts = {} if parts is None else parts
+    if not isinstance(parts, dict):
+        raise TypeError(f"parts: must be Parts of decompose or {{name: selection}}, got {type(parts).__name__}")
+    if any(isinstance(value, dict) for value in parts.values()):
+        raise ValueError(f"parts: must be one partition, got several: {', '.join(map(str, parts))}; give one of them")
+    if not any(isinstance(value, np.ndarray) for value in parts.values()):
+        return dict(parts), {}
+    _check_cubes(parts, radar)
+    selections = getattr(parts, "selections", {})
+    if errors and [*selections, "other"] != list(parts):
+        raise ValueError("errors: need the selections of the parts, got cubes alone; give {name: selection} or Parts of them")
+    return dict(selections), dict(parts)
+
+
+def _check_cubes(parts: dict, radar) -> None:
+    waveform = radar.waveform
+    shape = (len(radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples)
+    for name, cube in parts.items():
+        if np.shape(cube) != shape:
+            raise ValueError(f"parts: cubes must have shape [tx, rx, chirp, sample] = {list(shape)}, the radar's, got "
+                             f"{list(np.shape(cube))} for '{name}'")

@@ -1,0 +1,161 @@
+"""What annotation gives: labels of the cells of a map, of the objects of the scene, and of their ghosts."""
+from __future__ import annotations
+
+import dataclasses
+from typing import NamedTuple
+
+import numpy as np
+
+from .report import text_of
+
+NONE = -1  # in a map of indices: no label
+
+
+class Peak(NamedTuple):
+    """The strongest cell of a label in a range-Doppler map: range in m, velocity in m/s (receding positive), power in W."""
+
+    range: float
+    velocity: float
+    power: float
+
+
+class AzimuthPeak(NamedTuple):
+    """The strongest cell of a label in a range-azimuth map: range in m, azimuth in rad (left positive), power in W."""
+
+    range: float
+    azimuth: float
+    power: float
+
+
+class Box(NamedTuple):
+    """Smallest box about the cells of a label, between the centres of its outermost cells: ranges in m, velocities in m/s.
+
+    Velocities fold: velocity_min > velocity_max where the box goes over the end of the axis.
+    """
+
+    range_min: float
+    range_max: float
+    velocity_min: float
+    velocity_max: float
+
+
+class AzimuthBox(NamedTuple):
+    """Smallest box about the cells of a label, between the centres of its outermost cells: ranges in m, azimuths in rad."""
+
+    range_min: float
+    range_max: float
+    azimuth_min: float
+    azimuth_max: float
+
+
+@dataclasses.dataclass(frozen=True)
+class ObjectLabel:
+    """What a map shows of one object of the scene, by echoes that take no mirror.
+
+    name: full name in the scene
+    status: the first of these that holds
+        "seen": it has cells
+        "ghosts only": it has none, but a ghost of it has
+        "outside the map": an end of the radar has no antenna that looks at it, or all of it lies beyond the range axis
+        "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
+        "masked": some of its cells are above the noise, but stronger echoes have them or they are below the dynamic range
+        "hidden in noise": it has echoes, none of them above the noise
+        "not seen": it has no echo, for example because it mirrors all away from the radar
+    cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger
+    power: W, received by its direct echoes, mean over channels, chirps and samples; within its cells or not
+    peak: its strongest cell with its own power there, Peak or AzimuthPeak; None without cells
+    box: Box or AzimuthBox about its cells, None without cells
+    visible_share: of the solid angle in which the radar would see it alone, the share that nothing hides, 0 to 1
+    occluders: {name: share of that solid angle which this one hides}, largest first
+    """
+
+    name: str
+    status: str
+    cells: int
+    power: float
+    peak: Peak | AzimuthPeak | None
+    box: Box | AzimuthBox | None
+    visible_share: float
+    occluders: dict
+
+
+@dataclasses.dataclass(frozen=True)
+class GhostLabel:
+    """What a map shows of one ghost: an object's echoes over the same mirrors, of the same type and order.
+
+    object: full name of the object; via: names of the children of the scene root that mirrored it, tuple of str
+    ghost_type: 1 (last bounce on the object) or 2 (last bounce on a mirror); order: number of bounces
+    class_code: of the Radar Ghost Dataset (Kraus et al.)
+    cells, power (W), peak, box: as in ObjectLabel
+    """
+
+    object: str
+    ghost_type: int
+    order: int
+    via: tuple
+    class_code: int
+    cells: int
+    power: float
+    peak: Peak | AzimuthPeak | None
+    box: Box | AzimuthBox | None
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Labels:
+    """Labels of all cells of a map [V, R]; of a range-azimuth map [A, R] wherever V is written.
+
+    plane: "range_doppler" or "range_azimuth"
+    velocity: [V] m/s, None in a range-azimuth map; azimuth: [A] rad, None in a range-Doppler map; range: [R] m
+    part_names: [K], "other" last
+    power: [K, V, R] W of each part, mean over channels, noise-free; whole: [V, R] W of their sum as fields, which differs
+        from the sum of their powers where they interfere
+    share: [K, V, R], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
+    dominant: i16 [V, R], the part of the largest share (the first of equal ones), -1 outside the mask
+    noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise
+    dynamic_range_db: dB below the strongest cell of the whole that the mask goes down to
+    above_noise: bool [V, R], whether the whole is above the noise; mask: bool [V, R], above the noise and within the
+        dynamic range
+    objects: list of ObjectLabel, in the order of the scene; object_map: i16 [V, R], index into it, -1: none
+    ghosts: list of GhostLabel; ghost_map: i16 [V, R], index into it, -1: none. A cell of the mask belongs to the object, the
+        ghost or the surroundings that have the largest power there
+    mean_power: [K, V, R] W, over the random phases of rough surfaces; mean_share: [K, V, R], the shares of these powers
+    power_error, share_error: [K, V, R] standard errors of mean_power in W and of mean_share, from the batches of rays
+    certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;
+        False outside the mask. These five are None unless asked for (`errors=True`)
+    """
+
+    plane: str
+    velocity: np.ndarray | None
+    azimuth: np.ndarray | None
+    range: np.ndarray
+    part_names: list
+    power: np.ndarray
+    whole: np.ndarray
+    share: np.ndarray
+    dominant: np.ndarray
+    noise_power: float
+    noise_margin_db: float
+    dynamic_range_db: float
+    above_noise: np.ndarray
+    mask: np.ndarray
+    objects: list
+    object_map: np.ndarray
+    ghosts: list
+    ghost_map: np.ndarray
+    mean_power: np.ndarray | None = None
+    mean_share: np.ndarray | None = None
+    power_error: np.ndarray | None = None
+    share_error: np.ndarray | None = None
+    certain: np.ndarray | None = None
+
+    @property
+    def shape(self) -> tuple:
+        """(V, R), number of cells along velocity or azimuth, and along range."""
+        return self.whole.shape
+
+    def __str__(self) -> str:
+        return text_of(self)
+
+    def __repr__(self) -> str:
+        return (f"Labels({self.plane}, {list(self.shape)}, parts: {', '.join(self.part_names)}, {len(self.objects)} objects, "
+                f"{len(self.ghosts)} ghosts)")

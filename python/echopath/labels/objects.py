@@ -1,0 +1,99 @@
+"""What a map shows of each object of the scene, and of its ghosts."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from .labels import NONE, GhostLabel, ObjectLabel
+
+OCCLUDED_SHARE = 0.05  # an object of which no more than this is in sight counts as occluded
+
+
+class FamilyCells(NamedTuple):
+    """The cells of all families: list of Family; received: power of each, [F] W; regions: of each, dict or None;
+
+    strongest: i16 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
+    own power is above the noise in some cell.
+    """
+
+    families: list
+    received: list
+    regions: list
+    strongest: np.ndarray
+    is_above_noise: list
+
+
+def family_cells(powers, mask, noise_floor: float, plane) -> FamilyCells:
+    """powers: ViewPowers of the families; mask: bool [V, R]; noise_floor in W."""
+    families = list(powers.cells)
+    cells = np.stack([powers.cells[family] for family in families])
+    strongest = _core.strongest_part(cells, mask)
+    return FamilyCells(families=families, received=[powers.received[family] for family in families],
+                       regions=_core.label_regions(strongest, cells, plane.rows_wrap), strongest=strongest,
+                       is_above_noise=[bool(np.any(power > noise_floor)) for power in cells])
+
+
+def label_objects(names, found: FamilyCells, visibility: dict, plane):
+    """The labels of the objects and i16 [V, R], index of the object in each cell, -1: none.
+
+    names: of the objects; visibility: {name: ObjectVisibility}
+    """
+    labels, chosen = [], {}
+    for index, name in enumerate(names):
+        mine = [f for f, family in enumerate(found.families) if family.object == name]
+        real = next((f for f in mine if not found.families[f].is_ghost), None)
+        if real is not None:
+            chosen[real] = index
+        labels.append(_object_label(name, real, mine, found, visibility[name], plane))
+    return labels, _map_of(found, chosen)
+
+
+def label_ghosts(found: FamilyCells, plane):
+    """The labels of the ghosts and i16 [V, R], index of the ghost in each cell, -1: none."""
+    ghosts = [f for f, family in enumerate(found.families) if family.is_ghost]
+    labels = []
+    for f in ghosts:
+        family = found.families[f]
+        labels.append(GhostLabel(object=family.object, ghost_type=family.ghost_type, order=family.order, via=family.via,
+                                 class_code=family.class_code, power=found.received[f], **_cells(found.regions[f], plane)))
+    return labels, _map_of(found, {f: index for index, f in enumerate(ghosts)})
+
+
+def _object_label(name, real, mine, found: FamilyCells, seen, plane) -> ObjectLabel:
+    region = None if real is None else found.regions[real]
+    return ObjectLabel(name=name, status=_status(real, mine, found, seen, plane),
+                       power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
+                       occluders=dict(seen.occluders), **_cells(region, plane))
+
+
+def _status(real, mine, found: FamilyCells, seen, plane) -> str:
+    """Why there are cells of an object, or why there are none; the first that holds (labels.ObjectLabel)."""
+    is_above_noise = real is not None and found.is_above_noise[real]
+    reasons = {"seen": real is not None and found.regions[real] is not None,
+               "ghosts only": any(found.regions[f] is not None for f in mine if f != real),
+               "outside the map": not seen.in_view or seen.distance > plane.range[-1],
+               "masked": is_above_noise,
+               "occluded": seen.visible_share <= OCCLUDED_SHARE and bool(seen.occluders),
+               "hidden in noise": real is not None and found.received[real] > 0.0}
+    return next((status for status, holds in reasons.items() if holds), "not seen")
+
+
+def _cells(region, plane) -> dict:
+    """The fields of a label that tell of its cells."""
+    if region is None:
+        return {"cells": 0, "peak": None, "box": None}
+    row, column, power = region["peak"]
+    ranges = (float(plane.range[i]) for i in region["columns"])
+    rows = (float(plane.rows[i]) for i in region["rows"])
+    return {"cells": region["cells"], "peak": plane.make_peak(float(plane.range[column]), float(plane.rows[row]), power),
+            "box": plane.make_box(*ranges, *rows)}
+
+
+def _map_of(found: FamilyCells, index_of: dict):
+    """i16 [V, R] from {family: index}."""
+    table = np.full(len(found.families) + 1, NONE, np.int16)  # the last one for cells of no family
+    for family, index in index_of.items():
+        table[family] = index
+    return table[found.strongest]

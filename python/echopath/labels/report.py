@@ -1,0 +1,52 @@
+"""Labels in words."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..measures import in_dbm
+
+
+def text_of(labels) -> str:
+    """A table of the parts, objects and ghosts of Labels, with the cells that each has and its peak."""
+    rows = [_header(labels), *_parts(labels), *map(_object, labels.objects), *(_ghost(ghost) for ghost in _with_cells(labels))]
+    hidden = len(labels.ghosts) - len(_with_cells(labels))
+    rows += [f"{hidden} more ghosts have no cells"] if hidden else []
+    return "\n".join(rows)
+
+
+def _header(labels) -> str:
+    rows, columns = labels.shape
+    above, labelled = np.count_nonzero(labels.above_noise), np.count_nonzero(labels.mask)
+    certain = "" if labels.certain is None else f", {np.count_nonzero(labels.certain)} of them certain"
+    return (f"{labels.plane.replace('_', '-')} map of {rows} x {columns} cells: {above} above the noise, "
+            f"{labelled} labelled{certain}")
+
+
+def _parts(labels) -> list[str]:
+    counts = np.bincount(labels.dominant[labels.mask].astype(np.int64), minlength=len(labels.part_names))
+    return [f"part   {name}: {count} cells" for name, count in zip(labels.part_names, counts)]
+
+
+def _object(label) -> str:
+    return f"object {label.name}: {label.status}{_occluders(label)}{_cells(label)}"
+
+
+def _occluders(label) -> str:
+    hidden = ", ".join(f"{share:.0%} by {name}" for name, share in label.occluders.items() if share >= 0.005)
+    return f", hidden {hidden}" if hidden else ""
+
+
+def _with_cells(labels) -> list:
+    return [ghost for ghost in labels.ghosts if ghost.cells]
+
+
+def _ghost(label) -> str:
+    return f"ghost  {label.object}: type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}{_cells(label)}"
+
+
+def _cells(label) -> str:
+    if label.peak is None:
+        return ""
+    distance, row, power = label.peak
+    where = f"{row:+.2f} m/s" if hasattr(label.peak, "velocity") else f"{np.degrees(row):+.1f} degrees"
+    return f", {label.cells} cells, peak {distance:.2f} m {where} {in_dbm(power):.0f} dBm"

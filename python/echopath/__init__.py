@@ -27,15 +27,15 @@ from .tessellation import TessellationWarning, rcs, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part
-from .detections import Detections, detect
+from .detections import Detections, detect, detect_frame
 from .families import Families, families
-from .labels import GhostLabel, Labels, ObjectLabel, annotate
+from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .simulate import Frame, simulate
 from .visibility import ObjectVisibility, Sight, visibility
-from .frame_file import load_frame, save_frame
+from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .scene_file import SceneFile, load_scene
 from .xarray_maps import to_xarray
 
@@ -71,10 +71,11 @@ __all__ = [
     "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth",
     "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "Skin", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
-    "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "beamform", "boltzmann", "cfar", "compensate_tdm",
-    "decompose", "detect", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna",
-    "load_frame", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads",
-    "parse_selection", "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs",
-    "received_power", "renew", "save_frame", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray",
-    "trace", "validity", "view", "virtual_array", "visibility",
+    "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar",
+    "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "hits",
+    "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_scene", "materials",
+    "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays", "power", "power_by_chirp",
+    "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "save_label_images",
+    "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "validity",
+    "view", "virtual_array", "visibility",
 ]

@@ -32,6 +32,7 @@ class Frame:
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not asked
         for
+    detections: Detections in its map, None when not asked for
     stages: time and peak memory of each stage
     """
 
@@ -52,6 +53,7 @@ class Frame:
     retrace: str = "never"
     keyframes: int = 0
     labels: dict = dataclasses.field(default_factory=dict)
+    detections: object = None
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -102,7 +104,8 @@ class Frame:
 def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
              parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
-             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, progress=None) -> Frame:
+             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, detections=None,
+             progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
@@ -114,6 +117,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors): the
         frame carries the labels of its map, from the same pass, with the cubes of all families in memory; None: none, and nothing
         is spent on them
+    detections: True, or keywords of `detect_frame`: the frame carries the detections in its map; None: none
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
@@ -147,6 +151,10 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         with clock("annotation"):
             parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
             frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
+    if detections:
+        with clock("detections"):
+            keywords = {} if detections is True else detections
+            frame.detections = ep.detect_frame(frame, progress=progress, **keywords)
     return frame
 
 

@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | view | info | bench."""
+"""The command line: echopath demo | run | view | info | labels | bench."""
 from __future__ import annotations
 
 import argparse
@@ -61,6 +61,8 @@ def _parser() -> argparse.ArgumentParser:
                       help="also say which paths of a frame it takes, as in \"T .* 'wall' .* R & power > 1e-15\"; may be repeated")
     info.set_defaults(command=_info)
 
+    _add_labels(commands)
+
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
@@ -72,6 +74,27 @@ def _parser() -> argparse.ArgumentParser:
                        help="physics: most rays of a trace (default: %(default)s)")
     bench.set_defaults(command=_bench)
     return parser
+
+
+def _add_labels(commands) -> None:
+    labels = commands.add_parser("labels", help="label the map of a frame file: which part, object or ghost made each cell and detection")
+    labels.add_argument("frame", metavar="FRAME.h5", help="frame file")
+    labels.add_argument("--out", required=True, metavar="DIR", help="folder of labels.h5, detections.csv, label maps and pictures")
+    _add_part_option(labels)
+    labels.add_argument("--object", action="append", default=[], metavar="NAME=GLOB",
+                        help="an object to report on, instead of the children of the scene's root; may be repeated, the first "
+                             "that a path touches owns it")
+    labels.add_argument("--plane", choices=["range_doppler", "range_azimuth"], default="range_doppler",
+                        help="whose cells are labelled (default: %(default)s)")
+    labels.add_argument("--dynamic-range", type=float, default=60.0, metavar="DB",
+                        help="how far below the peak cells are labelled (default: %(default)s)")
+    labels.add_argument("--noise-margin", type=float, default=10.0, metavar="DB",
+                        help="by how much they stand out of the noise (default: %(default)s)")
+    labels.add_argument("--errors", action="store_true", help="standard errors too, of frames traced with batches")
+    labels.add_argument("--cfar", choices=["ca", "os"], default="ca", help="how echoes are detected (default: %(default)s)")
+    labels.add_argument("--false-alarm-rate", type=float, default=1e-6, metavar="P",
+                        help="of a cell of noise (default: %(default)s)")
+    labels.set_defaults(command=_labels)
 
 
 def _add_trace_options(parser, default_rays) -> None:
@@ -146,7 +169,7 @@ def _run(options) -> None:
         written = write_outputs(frame, options.out, partitions=frame.parts)
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.validity(certificate), *report.files(written)]:
+                 *report.labels(frame.labels), *report.detections(frame.detections), *report.validity(certificate), *report.files(written)]:
         print(text)
 
 
@@ -154,6 +177,18 @@ def _info(options) -> None:
     from .info import describe_file
 
     print("\n".join(describe_file(options.file, options.select)))
+
+
+def _labels(options) -> None:
+    from .labels import label_file, objects_of_options
+    from .progress import progress_bars
+
+    with progress_bars() as progress:
+        lines = label_file(options.frame, options.out, parts=options.part, objects=objects_of_options(options.object),
+                           plane=options.plane, dynamic_range_db=options.dynamic_range, noise_margin_db=options.noise_margin,
+                           errors=options.errors, progress=progress,
+                           cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate})
+    print("\n".join(lines))
 
 
 def _bench(options) -> None:

@@ -5,6 +5,7 @@ import textwrap
 
 import numpy as np
 
+from ..detections.detections import NOISE
 from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
@@ -86,6 +87,73 @@ def _aligned(text: str) -> str:
     return f"{level:>8}{unit}{error}" if "+-" in error else f"  {text}"
 
 
+def labels(of_partitions: dict) -> list[str]:
+    """Tables of the parts, the objects and the ghosts of {partition: Labels}."""
+    if not of_partitions:
+        return []
+    first = next(iter(of_partitions.values()))
+    lines = []
+    for partition, of_cells in of_partitions.items():
+        words = f"{np.count_nonzero(of_cells.mask):,} of {of_cells.mask.size:,} cells labelled, {partition}"
+        if of_cells.certain is not None:
+            words += f" ({np.count_nonzero(of_cells.certain):,} certain)"
+        counts = [np.count_nonzero(of_cells.dominant == index) for index in range(len(of_cells.part_names))]
+        lines += [words, *(line(name, f"{count:8,} cells") for name, count in zip(of_cells.part_names, counts))]
+    return lines + _objects(first) + _ghosts(first)
+
+
+def detections(found) -> list[str]:
+    """How many detections each part and object has; nothing where none were asked for."""
+    if found is None:
+        return []
+    owners = {"": "the surroundings", **{name: name for name in found.object if name}}
+    is_noise = found.part == NOISE
+    counts = {words: int(np.sum((found.object == name) & ~is_noise)) for name, words in sorted(owners.items())}
+    return [f"{len(found):,} detections, detections.csv", *(line(name, f"{count:8,}") for name, count in counts.items()),
+            line("noise alone", f"{int(is_noise.sum()):8,}")]
+
+
+def _objects(of_cells) -> list[str]:
+    if not of_cells.objects:
+        return ["no objects"]
+    rows = [("objects", "status", "cells", "power", "peak", "in sight", "hidden by")]
+    for label in of_cells.objects:
+        by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
+        rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _level(label.power), _peak(label),
+                     f"{label.visible_share:.0%}", by))
+    return _table(rows, right=(2, 3, 5))
+
+
+def _ghosts(of_cells) -> list[str]:
+    shown = [ghost for ghost in of_cells.ghosts if ghost.cells]
+    if not shown:
+        return []
+    rows = [("ghosts", "type", "order", "class", "cells", "power", "peak", "via")]
+    for ghost in sorted(shown, key=lambda ghost: -ghost.power):
+        rows.append((f"  {ghost.object}", str(ghost.ghost_type), str(ghost.order), str(ghost.class_code), f"{ghost.cells:,}",
+                     _level(ghost.power), _peak(ghost), ", ".join(ghost.via)))
+    hidden = len(of_cells.ghosts) - len(shown)
+    return _table(rows, right=(1, 2, 3, 4, 5)) + ([f"  and {hidden:,} without cells"] if hidden else [])
+
+
+def _level(power: float) -> str:
+    return f"{in_dbm(power):.1f} dBm" if power > 0.0 else "nothing"
+
+
+def _peak(label) -> str:
+    if label.peak is None:
+        return ""
+    distance, row, _ = label.peak
+    return f"{distance:6.2f} m {row:+6.2f} m/s" if hasattr(label.peak, "velocity") else f"{distance:6.2f} m {np.degrees(row):+6.1f} deg"
+
+
+def _table(rows: list, right=()) -> list[str]:
+    """Rows of texts in columns two spaces apart; right: indices of those that end together."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return ["  ".join(f"{text:>{width}}" if index in right else f"{text:<{width}}"
+                      for index, (text, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
+
+
 def extent(label: str, spectrum) -> str:
     """Radial velocities that a part covers."""
     found = velocity_extent(spectrum)
@@ -94,8 +162,9 @@ def extent(label: str, spectrum) -> str:
 
 def files(written) -> list[str]:
     """What a run wrote, how large the frame file is and what it leaves out."""
-    pictures = ", ".join(picture.name for picture in written.pictures)
-    return [f"written to {written.frame_path.parent}", omissions(written.left_out, written.frame_path), f"  {pictures}"]
+    folder = written.frame_path.parent
+    pictures = ", ".join(str(picture.relative_to(folder)) for picture in written.pictures)
+    return [f"written to {folder}", omissions(written.left_out, written.frame_path), f"  {pictures}"]
 
 
 def omissions(left_out, path) -> str:

@@ -14,6 +14,7 @@ from ..path_subset import power_of_strongest
 from ..scene_file import SceneFile
 from ..simulate import Frame, simulate
 from ..stages import StageClock
+from .label_outputs import write_labels
 
 RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
 PATH_BYTES, HIT_BYTES, JONES_BYTES, CURVED_CELL_BYTES = 31, 16, 32, 28
@@ -45,6 +46,7 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
+                    labels=scene_file.label_settings(), detections=scene_file.detection_settings(),
                     progress=progress)
 
 
@@ -63,18 +65,23 @@ def certify(frame: Frame, *, progress=None):
 
 
 def write_outputs(frame: Frame, folder, partitions) -> Written:
-    """Writes frame.h5 and its pictures; adds its stages to those of the frame.
+    """Writes frame.h5, detections.csv where there are some and pictures; adds its stages to those of the frame.
 
     The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
-    the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above).
+    the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above); with labels also
+    ghosts.png, labels_NAME.png for each partition and label_maps/ for programs.
     """
     folder = Path(folder)
     clock = StageClock()
     with clock("frame file"):
         frame_path = folder / "frame.h5"
         left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
+        if frame.detections is not None:
+            frame.detections.to_csv(folder / "detections.csv")
     with clock("pictures"):
         pictures = _write_pictures(frame, folder, partitions)
+        if frame.labels:
+            pictures += write_labels(frame, folder, {name: frame.selections[name] for name in partitions})
     frame.stages += clock.stages
     return Written(frame_path, left_out, pictures)
 

@@ -13,6 +13,8 @@ from ..files import written_whole
 from ..interrupts import interrupts_are_kept
 from ..simulate import Frame, with_spectra
 from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
+from .detections import read_detections, write_detections
+from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
@@ -61,6 +63,10 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
         _write_spectra(file, frame)
         _write_range_azimuth(file, frame)
         _write_partitions(file, frame, is_kept)
+        if frame.labels:
+            write_all_labels(file.create_group("labels"), frame.labels)
+        if frame.detections is not None:
+            write_detections(file.create_group("detections"), frame.detections)
     return missing
 
 
@@ -78,7 +84,29 @@ def load_frame(path) -> Frame:
             return frame
         _read_signal(file, frame)
         _read_partitions(file, frame)
-    return with_spectra(frame)
+        with_spectra(frame)
+        if "labels" in file:
+            frame.labels = read_all_labels(read_group(file, "labels"))
+        if "detections" in file:
+            frame.detections = read_detections(read_group(file, "detections"), paths, frame.spectrum)
+    return frame
+
+
+@interrupts_are_kept()
+def save_labels(labels: dict, path) -> None:
+    """Writes labels to an HDF5 file of their own, as a frame file has them.
+
+    labels: {partition: Labels}, of maps [V, R]; path: of the file, written whole or not at all. Raises ep.FileError.
+    """
+    with _new_file(path) as file:
+        write_all_labels(file.create_group("labels"), labels)
+
+
+@interrupts_are_kept()
+def load_labels(path) -> dict:
+    """{partition: Labels} of a file of `save_labels` or of a frame file at `path`: the same bits. Raises ep.FileError."""
+    with _our_file(path) as file:
+        return read_all_labels(read_group(file, "labels"))
 
 
 @interrupts_are_kept()

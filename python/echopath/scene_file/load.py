@@ -15,10 +15,11 @@ from pydantic import create_model
 import echopath as ep
 
 from ..azimuth_map import checked_settings
+from ..families import named_globs
 from ..parts import check_partitions
 from ..simulate import as_partitions
 from .errors import validated
-from .schema import (AngleTable, ObjectTable, RadarTable, ReplayTable, SceneTable, SpectrumTable, Table, TraceTable,
+from .schema import (AngleTable, DetectionsTable, LabelsTable, ObjectTable, RadarTable, ReplayTable, SceneTable, SpectrumTable, Table, TraceTable,
                      nearest_key)
 
 
@@ -28,7 +29,8 @@ class SceneFile:
 
     path: of the file; title: one line; scene, radar: ready to trace; trace, replay, spectrum, angle: settings, as keywords
     by `trace_settings()`, `replay_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one
-    partition), {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise.
+    partition), {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise; labels, detections:
+    likewise, by `label_settings()` and `detection_settings()`, None: none are asked for.
     """
 
     path: Path
@@ -41,6 +43,8 @@ class SceneFile:
     angle: AngleTable
     parts: dict
     noise_seed: int
+    labels: LabelsTable | None = None
+    detections: DetectionsTable | None = None
 
     def trace_settings(self) -> dict:
         """Keywords of `ep.trace`, all but progress."""
@@ -67,6 +71,17 @@ class SceneFile:
             settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
         return settings
 
+    def label_settings(self) -> dict | None:
+        """`labels` of `ep.simulate`: keywords of `ep.annotate`, None: no labels."""
+        return None if self.labels is None else self.labels.model_dump()
+
+    def detection_settings(self) -> dict | None:
+        """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
+        if self.detections is None:
+            return None
+        objects = None if self.labels is None else self.labels.objects
+        return self.detections.model_dump() | {"objects": objects}
+
     def partitions(self) -> dict:
         """`parts` as {partition: {name: expression}}."""
         return as_partitions(self.parts)
@@ -90,13 +105,23 @@ def load_scene(path) -> SceneFile:
         scene_file = SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
                                radar=_build_radar(settings.radar, path.parent), trace=settings.trace,
                                replay=settings.replay, spectrum=settings.spectrum, angle=settings.angle,
-                               parts=dict(settings.parts), noise_seed=settings.noise.seed)
+                               parts=dict(settings.parts), noise_seed=settings.noise.seed, labels=settings.labels,
+                               detections=settings.detections)
         with _blame("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)
+        _check_labels(scene_file)
         return scene_file
     except ValueError as error:
         raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
+
+
+def _check_labels(scene_file: SceneFile) -> None:
+    """Raises ValueError for objects that are not in the scene: before a long trace."""
+    with _blame("labels.objects"):
+        for _, globs in named_globs(scene_file.labels and scene_file.labels.objects) or []:
+            for glob in globs:
+                ep.hits(glob).check(scene_file.scene)
 
 
 def _with_file(path: Path, line: str) -> str:

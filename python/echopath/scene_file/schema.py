@@ -280,6 +280,36 @@ class NoiseTable(Table):
     seed: int = Field(1, ge=0, description="of the thermal noise")
 
 
+def _label_objects(value):
+    globs = list(value.values()) if isinstance(value, dict) else [value]
+    lists = [[glob] if isinstance(glob, str) else glob for glob in globs]
+    if not all(isinstance(one, list) and one and all(isinstance(glob, str) and glob for glob in one) for one in lists):
+        raise ValueError("must be globs in an array, or a table of name = glob or name = [globs]")
+    return value
+
+
+class LabelsTable(Table):
+    plane: Literal["range_doppler", "range_azimuth"] = Field("range_doppler", description="whose cells are labelled")
+    objects: Optional[Annotated[Any, AfterValidator(_label_objects)]] = Field(
+        None, description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
+    noise: bool = Field(True, description="cells must stand out of the noise")
+    noise_margin_db: Number = Field(10.0, description="dB, by so much")
+    dynamic_range_db: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
+        60.0, description="dB, cells may be so far below the peak")
+    errors: bool = Field(False, description="standard errors too; needs batches")
+
+
+class DetectionsTable(Table):
+    method: Literal["ca", "os"] = Field("ca", description="cell averaging, or an ordered statistic")
+    false_alarm_rate: Annotated[float, Field(ge=1e-15, le=0.5)] = Field(1e-6, description="of one cell")
+    guard_velocity: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: the window's main lobe")
+    guard_range: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: the window's main lobe")
+    training_velocity: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: 4 zero_pad")
+    training_range: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: 8 zero_pad")
+    rank: Annotated[float, Field(gt=0, le=1)] = Field(0.75, description="of \"os\", share of the training cells")
+    max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
+
+
 PartsValue = Annotated[
     Union[Annotated[dict[str, str], Tag("<partition>")], Annotated[str, Tag("<expression>")]],
     Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
@@ -296,6 +326,8 @@ class SceneTable(Table):
     noise: NoiseTable = NoiseTable()
     parts: dict[str, PartsValue] = Field(
         {}, description="name = path expression: one partition; tables of these: several")
+    labels: Optional[LabelsTable] = Field(None, description="labels of the map; none: they are not made")
+    detections: Optional[DetectionsTable] = Field(None, description="detections in the map; none: they are not made")
 
     @model_validator(mode="after")
     def _one_kind_of_parts(self):

@@ -1,0 +1,41 @@
+"""Label maps for programs and pictures of labels for people."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import echopath as ep
+
+from .. import plots
+from ..parts import ONLY_PARTITION
+
+MAPS_FOLDER = "label_maps"
+
+
+def write_labels(frame, folder: Path, selections: dict) -> list:
+    """Writes label maps and pictures of a frame's labels; returns the paths of the PNG files.
+
+    selections: {partition: {part: selection}} of those partitions that are written, {} for a frame without any.
+    """
+    of_partitions = {name: labels for name, labels in frame.labels.items() if name in selections or not selections}
+    written = []
+
+    def write(name: str, figure) -> None:
+        plots.save_png(figure, folder / f"{name}.png")
+        written.append(folder / f"{name}.png")
+
+    for index, (partition, labels) in enumerate(of_partitions.items()):
+        names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"} | ({"objects": "objects", "ghosts": "ghosts"} if index == 0 else {})
+        written += ep.save_label_images(labels, folder / MAPS_FOLDER, names)
+        if index == 0:
+            write("ghosts", plots.plot_ghosts(labels))
+        powers = _powers(frame, partition, selections.get(partition, {}))
+        title = "Which part made each cell" + (f", by {partition}" if partition != ONLY_PARTITION else "")
+        write(f"labels_{partition}", plots.plot_labels(labels, title=title, powers=powers))
+    return written
+
+
+def _powers(frame, partition: str, selections: dict) -> dict:
+    """Mean received power of each part {part: ep.ReceivedPower}; those of a frame with errors are known."""
+    if partition in frame.part_of_path and frame.paths.frame.num_batches > 1:
+        return frame.mean_part_powers[partition]
+    return {name: ep.received_power(paths) for name, paths in frame.paths.partition(selections).items()}

@@ -1,0 +1,44 @@
+"""`echopath labels FRAME.h5`: labels the map of a frame from its file alone."""
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..detections import detect_frame
+from ..frame_file import left_out, load_frame, save_labels
+from ..labels.of_frame import annotate_frame
+from . import report
+from .label_outputs import write_labels
+from .run import chosen_partition
+
+
+def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) -> list[str]:
+    """Labels the map of a frame file, writes labels.h5, detections.csv, maps and pictures, and says what is in them.
+
+    path: of the frame file; folder: of what is written
+    parts: texts NAME=SELECTION of a partition "choice" beside those of the file; progress: callable (stage, fraction) or None
+    cfar: keywords of `cfar` for the detections, of frames with signals; keywords: of `annotate_frame`
+    Returns the lines of a report. Raises ValueError for bad input, ep.FileError for bad files.
+    """
+    path, folder = Path(path), Path(folder)
+    missing, frame = left_out(path), load_frame(path)
+    chosen = chosen_partition(parts)
+    frame.labels = annotate_frame(frame, chosen, progress=progress, **keywords)
+    if frame.spectrum is not None:
+        frame.detections = detect_frame(frame, objects=keywords.get("objects"), progress=progress, **cfar or {})
+        frame.detections.to_csv(folder / "detections.csv")
+    save_labels(frame.labels, folder / "labels.h5")
+    written = write_labels(frame, folder, frame.selections | chosen)
+    return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
+            *report.detections(frame.detections), f"written to {folder}",
+            f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}"]
+
+
+def objects_of_options(texts) -> dict | None:
+    """{name: [globs]} of texts NAME=GLOB, of which several may have one name; None of no texts. Raises ValueError."""
+    objects = {}
+    for text in texts:
+        name, _, glob = (word.strip() for word in text.partition("="))
+        if not (name and glob):
+            raise ValueError(f"object: must be NAME=GLOB, as in cars='car_*', got {text}")
+        objects.setdefault(name, []).append(glob)
+    return objects or None

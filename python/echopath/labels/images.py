@@ -1,0 +1,104 @@
+"""Label maps as images: one index per cell, with the names and colours of the indices beside them."""
+from __future__ import annotations
+
+import colorsys
+import json
+from pathlib import Path
+
+import numpy as np
+
+from ..files import written_whole
+
+NO_LABEL = "none"                   # name of index 0
+NO_LABEL_COLOUR = (0, 0, 0)
+REST_COLOUR = (128, 128, 128)       # of the part "other"
+# Okabe and Ito: told apart with any colour vision; beyond them hues a golden angle apart.
+FIRST_COLOURS = ("#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
+_GOLDEN_TURN = 0.618033988749895
+MAX_PALETTE = 256                   # colours of a PNG; with more labels it holds 16-bit indices without colours
+
+
+def colours_of(names) -> list[tuple]:
+    """A colour (red, green, blue), 0 to 255, for each of the names [N]; grey for "other"; the same ones for the same names."""
+    counted = iter(range(len(names)))
+    return [REST_COLOUR if name == "other" else _colour(next(counted)) for name in names]
+
+
+def _colour(index: int) -> tuple:
+    if index < len(FIRST_COLOURS):
+        text = FIRST_COLOURS[index]
+        return tuple(int(text[i:i + 2], 16) for i in (1, 3, 5))
+    turn = (index - len(FIRST_COLOURS)) * _GOLDEN_TURN % 1.0
+    saturation, value = 0.55 + 0.15 * (index % 3), 0.95 - 0.2 * (index % 2)
+    return tuple(round(255 * part) for part in colorsys.hsv_to_rgb(turn, saturation, value))
+
+
+def label_images(labels) -> dict:
+    """The maps of Labels as images: {name: (map [V, R] of indices from -1 on, list of entries of its palette)}.
+
+    labels: Labels. The names: "parts" (the dominant part), "objects", "ghosts".
+    """
+    ghosts = [{"name": ghost_name(ghost), "object": ghost.object, "ghost_type": ghost.ghost_type, "order": ghost.order,
+               "via": list(ghost.via), "class_code": ghost.class_code} for ghost in labels.ghosts]
+    return {"parts": (labels.dominant, [{"name": name} for name in labels.part_names]),
+            "objects": (labels.object_map, [{"name": label.name, "status": label.status} for label in labels.objects]),
+            "ghosts": (labels.ghost_map, ghosts)}
+
+
+def ghost_name(ghost) -> str:
+    """Of a GhostLabel in few words: walker, type 2, order 3 via wall, floor."""
+    return f"{ghost.object}, type {ghost.ghost_type}, order {ghost.order} via {', '.join(ghost.via)}"
+
+
+MAPS = {"parts": "parts", "objects": "objects", "ghosts": "ghosts"}  # and the names of their files
+
+
+def save_label_images(labels, folder, names: dict = MAPS) -> list:
+    """Writes the maps of Labels as PNG files for programs, each with a JSON file that names and colours its indices.
+
+    labels: Labels of maps [V, R]; folder: where the files are written
+    names: {"parts" (the dominant part), "objects" or "ghosts": name of the files without .png and .json}
+    A pixel is the index of a label + 1, 0: none; row i of the image is row i of the map, column j its range j. Returns the
+    paths of the PNG files. Raises ep.FileError.
+    """
+    by_velocity = labels.azimuth is None
+    rows = _axis("velocity", "m/s", labels.velocity) if by_velocity else _axis("azimuth", "rad", labels.azimuth)
+    axes = {"rows": rows, "columns": _axis("range", "m", labels.range)}
+    images, written = label_images(labels), []
+    for kind, name in names.items():
+        written.append(Path(folder) / f"{name}.png")
+        _write_label_image(written[-1], *images[kind], axes)
+    return written
+
+
+def _axis(name: str, unit: str, values) -> dict:
+    return {"name": name, "unit": unit, "values": np.asarray(values).tolist()}
+
+
+def _write_label_image(path: Path, indices, entries: list, axes: dict) -> None:
+    colours = [NO_LABEL_COLOUR, *colours_of([entry["name"] for entry in entries])]
+    rows = [{"index": index, **entry, "colour": "#%02x%02x%02x" % colour}
+            for index, (entry, colour) in enumerate(zip([{"name": NO_LABEL}, *entries], colours))]
+    with written_whole(path) as temporary:
+        _write_png(temporary, np.asarray(indices, np.int32) + 1, colours)
+    with written_whole(path.with_suffix(".json")) as temporary:
+        temporary.write_text(_palette_text(path.name, axes, rows), encoding="utf-8")
+
+
+def _palette_text(image: str, axes: dict, rows: list) -> str:
+    """JSON with a line for each axis and label."""
+    lines = [f' "image": {json.dumps(image)},', ' "axes": {',
+             ",\n".join(f"  {json.dumps(side)}: {json.dumps(axis)}" for side, axis in axes.items()), " },", ' "labels": [',
+             ",\n".join(f"  {json.dumps(row, ensure_ascii=False)}" for row in rows), " ]"]
+    return "\n".join(["{", *lines, "}"]) + "\n"
+
+
+def _write_png(path, pixels, colours: list) -> None:
+    from PIL import Image
+
+    if len(colours) > MAX_PALETTE:
+        Image.fromarray(pixels.astype(np.uint16)).save(path, format="PNG")
+        return
+    image = Image.fromarray(pixels.astype(np.uint8), mode="L")
+    image.putpalette([value for colour in colours for value in colour])
+    image.save(path, format="PNG", optimize=True)

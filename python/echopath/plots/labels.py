@@ -1,0 +1,261 @@
+"""Labels of maps: cells by part, object and ghost; power by part."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..labels.images import colours_of
+from ..measures import SMALLEST_POWER, in_dbm, with_error
+from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
+from .style import new_figure
+
+AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
+FILL = 0.45                  # opacity of a label over the map
+ROOM_BELOW_DB = 6.0          # of the weakest bar
+MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
+FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin
+LEGEND_LETTERS = 72          # of a line of the legend
+# Okabe and Ito: told apart with any colour vision.
+CLASSES = {"real": ("object itself", "#009e73"), 1: ("ghost, type 1: last bounce on the object", "#e69f00"),
+           2: ("ghost, type 2: last bounce on a mirror", "#cc79a7")}
+
+
+def plot_labels(labels, *, title="Which part made each cell", powers=None):
+    """The map in grey, its cells coloured and outlined by the part that dominates, and bars of the power of each part.
+
+    labels: Labels; powers: {part: ep.ReceivedPower} of the bars, None: no bars
+    Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
+    """
+    colours = _colours(labels.part_names)
+    areas = [(name, colours[index], labels.dominant == index) for index, name in enumerate(labels.part_names)]
+    with new_figure(13.0 if powers else 9.0, 4.8) as figure:
+        panels = figure.subfigures(1, 2 if powers else 1, squeeze=False, width_ratios=(2.3, 1.0) if powers else None)[0]
+        _draw_map(panels[0], labels, areas, title)
+        if powers:
+            draw_part_powers(panels[1].subplots(), powers)
+    return figure
+
+
+def plot_ghosts(labels, *, title="Objects and their ghosts"):
+    """Cells of objects and of their ghosts in the map, and the extent of each ghost with its class and its mirrors.
+
+    labels: Labels. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and each of the
+    strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm.
+    """
+    rows = [label for label in labels.objects if label.peak is not None] + _strongest_ghosts(labels)
+    with new_figure(14.5, max(4.8, 1.6 + 0.27 * len(rows))) as figure:
+        left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.35))
+        _draw_map(left, labels, _class_areas(labels), title)
+        _draw_extents(right.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.0)), labels, rows)
+    return figure
+
+
+# --- maps ---
+
+def _draw_map(figure, labels, areas: list, title: str) -> None:
+    """The power of the whole in grey under areas (name, colour, bool [V, R]) of the mask; figure: for the map alone."""
+    axes, rows = figure.subplots(), _rows(labels)
+    (bottom, top), (near, far) = _shown(labels)
+    level = in_dbm(labels.whole[bottom:top, near:far], SMALLEST_POWER)
+    image = axes.pcolormesh(labels.range[near:far], rows[bottom:top], level, cmap="gray", shading="nearest", rasterized=True,
+                            **_grey_limits(labels))
+    for name, colour, is_inside in areas:
+        if is_inside.any():
+            _draw_area(axes, labels.range, rows, is_inside, colour)
+            words = f"{name}: {_cells(np.count_nonzero(is_inside))}"
+            axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
+    for label in labels.objects:
+        if label.peak is not None:
+            _name_object(axes, labels, label)
+    axes.set_xlim(labels.range[near], labels.range[far - 1])
+    axes.set_ylim(rows[bottom], rows[top - 1])
+    figure.suptitle(title, fontsize=10)
+    axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
+    axes.set_ylabel(_row_label(labels))
+    words = axes.get_legend_handles_labels()[1]
+    if words:
+        columns = max(1, LEGEND_LETTERS // max(map(len, words)))
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
+    figure.colorbar(image, ax=axes, label="Power without noise in dBm", pad=0.01, aspect=30, extend="min")
+
+
+def _draw_area(axes, distance, rows, is_inside, colour) -> None:
+    """Fills and outlines the cells [V, R] where `is_inside`, along their edges."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    left, low = distance - 0.5 * _step(distance), rows - 0.5 * _step(rows)
+    right, high = left + _step(distance), low + _step(rows)
+    v, r = np.nonzero(is_inside)
+    corners = np.stack([[left[r], low[v]], [right[r], low[v]], [right[r], high[v]], [left[r], high[v]]], -1)  # [2, N, 4]
+    axes.add_collection(PolyCollection(corners.transpose(1, 2, 0), facecolors=[colour], edgecolors="none", alpha=FILL,
+                                       rasterized=True))
+    padded = np.pad(is_inside, 1)
+    edges = []
+    for side, (up, across) in enumerate(((-1, 0), (0, 1), (1, 0), (0, -1))):  # below, right, above, left: as the corners
+        is_edge = ~padded[v + 1 + up, r + 1 + across]
+        edges.append(corners[:, is_edge][:, :, [side, (side + 1) % 4]].transpose(1, 2, 0))
+    axes.add_collection(LineCollection(np.concatenate(edges), colors=[colour], linewidths=0.7))
+
+
+def _class_areas(labels) -> list:
+    """Cells of all objects, and of their ghosts by type."""
+    types = np.array([*(ghost.ghost_type for ghost in labels.ghosts), 0])  # the last one for cells of no ghost
+    of_cell = types[labels.ghost_map]
+    return [(*CLASSES["real"], labels.object_map >= 0), *((*CLASSES[kind], of_cell == kind) for kind in (1, 2))]
+
+
+def _grey_limits(labels) -> dict:
+    """From the noise, or what the mask goes down to, up to the peak."""
+    highest = float(in_dbm(labels.whole.max(), SMALLEST_POWER))
+    noise = float(in_dbm(labels.noise_power, SMALLEST_POWER))
+    lowest = max(noise, highest - min(labels.dynamic_range_db, 90.0))
+    return {"vmin": min(lowest, highest - 10.0), "vmax": highest}
+
+
+def _name_object(axes, labels, label) -> None:
+    distance, row = label.peak[0], _in_plot_units(labels, label.peak[1])
+    axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
+    axes.annotate(label.name, (distance, row), xytext=(14, -22), textcoords="offset points", color="white", fontsize=8,
+                  arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7},
+                  bbox={"boxstyle": "round,pad=0.15", "facecolor": "black", "alpha": 0.6, "edgecolor": "none"})
+
+
+def _unseen(labels) -> str:
+    """Lines on the objects that the map does not show, and why; "" where it shows all."""
+    unseen = [label for label in labels.objects if label.status != "seen"]
+    lines = []
+    for label in unseen[:MAX_UNSEEN]:
+        by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
+        lines.append(f"\n{label.name}: {label.status}" + (f" (hidden by {by})" if by else ""))
+    return "".join(lines) + (f"\nand {len(unseen) - MAX_UNSEEN} more without cells" if len(unseen) > MAX_UNSEEN else "")
+
+
+def _shown(labels):
+    """(first, beyond the last) row and column: about the cells of objects and ghosts, about the mask where there are none."""
+    is_meant = (labels.object_map >= 0) | (labels.ghost_map >= 0)
+    margins = VELOCITY_MARGIN if labels.azimuth is None else AZIMUTH_MARGIN, RANGE_MARGIN
+    return [_with_margin(axis, np.flatnonzero((is_meant if is_meant.any() else labels.mask).any(axis=1 - side)), margin)
+            for side, (axis, margin) in enumerate(zip((_rows(labels), labels.range), margins))]
+
+
+def _with_margin(axis, indices, margin: float):
+    if len(indices) == 0:
+        return 0, len(axis)
+    return (int(np.searchsorted(axis, axis[indices[0]] - margin)), int(np.searchsorted(axis, axis[indices[-1]] + margin)))
+
+
+# --- extents ---
+
+def _strongest_ghosts(labels) -> list:
+    ghosts = [ghost for ghost in labels.ghosts if ghost.peak is not None]
+    return sorted(ghosts, key=lambda ghost: -ghost.power)[:MAX_GHOSTS]
+
+
+def _draw_extents(panels, labels, rows: list) -> None:
+    """A bar for the box of each label along range and along velocity or azimuth, a mark at its peak."""
+    across, up = panels
+    half_range, half_row = 0.5 * _step(labels.range), 0.5 * _step(_rows(labels))
+    for place, label in enumerate(rows):
+        colour = CLASSES[getattr(label, "ghost_type", "real")][1]
+        _draw_span(across, place, [(label.box[0], label.box[1])], half_range, label.peak[0], colour)
+        _draw_span(up, place, _row_spans(labels, label), half_row, _in_plot_units(labels, label.peak[1]), colour)
+        words = f" {float(in_dbm(label.power)):.0f} dBm, {_cells(label.cells)}"
+        up.annotate(words, (1.0, place), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
+    across.set_yticks(range(len(rows)), [_row_name(label) for label in rows], fontsize=7.5)
+    across.set_ylim(max(len(rows), FEWEST_ROWS) - 0.5, -0.5)
+    across.set_xlabel(RANGE_LABEL)
+    up.set_xlabel(_row_label(labels))
+    up.tick_params(left=False)
+    num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
+    words = "Cells from, to; line: peak" if rows else "No cells of objects or ghosts"
+    across.set_title(words + (f"; {num_hidden} weaker ghosts left out" if num_hidden else ""), loc="left")
+    for axes in panels:
+        axes.grid(axis="x", alpha=0.25)
+        axes.use_sticky_edges = False
+        axes.autoscale_view(scaley=False)
+
+
+def _draw_span(axes, place: int, spans: list, half_step: float, peak: float, colour) -> None:
+    for low, high in spans:
+        axes.barh(place, high - low + 2.0 * half_step, left=low - half_step, height=0.6, color=colour, alpha=FILL + 0.2)
+    axes.plot([peak, peak], [place - 0.3, place + 0.3], color="black", linewidth=1.2)
+
+
+def _row_spans(labels, label) -> list:
+    """One, or two where the box goes over the end of the velocities."""
+    low, high = (_in_plot_units(labels, value) for value in label.box[2:])
+    rows = _rows(labels)
+    return [(low, high)] if low <= high else [(low, rows[-1]), (rows[0], high)]
+
+
+def _row_name(label) -> str:
+    if not hasattr(label, "ghost_type"):
+        return f"{label.name} itself"
+    return f"{label.object}, type {label.ghost_type}, order {label.order} via {' + '.join(label.via)}"
+
+
+# --- bars ---
+
+def plot_part_powers(powers: dict, *, title="Received power by part"):
+    """Bars of the mean received power of each part, with standard errors where the trace has batches.
+
+    powers: {part: ep.ReceivedPower}. Returns a matplotlib figure: power in dBm across.
+    """
+    with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
+        draw_part_powers(figure.subplots(), powers, title)
+    return figure
+
+
+def draw_part_powers(axes, powers: dict, title="Mean received power by part") -> None:
+    """Bars from a common floor a little below the weakest."""
+    shown = {name: power for name, power in powers.items() if power.power > 0.0}
+    levels = {name: float(in_dbm(power.power)) for name, power in shown.items()}
+    floor = 10.0 * np.floor((min(levels.values(), default=0.0) - ROOM_BELOW_DB) / 10.0)
+    names = list(powers)
+    for place, (name, colour) in enumerate(zip(names, _colours(names))):
+        if name not in shown:
+            axes.text(floor, place, " no paths", va="center", fontsize=8, color="0.4")
+            continue
+        low, high = _error_bar(shown[name])
+        axes.barh(place, levels[name] - floor, left=floor, color=colour, alpha=FILL + 0.3)
+        if high > low:
+            axes.plot([max(low, floor), high], [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
+        text = with_error(shown[name]).replace("+-", "±") if high > low else f"{levels[name]:.1f} dBm"
+        axes.text(max(high, levels[name]), place, f" {text}", va="center", fontsize=8)
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    highest = max(levels.values(), default=floor + 10.0)
+    axes.set_xlim(floor, highest + 0.45 * (highest - floor))
+    axes.set_xlabel("Power in dBm")
+    axes.set_title(title)
+
+
+def _error_bar(power) -> tuple[float, float]:
+    """Ends in dBm of one standard error either side; both the level where there is none."""
+    error = power.standard_error if np.isfinite(power.standard_error) else 0.0
+    return tuple(float(in_dbm(power.power + sign * error, SMALLEST_POWER)) for sign in (-1.0, 1.0))
+
+
+# --- what they share ---
+
+def _colours(names) -> list:
+    return [tuple(value / 255.0 for value in colour) for colour in colours_of(list(names))]
+
+
+def _cells(count: int) -> str:
+    return f"{count:,} cell{'' if count == 1 else 's'}"
+
+
+def _rows(labels):
+    return labels.velocity if labels.azimuth is None else np.degrees(labels.azimuth)
+
+
+def _row_label(labels) -> str:
+    return VELOCITY_LABEL if labels.azimuth is None else AZIMUTH_LABEL
+
+
+def _in_plot_units(labels, row: float) -> float:
+    return row if labels.azimuth is None else float(np.degrees(row))
+
+
+def _step(axis) -> float:
+    return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0

@@ -1,4 +1,4 @@
-"""`echopath bench labels`: what parts cost beside the whole signal, and how fast expressions are matched."""
+"""`echopath bench labels`: what parts cost beside the whole signal, how fast expressions are matched, false alarms."""
 from __future__ import annotations
 
 import json
@@ -14,6 +14,7 @@ from ..files import written_whole
 from ..materials import data_folder
 from ..measures import residual
 from ..scene_file import load_scene
+from .false_alarms import describe_false_alarms, measure_false_alarms
 from .machine import machine
 
 RAYS, QUICK_RAYS = (5_000, 50_000), (1_000,)
@@ -21,6 +22,7 @@ NUM_PARTS = (1, 4, 16, 64)
 REPEATS, QUICK_REPEATS = 3, 2
 NUM_HITS, QUICK_NUM_HITS = 4_000_000, 200_000
 MATCH_REPEATS = 9
+NOISE_CELLS, QUICK_NOISE_CELLS = 10_000_000, 300_000
 RATE_TARGET = 200e6    # hits/s on one core
 SUM_TARGET = 1e-12     # |whole - sum of parts| / |whole|
 HITS_PER_PATH = ((1, 1), (1, 4), (1, 16))
@@ -38,7 +40,8 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = load_scene(path)
     all_rays = QUICK_RAYS if quick else RAYS
-    steps = iter(np.arange(1, len(all_rays) + len(HITS_PER_PATH) + 2) / (len(all_rays) + len(HITS_PER_PATH) + 1))
+    num_steps = len(all_rays) + len(HITS_PER_PATH) + 2
+    steps = iter(np.arange(1, num_steps + 1) / num_steps)
     results = {"machine": machine(), "parts": [], "rates": []}
     for rays in all_rays:
         paths = ep.trace(street.scene, street.radar, num_rays=rays)
@@ -51,6 +54,8 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
         made = random_paths(paths, QUICK_NUM_HITS if quick else NUM_HITS, least, most)
         results["rates"].append(_rates(f"random, {least} to {most} hits" if most > least else f"random, hits: {least}", made))
         _tell(progress, steps)
+    results["false_alarms"] = measure_false_alarms(QUICK_NOISE_CELLS if quick else NOISE_CELLS)
+    _tell(progress, steps)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -155,4 +160,4 @@ def describe(results: dict) -> list[str]:
         for text, rate in case["hits_per_second"].items():
             verdict = "holds" if rate >= RATE_TARGET else "MISSES"
             lines.append(f"    {text:<42}{rate * 1e-6:8.0f}  {case['bare_hits_per_second'] / rate:5.2f}  {verdict}")
-    return lines + ["", f"{results['seconds']:.0f} s in all"]
+    return lines + ["", *describe_false_alarms(results["false_alarms"]), "", f"{results['seconds']:.0f} s in all"]

@@ -34,6 +34,13 @@ struct AntennaView {
   std::vector<Beam> beams;
 };
 
+// What a search needs while it lasts; kept from one to the next for its memory.
+struct LegSearch {
+  std::vector<Segment> segments;  // of all legs tried, in their order
+  std::vector<uint8_t> blocked;
+  int64_t num_queries = 0;        // of all searches
+};
+
 class LegFinder {
  public:
   LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization)
@@ -41,15 +48,21 @@ class LegFinder {
 
   AntennaView view_of(const Vec3& antenna) const;
   // All visible legs between `point` (unit normal on the lit side) and `antenna` over at most `max_mirrors` mirrors, direct
-  // first, then in the order of the beams. `skip`: a sequence that is left out, negative for none. Queries made are added to
-  // `num_queries`.
+  // first, then in the order of the beams. `skip`: a sequence that is left out, negative for none.
+  // Where a leg meets its mirrors follows from the images alone; shadow queries, in packets, tell whether its way is free.
   void find(const Vec3& point, const Vec3& normal, const AntennaView& antenna, int max_mirrors, MirrorSequence skip,
-            std::vector<Leg>& legs, int64_t& num_queries) const;
+            std::vector<Leg>& legs, LegSearch& search) const;
 
  private:
-  bool over_mirrors(const Vec3& point, const Vec3& normal, const AntennaView& antenna, const Beam& beam, Leg& leg,
-                    int64_t& num_queries) const;
-  bool bounce(int mirror, const Vec3& from, const Vec3& direction, Leg& leg, RayHit& met) const;
+  void add_direct(const Vec3& point, const Vec3& normal, const AntennaView& antenna, std::vector<Leg>& legs,
+                  LegSearch& search) const;
+  void add_over_mirrors(const Vec3& point, const Vec3& normal, const AntennaView& antenna, const Beam& beam,
+                        std::vector<Leg>& legs, LegSearch& search) const;
+  bool set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const Beam& beam, Leg& leg,
+                   std::vector<Segment>& segments) const;
+  bool bounce(int mirror, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const;
+  void keep_open(std::vector<Leg>& legs, LegSearch& search) const;
+  void set_gain(Leg& leg) const;
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;

@@ -18,9 +18,10 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
   mirror.material = scene.node_of(mesh_id).material.get();
   mirror.point.setZero();
   Vec3 area_normal = Vec3::Zero(), reference = Vec3::Zero();
+  std::vector<std::array<Vec3, 3>> all_corners;
   double weight = 0.0;
   for (uint32_t i = 0; i < triangles.size(); ++i) {
-    const auto [a, b, c] = geometry.corners(mesh_id, i);
+    const auto& [a, b, c] = all_corners.emplace_back(geometry.corners(mesh_id, i));
     Vec3 cross = (b - a).cross(c - a);
     if (i == 0) reference = cross;
     if (cross.dot(reference) < 0) cross = -cross;  // windings may differ
@@ -30,6 +31,7 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
   }
   mirror.point /= weight;
   mirror.normal = area_normal.normalized();
+  mirror.mesh = PlaneMesh(mesh_id, all_corners, mirror.normal);
   return mirror;
 }
 

@@ -37,6 +37,7 @@ bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& directi
 void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   const Vec3& point = surface.point.position;
   scratch.receive.clear();
+  scratch.has_receive = false;
   if ((point - settings_.receiver).norm() < kNearAntenna || (point - settings_.transmitter).norm() < kNearAntenna) {
     ++block.statistics.num_near_antenna;
     return;
@@ -48,7 +49,8 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
   if (in_pairs && !is_counted(ray, surface)) return;
   legs_.find(point, surface.point.normal, receiver_, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther,
-             scratch.receive, block.statistics.num_queries);
+             scratch.receive, scratch.search);
+  scratch.has_receive = true;
   if (scratch.receive.empty() && ray.coherent) return;
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
   if (!radiates_power) return;
@@ -168,7 +170,7 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 }
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
-  find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch, block);
+  find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch);
   scratch.transmit.push_back(own_leg(ray));
   if (settings_.is_polarized) follow_legs(ray, scratch);
   const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));

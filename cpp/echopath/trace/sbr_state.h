@@ -57,6 +57,13 @@ struct RayShooter::Surface {
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
+struct RayShooter::Packet {
+  std::array<int, kPacketSize> strata;
+  std::array<Vec3, kPacketSize> directions;
+  std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
+  std::array<RayHit, kPacketSize> hits;
+};
+
 struct RayShooter::Odds {
   double specular = 0.0, diffuse = 0.0;
 };
@@ -76,6 +83,8 @@ struct RayShooter::Chain {
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
   std::vector<FieldPair> incident, axes;  // of these, for pairs, where polarised (sbr_polarization.cpp)
+  bool has_receive = false;                     // `receive` is that of the ray's hit
+  LegSearch search;
   Chain chain;  // of rays that have left a diffuse hit
 };
 

@@ -47,7 +47,7 @@ void shoot_all(const RayShooter& shooter, int64_t num_rays, std::vector<PathBloc
       [&](int64_t i) {
         const int64_t end = std::min(num_rays, (i + 1) * kRaysPerBlock);
         PathBlock& block = blocks[base + static_cast<size_t>(i)];
-        for (int64_t ray = i * kRaysPerBlock; ray < end; ++ray) shooter.shoot(ray, block);
+        shooter.shoot(i * kRaysPerBlock, end, block);
         block.shrink_to_fit();
       },
       job);
@@ -99,7 +99,7 @@ Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& setting
   sbr.polarization = (world_from_radar.linear() * (first.orientation * first.polarization)).normalized();
 
   std::vector<PathBlock> blocks(1);
-  add_mirror_paths(geometry, *paths.scene, mirrors, sbr, blocks.front());
+  add_mirror_paths(geometry, mirrors, sbr, blocks.front());
   const RayShooter shooter(*paths.scene, geometry, mirrors, plan, sbr);
   paths.frame.statistics.num_rays = plan.first_ray.back();
   shoot_all(shooter, plan.first_ray.back(), blocks, job);

@@ -62,6 +62,8 @@ class RayShooter {
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  void record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
+                       PathBlock& block) const;
   Leg own_leg(const Ray& ray) const;
   double counted_share(const Surface& surface) const;
   bool is_counted(const Ray& ray, const Surface& surface) const;

@@ -172,30 +172,34 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch);
   scratch.transmit.push_back(own_leg(ray));
-  if (settings_.is_polarized) follow_legs(ray, scratch);
-  const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
-  const std::complex<double> phase = phase_factor(ray);
+  const std::complex<double> common = std::sqrt(material_area(ray, surface, scratch.transmit)) * phase_factor(ray);
+  if (settings_.is_polarized) return record_matrices(ray, surface, common, scratch, block);
+  block.begin_fan(surface.point.hit, ray.stratum, settings_.max_bounces);
+  for (const Leg& in : scratch.transmit) {
+    const SurfaceResponse response = response_toward(surface, in.to_antenna);
+    block.add_leg_in(common * (std::sqrt(std::norm(response.gamma)) * response.diffuse) * in.gain);
+    for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[static_cast<size_t>(k)].hit);
+  }
+  for (const Leg& out : scratch.receive) {
+    block.add_leg_out(out.gain);
+    for (int k = 0; k < out.num_bounces; ++k) block.add_leg_hit(out.bounces[static_cast<size_t>(k)].hit);
+  }
+  block.end_fan();
+}
 
+// A path over each pair of legs with its matrix, where polarised.
+void RayShooter::record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
+                                 PathBlock& block) const {
+  follow_legs(ray, scratch);
   for (size_t i = 0; i < scratch.transmit.size(); ++i) {
     const Leg& in = scratch.transmit[i];
-    const SurfaceResponse response = response_toward(surface, in.to_antenna);
-    const std::complex<double> scalar =
-        settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
-    const std::complex<double> weight = root_area * scalar * phase;
-    const uint64_t bits = uint64_t{1} << in.num_bounces;
     for (size_t j = 0; j < scratch.receive.size(); ++j) {
       const Leg& out = scratch.receive[j];
       const int count = in.num_bounces + 1 + out.num_bounces;
       if (count > settings_.max_bounces) continue;
-      if (out.num_bounces == 0 && in.sequence == ray.sequence) {
-        block.add_prefix(0, count, bits, weight, ray.stratum);
-      } else if (out.num_bounces == 0 && in.num_bounces == 0) {
-        block.add_prefix(ray.depth - 1, count, bits, weight, ray.stratum);
-      } else {
-        const auto hits = pair_hits(in, surface.point.hit, out);
-        block.add(hits.data(), count, bits, settings_.is_polarized ? weight : weight * out.gain, ray.stratum);
-      }
-      if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, scratch, i, j));
+      const auto hits = pair_hits(in, surface.point.hit, out);
+      block.add(hits.data(), count, uint64_t{1} << in.num_bounces, weight, ray.stratum);
+      block.set_jones(pair_matrix(ray, surface, scratch, i, j));
     }
   }
 }

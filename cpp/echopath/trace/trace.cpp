@@ -46,9 +46,10 @@ void shoot_all(const RayShooter& shooter, int64_t num_rays, std::vector<PathBloc
       num_blocks,
       [&](int64_t i) {
         const int64_t end = std::min(num_rays, (i + 1) * kRaysPerBlock);
-        PathBlock& block = blocks[base + static_cast<size_t>(i)];
+        thread_local PathBlock block;  // with room from those before: what is kept is no larger than it needs to be
+        block.clear();
         shooter.shoot(i * kRaysPerBlock, end, block);
-        block.shrink_to_fit();
+        blocks[base + static_cast<size_t>(i)] = block;
       },
       job);
 }

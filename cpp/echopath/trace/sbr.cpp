@@ -233,7 +233,7 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
   const Vec3& normal = surface.point.normal;
   const Vec3 out = cosine_lobe(normal, scatter_numbers(ray, block.current_batch));
   if (ray.coherent) begin_chain(ray, surface, probability, scratch);
-  ray.coefficient *= std::abs(surface.response.gamma) * surface.response.diffuse;
+  ray.coefficient *= diffuse_coefficient(surface.response);
   ray.area *= surface.area;
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
   ray.coherent = false;

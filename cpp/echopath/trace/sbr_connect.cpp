@@ -124,7 +124,7 @@ std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surfac
 
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   const std::complex<double> scalar =
-      settings_.is_polarized ? 1.0 : ray.coefficient * std::abs(surface.response.gamma) * surface.response.diffuse;
+      settings_.is_polarized ? 1.0 : ray.coefficient * diffuse_coefficient(surface.response);
   const std::complex<double> weight = scalar * std::sqrt(surface.area) * phase_factor(ray);
   const uint64_t bits = uint64_t{1} << (ray.depth - 1);
   const bool with_reversal = ray.mirror.mesh >= 0;
@@ -174,10 +174,15 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
   scratch.transmit.push_back(own_leg(ray));
   const std::complex<double> common = std::sqrt(material_area(ray, surface, scratch.transmit)) * phase_factor(ray);
   if (settings_.is_polarized) return record_matrices(ray, surface, common, scratch, block);
+  if (scratch.transmit.size() == 1 && scratch.receive.size() == 1 && scratch.receive[0].num_bounces == 0) {
+    const std::complex<double> weight = common * diffuse_coefficient(surface.response) * ray.coefficient;
+    block.add_prefix(0, ray.depth, uint64_t{1} << (ray.depth - 1), weight, ray.stratum);
+    return;
+  }
   block.begin_fan(surface.point.hit, ray.stratum, settings_.max_bounces);
   for (const Leg& in : scratch.transmit) {
     const SurfaceResponse response = response_toward(surface, in.to_antenna);
-    block.add_leg_in(common * (std::sqrt(std::norm(response.gamma)) * response.diffuse) * in.gain);
+    block.add_leg_in(common * diffuse_coefficient(response) * in.gain);
     for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[static_cast<size_t>(k)].hit);
   }
   for (const Leg& out : scratch.receive) {

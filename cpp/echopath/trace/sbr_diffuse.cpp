@@ -31,8 +31,6 @@ Leg own_way_back(const Vec3& arrival, const Vec3& departure, std::complex<double
   return leg;
 }
 
-double diffuse_coefficient(const SurfaceResponse& response) { return std::abs(response.gamma) * response.diffuse; }
-
 }  // namespace
 
 // What the surface makes of a wave that comes from where `direction` points, a unit vector.

@@ -1,6 +1,7 @@
 #pragma once
 // What sbr.cpp and sbr_connect.cpp share: the state of a ray. Internal to the module.
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "echopath/em/jones.h"
@@ -87,6 +88,11 @@ struct RayShooter::Scratch {
   LegSearch search;
   Chain chain;  // of rays that have left a diffuse hit
 };
+
+// |Gamma| S: of the field that a diffuse hit scatters.
+inline double diffuse_coefficient(const SurfaceResponse& response) {
+  return std::sqrt(std::norm(response.gamma)) * response.diffuse;
+}
 
 // Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
 double curvature_along(const RayHit& point, const Vec3& direction);

@@ -24,7 +24,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
 
-void set_ray(RTCRay& ray, const Vec3& from, const Vec3& direction, float far) {
+template <class Vector>
+void set_ray(RTCRay& ray, const Vector& from, const Vector& direction, float far) {
   ray.org_x = static_cast<float>(from.x());
   ray.org_y = static_cast<float>(from.y());
   ray.org_z = static_cast<float>(from.z());
@@ -39,7 +40,8 @@ void set_ray(RTCRay& ray, const Vec3& from, const Vec3& direction, float far) {
   ray.flags = 0;
 }
 
-void set_ray(RTCRay16& rays, int lane, const Vec3& from, const Vec3& direction, float far) {
+template <class Vector>
+void set_ray(RTCRay16& rays, int lane, const Vector& from, const Vector& direction, float far) {
   rays.org_x[lane] = static_cast<float>(from.x());
   rays.org_y[lane] = static_cast<float>(from.y());
   rays.org_z[lane] = static_cast<float>(from.z());
@@ -94,6 +96,16 @@ void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
 }
 #endif
 
+void forget_hit(RTCHit& hit) {
+  hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+void forget_hit(RTCHit16& hits, int lane) {
+  hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
 // -1 for each lane of a packet that is in use.
 struct alignas(64) Lanes {
   std::array<int, kPacketSize> valid{};
@@ -116,6 +128,8 @@ struct EmbreeScene::Device {
     if (code != RTC_ERROR_NONE) throw DeviceError(std::string("Embree: ") + what + " failed, code " + std::to_string(code));
   }
   void add_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+  void ask(const QueryLog::Ray& ray, bool is_shadow) const;
+  void ask(const QueryLog::Ray* rays, int count, bool is_shadow) const;
 };
 
 void EmbreeScene::Device::add_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices,
@@ -190,9 +204,13 @@ Vec3 EmbreeScene::moved_up(const Vec3& from, const Vec3& direction) const {
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
   RTCRayHit query;
-  set_ray(query.ray, moved_up(from, direction), direction, kInfinity);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  const Vec3 start = moved_up(from, direction);
+  set_ray(query.ray, start, direction, kInfinity);
+  forget_hit(query.hit);
+  if (log_) {
+    log_->calls.push_back({QueryLog::Kind::kClosest, 1});
+    log_->add(start, direction, kInfinity);
+  }
   embree_intersect(device_->scene, query);
   out.hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
   return confirm(from, direction, out);
@@ -202,10 +220,12 @@ void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count,
   alignas(64) RTCRayHit16 queries;
   Lanes lanes;
   std::fill_n(lanes.valid.begin(), count, -1);
+  if (log_) log_->calls.push_back({QueryLog::Kind::kClosestPacket, static_cast<uint8_t>(count)});
   for (int lane = 0; lane < count; ++lane) {
-    set_ray(queries.ray, lane, moved_up(from, directions[lane]), directions[lane], kInfinity);
-    queries.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-    queries.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    const Vec3 start = moved_up(from, directions[lane]);
+    set_ray(queries.ray, lane, start, directions[lane], kInfinity);
+    forget_hit(queries.hit, lane);
+    if (log_) log_->add(start, directions[lane], kInfinity);
   }
   embree_intersect(device_->scene, lanes.valid.data(), queries);
   const RTCHit16& met = queries.hit;
@@ -269,6 +289,10 @@ bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
   if (line.far <= 0) return false;
   RTCRay ray;
   set_ray(ray, line.from, line.direction, line.far);
+  if (log_) {
+    log_->calls.push_back({QueryLog::Kind::kShadow, 1});
+    log_->add(line.from, line.direction, line.far);
+  }
   embree_occluded(device_->scene, ray);
   return ray.tfar < 0;
 }
@@ -278,14 +302,51 @@ void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* block
   for (size_t begin = 0; begin < count; begin += kPacketSize) {
     const size_t num_lanes = std::min<size_t>(kPacketSize, count - begin);
     Lanes lanes;
+    if (log_) log_->calls.push_back({QueryLog::Kind::kShadowPacket, static_cast<uint8_t>(num_lanes)});
     for (size_t k = 0; k < num_lanes; ++k) {
       const Line line = line_between(segments[begin + k].from, segments[begin + k].to);
       set_ray(rays, static_cast<int>(k), line.from, line.direction, line.far);
       lanes.valid[k] = line.far > 0 ? -1 : 0;
+      if (log_) log_->add(line.from, line.direction, line.far);
     }
     embree_occluded(device_->scene, lanes.valid.data(), rays);
     for (size_t k = 0; k < num_lanes; ++k) blocked[begin + k] = rays.tfar[k] < 0;
   }
+}
+
+void EmbreeScene::ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const {
+  const QueryLog::Ray* rays = log.rays.data() + begin.ray;
+  for (size_t i = begin.call; i < end.call; ++i) {
+    const auto [kind, count] = log.calls[i];
+    const bool is_shadow = kind == QueryLog::Kind::kShadow || kind == QueryLog::Kind::kShadowPacket;
+    const bool is_single = kind == QueryLog::Kind::kClosest || kind == QueryLog::Kind::kShadow;
+    if (one_by_one || is_single) {
+      for (int k = 0; k < count; ++k) device_->ask(rays[k], is_shadow);
+    } else {
+      device_->ask(rays, count, is_shadow);
+    }
+    rays += count;
+  }
+}
+
+void EmbreeScene::Device::ask(const QueryLog::Ray& ray, bool is_shadow) const {
+  RTCRayHit query;
+  set_ray(query.ray, ray.from, ray.direction, ray.far);
+  if (is_shadow) return embree_occluded(scene, query.ray);
+  forget_hit(query.hit);
+  embree_intersect(scene, query);
+}
+
+void EmbreeScene::Device::ask(const QueryLog::Ray* rays, int count, bool is_shadow) const {
+  alignas(64) RTCRayHit16 queries;
+  Lanes lanes;
+  for (int lane = 0; lane < count; ++lane) {
+    set_ray(queries.ray, lane, rays[lane].from, rays[lane].direction, rays[lane].far);
+    lanes.valid[static_cast<size_t>(lane)] = rays[lane].far > 0 ? -1 : 0;
+    if (!is_shadow) forget_hit(queries.hit, lane);
+  }
+  if (is_shadow) embree_occluded(scene, lanes.valid.data(), queries.ray);
+  else embree_intersect(scene, lanes.valid.data(), queries);
 }
 
 Vec3 EmbreeScene::lifted(const Vec3& point, const Vec3& normal) const { return point + device_->lift * normal; }

@@ -9,6 +9,7 @@
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
 #include "echopath/trace/paths.h"
+#include "echopath/trace/query_log.h"
 
 namespace echopath {
 
@@ -49,6 +50,11 @@ class EmbreeScene {
   bool occluded(const Vec3& from, const Vec3& to) const;
   // Likewise of `count` segments; 4 times as fast, in whatever order.
   void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
+  // From now on every query is written down, too; null: no more. One thread at a time may ask while that lasts.
+  void record_queries(QueryLog* log) { log_ = log; }
+  // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
+  // nothing else.
+  void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const;
 
@@ -80,6 +86,7 @@ class EmbreeScene {
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
+  QueryLog* log_ = nullptr;
   double reach_ = 0.0;  // m: radius around the origin that holds the scene
   std::vector<Surface> surfaces_;            // by mesh ID
 

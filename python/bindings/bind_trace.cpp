@@ -56,9 +56,12 @@ py::dict time_bare_queries(const Scene& scene, const Radar& radar, int64_t num_r
   out["num_in_packets"] = found.num_in_packets;
   out["num_shadow"] = found.num_shadow;
   out["build_seconds"] = found.build_seconds;
-  out["trace_seconds"] = found.trace_seconds;
-  out["bare_seconds"] = found.bare_seconds;
-  out["single_seconds"] = found.single_seconds;
+  const auto seconds = [](const BareQueries::Seconds& of) {
+    return py::dict(py::arg("elapsed") = of.elapsed, py::arg("processor") = of.processor);
+  };
+  out["trace_seconds"] = seconds(found.trace);
+  out["bare_seconds"] = seconds(found.bare);
+  out["single_seconds"] = seconds(found.single);
   return out;
 }
 
@@ -92,8 +95,9 @@ Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, mo
         R"(Times a trace beside its own queries, asked again in a bare loop: for benchmarks, no part of the public interface.
 
 num_rays, max_bounces, seed: as in trace; repetitions: measurements, in turn
-Returns a dict: num_rays, num_paths, num_queries (num_in_packets and num_shadow of them), build_seconds (once) and lists
-[repetitions] in s of trace_seconds (rays and record), bare_seconds (queries packed alike), single_seconds (one by one).)");
+Returns a dict: num_rays, num_paths, num_queries (num_in_packets and num_shadow of them), build_seconds (once) and
+trace_seconds (rays and record), bare_seconds (queries packed alike) and single_seconds (one by one), each a dict of lists
+[repetitions] in s: elapsed, and processor of all threads together.)");
 }
 
 }  // namespace echopath::bindings

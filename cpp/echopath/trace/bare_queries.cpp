@@ -1,6 +1,7 @@
 #include "echopath/trace/bare_queries.h"
 
 #include <chrono>
+#include <ctime>
 
 #include "echopath/base/parallel.h"
 #include "echopath/trace/tracer.h"
@@ -13,6 +14,13 @@ double seconds_of(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <class Work>
+void measure(BareQueries::Seconds& seconds, const Work& work) {
+  const std::clock_t begin = std::clock();
+  seconds.elapsed.push_back(seconds_of(work));
+  seconds.processor.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
 }
 
 QueryLog write_down(Tracer& tracer, Job* job) {
@@ -57,9 +65,9 @@ BareQueries measure_bare_queries(const Scene& scene, const Radar& radar, const T
   count_queries(log, out);
   out.num_rays = tracer->num_rays();
   for (int i = 0; i < repetitions; ++i) {
-    out.trace_seconds.push_back(seconds_of([&] { out.num_paths = tracer->run(job).num_paths(); }));
-    out.bare_seconds.push_back(seconds_of([&] { ask_all(tracer->geometry(), log, false); }));
-    out.single_seconds.push_back(seconds_of([&] { ask_all(tracer->geometry(), log, true); }));
+    measure(out.trace, [&] { out.num_paths = tracer->run(job).num_paths(); });
+    measure(out.bare, [&] { ask_all(tracer->geometry(), log, false); });
+    measure(out.single, [&] { ask_all(tracer->geometry(), log, true); });
   }
   return out;
 }

@@ -242,8 +242,9 @@ EmbreeScene::Verdict EmbreeScene::confirm(const Vec3& from, const Vec3& directio
   const double u = out.hit.u, v = out.hit.v;
   out.position = a + u * (b - a) + v * (c - a);
   out.distance = direction.dot(out.position - from);
-  const double miss = (from + out.distance * direction - out.position).norm();
-  if (out.distance <= 0 || miss > kFalseHitAbsolute + kFalseHitRelative * out.distance) return Verdict::kFalseHit;
+  const double squared_miss = (from + out.distance * direction - out.position).squaredNorm();
+  const double allowed = kFalseHitAbsolute + kFalseHitRelative * out.distance;
+  if (out.distance <= 0 || squared_miss > allowed * allowed) return Verdict::kFalseHit;
   out.normal = (b - a).cross(c - a).normalized();
   out.is_smooth = false;
   out.stretch = 1.0;
@@ -298,6 +299,10 @@ bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
 }
 
 void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* blocked) const {
+  if (count == 1) {  // a packet of one would be slower
+    *blocked = occluded(segments->from, segments->to);
+    return;
+  }
   alignas(64) RTCRay16 rays;
   for (size_t begin = 0; begin < count; begin += kPacketSize) {
     const size_t num_lanes = std::min<size_t>(kPacketSize, count - begin);

@@ -15,33 +15,36 @@ AntennaView LegFinder::view_of(const Vec3& antenna) const {
   return {antenna, find_beams(antenna, mirrors_, kMaxLegMirrors)};
 }
 
-void LegFinder::find(const Vec3& point, const Vec3& normal, const AntennaView& antenna, int max_mirrors, MirrorSequence skip,
-                     std::vector<Leg>& legs, LegSearch& search) const {
+void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
   legs.clear();
   search.segments.clear();
-  if (skip != kDirect) add_direct(point, normal, antenna, legs, search);
+  if (query.skip != kDirect && query.direct != Sight::kBlocked) add_direct(query, antenna, legs, search);
+  const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const Beam& beam : antenna.beams) {
-    if (static_cast<int>(beam.mirrors.size()) > max_mirrors) break;
-    if (beam.sequence != skip) add_over_mirrors(point, normal, antenna, beam, legs, search);
+    if (static_cast<int>(beam.mirrors.size()) > query.max_mirrors) break;
+    if (beam.sequence != query.skip) add_over_mirrors(query, antenna, beam, legs, search);
   }
-  if (!legs.empty()) keep_open(legs, search);
+  if (!search.segments.empty()) keep_open(num_known, legs, search);
 }
 
-void LegFinder::add_direct(const Vec3& point, const Vec3& normal, const AntennaView& antenna, std::vector<Leg>& legs,
+void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs,
                            LegSearch& search) const {
-  const Vec3 line = antenna.position - point;
-  if (normal.dot(line) <= 0) return;
-  search.segments.push_back({geometry_.lifted(point, normal), antenna.position});
+  const Vec3 line = antenna.position - query.point;
+  if (query.normal.dot(line) <= 0) return;
+  if (query.direct == Sight::kUnknown) {
+    search.segments.push_back({geometry_.lifted(query.point, query.normal), antenna.position});
+  }
   Leg& leg = legs.emplace_back();
   leg.length = line.norm();
   leg.to_antenna = line / leg.length;
   leg.at_antenna = -leg.to_antenna;
 }
 
-void LegFinder::add_over_mirrors(const Vec3& point, const Vec3& normal, const AntennaView& antenna, const Beam& beam,
+void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const Beam& beam,
                                  std::vector<Leg>& legs, LegSearch& search) const {
+  const Vec3& point = query.point;
   const Vec3 line = beam.image() - point;
-  if (normal.dot(line) <= 0) return;
+  if (query.normal.dot(line) <= 0) return;
   const bool is_on_plane = beam.lit_normal.dot(point) - beam.offset < kOnPlane;
   if (is_on_plane || !beam.reaches(point, kRim)) return;
   const size_t num_segments = search.segments.size();
@@ -49,7 +52,7 @@ void LegFinder::add_over_mirrors(const Vec3& point, const Vec3& normal, const An
   leg.sequence = beam.sequence;
   leg.length = line.norm();
   leg.to_antenna = line / leg.length;
-  if (set_bounces(point, normal, antenna.position, beam, leg, search.segments)) return;
+  if (set_bounces(point, query.normal, antenna.position, beam, leg, search.segments)) return;
   legs.pop_back();
   search.segments.resize(num_segments);
 }
@@ -88,15 +91,15 @@ bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg,
   return true;
 }
 
-// Leaves the legs whose ways are free.
-void LegFinder::keep_open(std::vector<Leg>& legs, LegSearch& search) const {
+// Leaves the legs whose ways are free, of which the first `num_known` are known to be.
+void LegFinder::keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& search) const {
   const size_t count = search.segments.size();
   search.num_queries += static_cast<int64_t>(count);
   search.blocked.resize(count);
   geometry_.occluded(search.segments.data(), count, search.blocked.data());
   const uint8_t* blocked = search.blocked.data();
-  size_t num_open = 0;
-  for (size_t i = 0; i < legs.size(); ++i) {
+  size_t num_open = num_known;
+  for (size_t i = num_known; i < legs.size(); ++i) {
     const int num_segments = legs[i].num_bounces + 1;
     const bool is_open = std::none_of(blocked, blocked + num_segments, [](uint8_t value) { return value != 0; });
     blocked += num_segments;

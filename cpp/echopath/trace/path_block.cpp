@@ -14,13 +14,9 @@ namespace echopath {
 
 void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
-  offsets.push_back(offset);
-  num_bounces.push_back(static_cast<uint8_t>(count));
-  diffuse.push_back(diffuse_bits);
-  weight.emplace_back(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
-  stratum.push_back(static_cast<uint8_t>(path_stratum));
-  flags.push_back(0);
-  batch.push_back(current_batch);
+  const std::complex<float> rounded(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
+  rows.push_back({offset, diffuse_bits, rounded, 0, static_cast<uint8_t>(count), static_cast<uint8_t>(path_stratum),
+                  current_batch});
 }
 
 void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
@@ -30,7 +26,7 @@ void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::com
 
 void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
-  pending_.push_back(offsets.size());
+  pending_.push_back(rows.size());
   used_depth_ = std::max(used_depth_, skipped + count);
   add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
 }
@@ -40,31 +36,31 @@ void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits,
   uint64_t reversed_bits = 0;
   for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
   add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
-  flags.back() = kReversedPath;
+  rows.back().flags = kReversedPath;
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
 void PathBlock::set_jones(const JonesMatrix& matrix) {
-  jones.resize(offsets.size());
+  jones.resize(rows.size());
   jones.back() = matrix;
 }
 
 void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
-  curved_cell.resize(offsets.size());
+  curved_cell.resize(rows.size());
   curved_cell.back() = cell;
 }
 
 void PathBlock::end_ray(const Hit* ray_hits) {
   const auto base = static_cast<int64_t>(hits.size());
   hits.insert(hits.end(), ray_hits, ray_hits + used_depth_);
-  for (const size_t path : pending_) offsets[path] += base;
+  for (const size_t path : pending_) rows[path].offset += base;
   pending_.clear();
   used_depth_ = 0;
 }
 
 void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
   PathFan& fan = fans.emplace_back();
-  fan.num_before = offsets.size();
+  fan.num_before = rows.size();
   fan.hit = hit;
   fan.stratum = static_cast<uint8_t>(path_stratum);
   fan.batch = current_batch;
@@ -89,13 +85,7 @@ void PathBlock::end_fan() {
 
 void PathBlock::clear() {
   hits.clear();
-  offsets.clear();
-  num_bounces.clear();
-  diffuse.clear();
-  weight.clear();
-  stratum.clear();
-  batch.clear();
-  flags.clear();
+  rows.clear();
   curved_cell.clear();
   jones.clear();
   fans.clear();
@@ -106,38 +96,40 @@ void PathBlock::clear() {
 }
 
 // The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.
-void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& rows, Paths& paths) const {
-  const size_t count = end - begin;
-  for (size_t i = 0; i < count; ++i) rows.offsets[i] = first_hit + offsets[begin + i];
-  std::copy_n(num_bounces.data() + begin, count, rows.num_bounces);
-  std::copy_n(diffuse.data() + begin, count, rows.diffuse);
-  std::copy_n(weight.data() + begin, count, rows.weight);
-  std::copy_n(stratum.data() + begin, count, rows.stratum);
-  std::copy_n(batch.data() + begin, count, rows.batch);
-  std::copy_n(flags.data() + begin, count, rows.flags);
+void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const {
+  for (size_t i = begin; i < end; ++i) {
+    const Row& from = rows[i];
+    *to.offsets = first_hit + from.offset;
+    *to.num_bounces = from.num_bounces;
+    *to.diffuse = from.diffuse;
+    *to.weight = from.weight;
+    *to.stratum = from.stratum;
+    *to.batch = from.batch;
+    *to.flags = from.flags;
+    to.skip_rows(1);
+  }
   // These end with the last path that has an entry.
   for (size_t i = begin; i < std::min(end, curved_cell.size()); ++i) paths.curved_cell[row + i - begin] = curved_cell[i];
   for (size_t i = begin; i < std::min(end, jones.size()); ++i) paths.jones[row + i - begin] = jones[i];
-  rows.skip_rows(count);
 }
 
-void PathBlock::write(PathRows rows, Paths& paths) const {
-  const int64_t first_hit = rows.first_hit;
+void PathBlock::write(PathRows to, Paths& paths) const {
+  const int64_t first_hit = to.first_hit;
   const int64_t* const first_row = paths.offsets.data();
-  std::copy(hits.begin(), hits.end(), rows.hits);
-  rows.skip_hits(hits.size());
+  std::copy(hits.begin(), hits.end(), to.hits);
+  to.skip_hits(hits.size());
   std::vector<int64_t> places;
   const FanLeg* legs = fan_legs.data();
   size_t done = 0;
   const auto write_until = [&](size_t end) {
-    write_own(std::exchange(done, end), end, first_hit, static_cast<size_t>(rows.offsets - first_row), rows, paths);
+    write_own(std::exchange(done, end), end, first_hit, static_cast<size_t>(to.offsets - first_row), to, paths);
   };
   for (const PathFan& fan : fans) {
     write_until(fan.num_before);
-    FanPairs(fan, legs, fan_hits.data()).write(rows, places);
+    FanPairs(fan, legs, fan_hits.data()).write(to, places);
     legs += fan.num_in + fan.num_out;
   }
-  write_until(offsets.size());
+  write_until(rows.size());
 }
 
 namespace {

@@ -8,13 +8,15 @@ namespace echopath {
 
 class PathBlock {
  public:
+  struct Row {
+    int64_t offset;  // of its first hit among `hits`
+    uint64_t diffuse;
+    std::complex<float> weight;
+    uint32_t flags;
+    uint8_t num_bounces, stratum, batch;
+  };
   std::vector<Hit> hits;
-  std::vector<int64_t> offsets;  // relative to this block
-  std::vector<uint8_t> num_bounces;
-  std::vector<uint64_t> diffuse;
-  std::vector<std::complex<float>> weight;
-  std::vector<uint8_t> stratum, batch;
-  std::vector<uint32_t> flags;
+  std::vector<Row> rows;  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
   std::vector<JonesMatrix> jones;  // likewise
@@ -43,16 +45,16 @@ class PathBlock {
   // Stores the hits of the current ray as far as its paths use them.
   void end_ray(const Hit* ray_hits);
   // Of the record that this block becomes.
-  size_t num_paths() const { return offsets.size() + num_fan_paths_; }
+  size_t num_paths() const { return rows.size() + num_fan_paths_; }
   size_t num_hits() const { return hits.size() + num_fan_hits_; }
   // Writes them all in the order in which they were added. `paths`: whose optional columns are there if this block has any.
-  void write(PathRows rows, Paths& paths) const;
+  void write(PathRows to, Paths& paths) const;
   // Forgets everything but its memory.
   void clear();
 
  private:
   void add_leg(std::complex<double> factor);
-  void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& rows, Paths& paths) const;
+  void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const;
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
 
   std::vector<size_t> pending_;  // paths of the current ray whose offset is still relative to the ray

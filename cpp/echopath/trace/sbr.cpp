@@ -76,14 +76,34 @@ void RayShooter::shoot_packet(int64_t begin, int count, Packet& packet, Scratch&
   }
   geometry_.intersect(settings_.transmitter, packet.directions.data(), count, packet.verdicts.data(), packet.hits.data());
   block.statistics.num_queries += count;
+  look_at_receiver(count, packet, block);
   Surface surface;
   for (int k = 0; k < count; ++k) {
     Ray ray = launched(begin + k, packet.strata[k], packet.directions[k]);
     block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, ray.index));
     surface.point = packet.hits[k];
+    surface.receiver = packet.receiver[k];
     if (arrive(ray, packet.verdicts[k], surface, block)) follow(ray, surface, scratch, block);
     block.end_ray(ray.hits.data());
   }
+}
+
+// From all first hits together: they lie beside each other. What a mirror needs depends on more.
+void RayShooter::look_at_receiver(int count, Packet& packet, PathBlock& block) const {
+  std::array<int, kPacketSize> asked;
+  size_t num_asked = 0;
+  for (int k = 0; k < count; ++k) {
+    const RayHit& hit = packet.hits[k];
+    packet.receiver[k] = Sight::kUnknown;
+    if (packet.verdicts[k] != EmbreeScene::Verdict::kHit || material_[hit.hit.mesh_id]->mirror) continue;
+    if (hit.normal.dot(settings_.receiver - hit.position) <= 0) continue;
+    packet.segments[num_asked] = {geometry_.lifted(hit.position, hit.normal), settings_.receiver};
+    asked[num_asked++] = k;
+  }
+  if (num_asked == 0) return;
+  geometry_.occluded(packet.segments.data(), num_asked, packet.blocked.data());
+  block.statistics.num_queries += static_cast<int64_t>(num_asked);
+  for (size_t i = 0; i < num_asked; ++i) packet.receiver[asked[i]] = packet.blocked[i] ? Sight::kBlocked : Sight::kOpen;
 }
 
 RayShooter::Ray RayShooter::launched(int64_t index, int stratum, const Vec3& direction) const {
@@ -92,7 +112,7 @@ RayShooter::Ray RayShooter::launched(int64_t index, int stratum, const Vec3& dir
   ray.stratum = stratum;
   ray.from = settings_.transmitter;
   ray.direction = ray.launch_direction = direction;
-  ray.leg_density = plan_.ray_density(direction, stratum);
+  ray.leg_density = ray.launch_density = plan_.ray_density(direction, stratum);
   if (settings_.is_polarized) ray.polarized = launched_fields(direction);
   if (has_smooth_) ray.rays = RayDifferential::from_point(direction);
   return ray;
@@ -108,6 +128,7 @@ void RayShooter::follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock&
 
 bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ++block.statistics.num_queries;
+  surface.receiver = Sight::kUnknown;
   return arrive(ray, geometry_.intersect(ray.from, ray.direction, surface.point), surface, block);
 }
 

@@ -46,6 +46,7 @@ class RayShooter {
   struct Chain;    // of diffuse hits
 
   void shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const;
+  void look_at_receiver(int count, Packet& packet, PathBlock& block) const;
   Ray launched(int64_t index, int stratum, const Vec3& direction) const;
   void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
   void follow_tube(Ray& ray, Surface& surface) const;
@@ -65,9 +66,12 @@ class RayShooter {
   void record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
                        PathBlock& block) const;
   Leg own_leg(const Ray& ray) const;
+  LegQuery legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const;
   double counted_share(const Surface& surface) const;
   bool is_counted(const Ray& ray, const Surface& surface) const;
-  double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
+  double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const;
+  void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
+                  PathBlock& block) const;
   bool bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;

@@ -54,8 +54,7 @@ void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double prob
   }
   // A hit that does not count as an echo (is_counted) has no legs yet.
   if (!scratch.has_receive) {
-    legs_.find(surface.point.position, surface.point.normal, receiver_, ray.depth - 1, kOther, scratch.receive,
-               scratch.search);
+    legs_.find(legs_from(surface, ray.depth - 1, kOther), receiver_, scratch.receive, scratch.search);
   }
   const Leg* back = leg_over(scratch.receive, ray.sequence);
   if (!back) return;
@@ -95,7 +94,9 @@ void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double p
 
 // The visible transmit legs of a hit that rays can come over, but for `skip`.
 void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch) const {
-  legs_.find(surface.point.position, surface.point.normal, transmitter_, max_mirrors, skip, scratch.transmit, scratch.search);
+  LegQuery query = legs_from(surface, max_mirrors, skip);
+  query.direct = Sight::kUnknown;
+  legs_.find(query, transmitter_, scratch.transmit, scratch.search);
   std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
 }
 

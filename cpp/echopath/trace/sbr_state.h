@@ -33,6 +33,7 @@ struct RayShooter::Ray {
   bool coherent = true;       // regime C
   MirrorSequence sequence = kDirect;  // how the transmitter was left
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
+  double launch_density = 0.0;        // rays per sr of all strata toward its launch direction
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
@@ -55,6 +56,7 @@ struct RayShooter::Surface {
   double cos_incidence = 0.0;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  Sight receiver = Sight::kUnknown;  // as seen from here
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
@@ -63,6 +65,9 @@ struct RayShooter::Packet {
   std::array<Vec3, kPacketSize> directions;
   std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
   std::array<RayHit, kPacketSize> hits;
+  std::array<Sight, kPacketSize> receiver;  // from the hits
+  std::array<Segment, kPacketSize> segments;
+  std::array<uint8_t, kPacketSize> blocked;
 };
 
 struct RayShooter::Odds {

@@ -17,16 +17,20 @@ std::complex<double> second_order_footprint(const FootprintPhase& phase, double 
   const double m = std::hypot(1.0 - det, trace);
   const double root_real = std::sqrt(0.5 * (m + 1.0 - det));
   const double root_imag = trace / (2.0 * root_real);
-  const std::complex<double> inverse_root = std::complex<double>(root_real, -root_imag) / m;
   const double g_squared = phase.g1 * phase.g1 + phase.g2 * phase.g2;
   const double form = a11 * phase.g1 * phase.g1 + 2.0 * a12 * phase.g1 * phase.g2 + a22 * phase.g2 * phase.g2;
-  const std::complex<double> numerator(g_squared, trace * g_squared - form);
-  return inverse_root * std::exp(-0.5 * variance * numerator / std::complex<double>(1.0 - det, trace));
+  const double turned = trace * g_squared - form;
+  // The exponent is -variance/2 (g^2 + j turned) / D_F, in real numbers: std::complex looks for infinities everywhere.
+  const double scale = -0.5 * variance / (m * m);
+  const double size = std::exp(scale * (g_squared * (1.0 - det) + turned * trace)) / m;
+  const double angle = scale * (turned * (1.0 - det) - g_squared * trace);
+  const double c = size * std::cos(angle), s = size * std::sin(angle);
+  return {root_real * c + root_imag * s, root_real * s - root_imag * c};
 }
 
 double flat_top_footprint(const FootprintPhase& phase) {
   const auto axis = [](double g) {
-    const double loss = -std::expm1(-g * g / 8.0);
+    const double loss = 1.0 - std::exp(-g * g / 8.0);  // its fourth power needs no more digits
     return 1.0 - (loss * loss) * (loss * loss);
   };
   return axis(phase.g1) * axis(phase.g2);

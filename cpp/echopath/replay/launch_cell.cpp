@@ -40,14 +40,21 @@ Tangents tangents_of(const LaunchCell& cell, const PosedHit& hit) {
 
 // T_a.U_b of the wave front plus the receive sphere; without the surface.
 Eigen::Matrix2d front_phase(const LaunchCell& cell, const HitGeometry& at, const Tangents& tangents) {
-  Eigen::Matrix2d h;
+  const double inverse_in = 1.0 / at.length_in, inverse_out = 1.0 / at.length_out;
+  double along_arrival[2], along_departure[2];
   for (int a = 0; a < 2; ++a) {
-    for (int b = 0; b < 2; ++b) {
-      const Vec3 &ta = tangents.t[a], &tb = tangents.t[b];
-      const double turn = cell.is_curved ? cell.turn[a + b] : (ta.dot(tb) - ta.dot(at.arrival) * tb.dot(at.arrival)) / at.length_in;
-      h(a, b) = turn + (ta.dot(tb) - ta.dot(at.departure) * tb.dot(at.departure)) / at.length_out;
-    }
+    along_arrival[a] = tangents.t[a].dot(at.arrival);
+    along_departure[a] = tangents.t[a].dot(at.departure);
   }
+  const auto entry = [&](int a, int b) {
+    const double product = tangents.t[a].dot(tangents.t[b]);
+    const double turn = cell.is_curved ? cell.turn[a + b] : (product - along_arrival[a] * along_arrival[b]) * inverse_in;
+    return turn + (product - along_departure[a] * along_departure[b]) * inverse_out;
+  };
+  Eigen::Matrix2d h;
+  h(0, 0) = entry(0, 0);
+  h(1, 1) = entry(1, 1);
+  h(0, 1) = h(1, 0) = entry(0, 1);
   return h;
 }
 

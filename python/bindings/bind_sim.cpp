@@ -81,6 +81,14 @@ void bind_sim(py::module_& m) {
     return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
   }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = 1e-5,
         "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels and returns how many that were.");
+  m.def("replay_error", [](const Paths& paths, const Radar& radar, const std::vector<int>& chirps, double phase_tolerance) {
+    ReplaySettings settings;
+    settings.phase_tolerance = phase_tolerance;
+    const ReplayError error =
+        run_job("replay", py::none(), [&](Job& job) { return replay_error(paths, radar, settings, chirps, &job); });
+    return py::make_tuple(error.phase, error.amplitude);
+  }, py::arg("paths"), py::arg("radar"), py::arg("chirps"), py::kw_only(), py::arg("phase_tolerance") = 1e-5,
+        "How far interpolated paths are from paths evaluated at these chirps, for benchmarks: largest errors of phase (rad) and of amplitude (share).");
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",

@@ -4,69 +4,14 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/replay/diffuse_chain.h"
+#include "echopath/replay/inner_part.h"
 #include "echopath/replay/launch_cell.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kFourPi = 4.0 * kPi;
-constexpr double kLambert = 1.0 / kPi;
-constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
-
-// Area of a triangle over that at the trace, of all diffuse hits together.
-double diffuse_area_ratio(const LocalPath& path, const PosedHit* hits) {
-  double ratio = 1.0;
-  for (int k = path.first_material; k <= path.last_material; ++k) {
-    if (path.is_diffuse(k)) ratio *= hits[k].area_ratio;
-  }
-  return ratio;
-}
-
-// What lies between the first and the last material point; the same for all antennas.
-struct InnerPart {
-  double length = 0.0;            // m
-  double to_first_diffuse = 0.0;  // m, from the first material point
-  double power_factor = 1.0;      // product of f cos_out cos_in / r^2 of the legs between diffuse hits
-  Vec3 last_arrival;              // at the last material point, if it is not the first
-  int first_diffuse = -1;
-  double cos_in_first = 0.0;      // signed, at the first diffuse hit, if it is not the first material point
-  double cos_out_first = 0.0;     // signed, if it is not the last
-  double cos_in_last = 0.0;       // signed, at the last diffuse hit, if it is not the first one
-  bool lit = true;                // every diffuse hit between is seen from one side
-};
-
-InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
-  InnerPart inner;
-  inner.first_diffuse = path.is_diffuse(path.first_material) ? path.first_material : -1;
-  double since_diffuse = 0.0, cos_out = 0.0;
-  int previous = path.first_material;
-  for (int k = previous + 1; k <= path.last_material; ++k) {
-    if (path.is_image(k)) continue;
-    const UnfoldedLeg leg = inner_leg(hits, previous, k);
-    inner.length += leg.length;
-    since_diffuse += leg.length;
-    if (path.is_diffuse(previous)) {
-      cos_out = hits[previous].normal.dot(leg.departure);
-      if (previous == inner.first_diffuse) inner.cos_out_first = cos_out;
-      else if (cos_out * inner.cos_in_last <= 0) inner.lit = false;
-    }
-    if (path.is_diffuse(k)) {
-      const double cos_in = -hits[k].normal.dot(leg.arrival);
-      if (inner.first_diffuse < 0) {
-        inner.first_diffuse = k;
-        inner.to_first_diffuse = since_diffuse;
-        inner.cos_in_first = cos_in;
-      } else {
-        inner.power_factor *= kLambert * std::abs(cos_out * cos_in) / (since_diffuse * since_diffuse);
-        inner.cos_in_last = cos_in;
-      }
-      since_diffuse = 0.0;
-    }
-    inner.last_arrival = leg.arrival;
-    previous = k;
-  }
-  return inner;
-}
 
 std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
                                      const AntennaLeg& out, const RadioConstants& radio) {
@@ -81,18 +26,16 @@ std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits
          cell_filter(path.cell, at, {radio.wavenumber, radio.spread, radio.footprint});
 }
 
-double diffuse_factor(const LocalPath& path, const PosedHit* hits, const InnerPart& inner, const AntennaLeg& in,
+double diffuse_factor(const LocalPath& path, const PosedHit* hits, const DiffuseInner& between, const AntennaLeg& in,
                       const AntennaLeg& out, const RadioConstants& radio) {
-  const int first = inner.first_diffuse, last = path.last_material;
-  const double cos_in = first == path.first_material ? -hits[first].normal.dot(in.travel) : inner.cos_in_first;
-  const double cos_out = hits[last].normal.dot(out.travel);
-  const bool lit = first == last ? cos_in * cos_out > 0
-                                 : inner.lit && cos_in * inner.cos_out_first > 0 && inner.cos_in_last * cos_out > 0;
-  if (!lit) return 0.0;
-  const double first_leg = in.length + inner.to_first_diffuse;
-  const double spreading = std::abs(cos_in * cos_out) * kLambert / (first_leg * first_leg * out.length * out.length);
-  const double antennas = radio.transmit_power * in.gain.power * out.gain.power * radio.wavelength * radio.wavelength / (kFourPi * kFourPi);
-  return std::sqrt(antennas * spreading * inner.power_factor * diffuse_area_ratio(path, hits));
+  const double cos_in = -hits[path.first_material].normal.dot(in.travel), cos_out = hits[path.last_material].normal.dot(out.travel);
+  const double start = between.begins_specular
+                           ? specular_leg(std::sqrt(in.gain.power), in.length, between.to_first, between.root_cos_first)
+                           : diffuse_leg(std::sqrt(in.gain.power), cos_in, in.length);
+  const double end = diffuse_leg(std::sqrt(out.gain.power), cos_out, out.length);
+  const double product = between.is_single ? diffuse_product(start, end, between.factor)
+                                           : diffuse_product(start, end, between.factor, between.first_sign, between.last_sign);
+  return diffuse_scale(radio) * product;
 }
 
 // What the polarisations of two antennas make of a path: receive components, matrix, transmit components.
@@ -146,6 +89,8 @@ void evaluate_start(const LocalPath& path, const PosedHit* hits, const InnerPart
                     const std::vector<PosedAntenna>& ends, const std::vector<AntennaLeg>& receive, const RadioConstants& radio,
                     const ChannelValues& out) {
   const AntennaLeg in = transmit_leg(path, hits, start);
+  DiffuseInner between;
+  if (path.diffuse != 0) between = diffuse_inner(path, hits, inner);
   for (size_t end = 0; end < ends.size(); ++end) {
     const AntennaLeg& back = receive[end];
     const int64_t at = out.stride * static_cast<int64_t>(end);
@@ -153,7 +98,7 @@ void evaluate_start(const LocalPath& path, const PosedHit* hits, const InnerPart
     const bool near = in.length < kNearAntenna || back.length < kNearAntenna;
     if (near) out.amplitude[at] = 0.0;
     else if (path.diffuse == 0) out.amplitude[at] = path.weight * coherent_factor(path, hits, inner, in, back, radio);
-    else out.amplitude[at] = path.weight * diffuse_factor(path, hits, inner, in, back, radio);
+    else out.amplitude[at] = path.weight * diffuse_factor(path, hits, between, in, back, radio);
     if (path.jones) out.amplitude[at] *= polarization_factor(*path.jones, start, in.at_antenna, ends[end], back.at_antenna);
     turn(out.amplitude[at], in.gain.phase + back.gain.phase);
   }

@@ -59,7 +59,8 @@ std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>
 // Lobatto nodes of one piece, and weights for values and derivatives inside it.
 class NodeSet {
  public:
-  explicit NodeSet(int order) : order_(order) {
+  explicit NodeSet(int order, ChirpDerivatives derivatives)
+      : order_(order), num_derivatives_(derivatives == ChirpDerivatives::kThird ? 3 : 1) {
     for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
   }
   const std::vector<double>& coefficients(int n) const { return rows_[static_cast<size_t>(n)]; }
@@ -76,10 +77,10 @@ class NodeSet {
     sampling.order = order_;
     sampling.first_node.push_back(first_node);
     std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
-    for (std::vector<double>* weights : out) weights->resize(weights->size() + static_cast<size_t>(order_), 0.0);
+    for (int d = 0; d <= num_derivatives_; ++d) out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
     for (int n = 0; n < order_; ++n) {
       const std::array<double, 4> basis = chebyshev(n, x);
-      for (int d = 0; d < 4; ++d) {
+      for (int d = 0; d <= num_derivatives_; ++d) {
         double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
         for (int k = 0; k < order_; ++k) weights[k] += std::pow(scale, d) * basis[d] * coefficients(n)[static_cast<size_t>(k)];
       }
@@ -87,7 +88,7 @@ class NodeSet {
   }
 
  private:
-  int order_;
+  int order_, num_derivatives_;
   std::vector<std::vector<double>> rows_;  // [n, k]: Chebyshev coefficient n from the values at the nodes
 };
 
@@ -100,10 +101,11 @@ FrameNodes static_nodes(const Radar& radar, double time) {
   return nodes;
 }
 
-FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
+FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
+                           ChirpDerivatives derivatives) {
   require(order >= 2, "order", "must be >= 2", order);
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
-  const NodeSet set(order);
+  const NodeSet set(order, derivatives);
   FrameNodes nodes;
   nodes.order = order;
   for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
@@ -122,25 +124,27 @@ FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vec
   return nodes;
 }
 
-FrameNodes exact_nodes(const Radar& radar, double start_time, int order) {
+FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter, ChirpDerivatives derivatives) {
   require(order >= 3 && order % 2 == 1, "order", "must be odd and >= 3", order);
-  const int num_slots = radar.num_slots(), num_chirps = radar.waveform.num_chirps;
+  require(transmitter >= 0 && transmitter < radar.num_slots(), "transmitter", "must be one of the radar's", transmitter);
   const double half = radar.waveform.window_centre();
-  const NodeSet set(order);
+  const NodeSet set(order, derivatives);
   FrameNodes nodes;
   nodes.is_exact = true;
   nodes.order = order;
-  nodes.sampling.resize(static_cast<size_t>(num_slots));
-  for (int chirp = 0; chirp < num_chirps; ++chirp) {
-    for (int tx = 0; tx < num_slots; ++tx) {
-      const double time = start_time + radar.chirp_time(tx, chirp);
-      const Piece piece{time - half, time + half};
-      set.append_chirp(piece, time, static_cast<int>(nodes.times.size()), nodes.sampling[static_cast<size_t>(tx)]);
-      set.append_times(piece, nodes.times);
-    }
+  TimeSampling& sampling = nodes.sampling.emplace_back();
+  for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) {
+    const double time = start_time + radar.chirp_time(transmitter, chirp);
+    const Piece piece{time - half, time + half};
+    set.append_chirp(piece, time, static_cast<int>(nodes.times.size()), sampling);
+    set.append_times(piece, nodes.times);
   }
-  for (TimeSampling& sampling : nodes.sampling) sampling.num_nodes = static_cast<int>(nodes.times.size());
+  sampling.num_nodes = static_cast<int>(nodes.times.size());
   return nodes;
+}
+
+int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints) {
+  return static_cast<int64_t>(pieces_of(start_time, start_time + radar.frame_duration(), breakpoints).size());
 }
 
 }  // namespace echopath

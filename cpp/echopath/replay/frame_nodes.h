@@ -19,12 +19,19 @@ struct FrameNodes {
   int num_pieces() const { return order > 1 && !is_exact ? static_cast<int>(times.size()) / order : 0; }
 };
 
+// Which derivatives inside a chirp are wanted: the slope, or the second and the third too (TimeSampling).
+enum class ChirpDerivatives { kFirst, kThird };
+
 // One node, at `time`.
 FrameNodes static_nodes(const Radar& radar, double time);
 // `order` Chebyshev-Lobatto nodes in each piece between the breakpoints (s, ascending) that lie inside the frame that starts
 // at start_time. Derivatives are those of the same polynomial.
-FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
-// `order` (odd) such nodes in every chirp of every transmitter, the middle one at the window centre.
-FrameNodes exact_nodes(const Radar& radar, double start_time, int order);
+FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
+                           ChirpDerivatives derivatives = ChirpDerivatives::kThird);
+// `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle one at the window centre.
+FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter,
+                       ChirpDerivatives derivatives = ChirpDerivatives::kThird);
+// Pieces into which breakpoints cut the frame that starts at start_time.
+int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints);
 
 }  // namespace echopath

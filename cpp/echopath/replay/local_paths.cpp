@@ -26,6 +26,7 @@ Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
     mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
     mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
+    mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
     smooth_normals_.push_back(normals_at_trace(id));
   }
 }
@@ -67,6 +68,13 @@ LocalHit Localiser::hit(const Hit& hit) const {
   return local;
 }
 
+LocalHit Localiser::hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const {
+  LocalHit local = this->hit(hit);
+  std::array<Vec3, 3> of_corners;
+  if (find_smooth_normals(local, of_corners)) local.normals = &normals.emplace_back(of_corners);
+  return local;
+}
+
 bool Localiser::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
   const std::vector<Vec3>& of_vertices = smooth_normals_[hit.mesh_id];
   if (of_vertices.empty()) return false;
@@ -102,9 +110,7 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
-    LocalHit& local = block.hits.emplace_back(this->hit(hit));
-    std::array<Vec3, 3> normals;
-    if (find_smooth_normals(local, normals)) local.normals = &block.normals.emplace_back(normals);
+    block.hits.push_back(this->hit(hit, block.normals));
     if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;
     } else {

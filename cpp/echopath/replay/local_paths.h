@@ -30,6 +30,12 @@ class Localiser {
   LocalPaths operator()(std::span<const int64_t> indices) const;
   // A hit in the frame of its mesh, without its normals.
   LocalHit hit(const Hit& hit) const;
+  // With them, which `normals` keeps.
+  LocalHit hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const;
+  bool is_mirror(uint32_t mesh_id) const { return mesh_is_mirror_[mesh_id] != 0; }
+  bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
+  // Each of its triangles is a plane in the mesh's frame for good.
+  bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
   // Normals of its corners; false where facets are meant or the crease guard refuses this one.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
   // Unit vertex normals by mesh ID; empty where facets are meant. As the rays saw the mesh: at rest, or deformed as at the
@@ -45,7 +51,7 @@ class Localiser {
 
   const Paths& paths_;
   std::vector<SurfacePatch> patches_;                         // by mesh ID
-  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_;    // by mesh ID
+  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;    // by mesh ID
   Instant trace_instant_;
   std::vector<std::vector<Vec3>> smooth_normals_;
 };

@@ -22,6 +22,12 @@ struct ReplaySettings {
   bool per_sample = false;        // for signals with the delay of every sample (signal/per_sample.h)
 };
 
+// A path that a polynomial did not follow, and the level to go on with.
+struct FailedPath {
+  int64_t path;
+  int next_level;
+};
+
 class Replayer {
  public:
   // The radar may differ from the one of the trace in its waveform, antennas and motion. Both must outlive the replayer.
@@ -36,15 +42,19 @@ class Replayer {
   // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
   // Of paths that are all static: evaluated once.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
-  // By a Chebyshev polynomial per smooth piece of the frame, of the order of `level` (4 to 32 nodes). A path whose last two
-  // coefficients exceed a tolerance, of length or amplitude, has amplitude 0 here and is added to `failed`.
-  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int level, std::vector<int64_t>& failed) const;
-  // Levels are 1 to num_levels(); none where fewer chirps than nodes would make `exact` cheaper, or where that was asked for.
-  int num_levels() const;
+  // By a Chebyshev polynomial per smooth piece of the frame, or per piece between the knots of motions, of the order of `level`
+  // (4 to 32 nodes). A path whose last two coefficients exceed a tolerance, of length or amplitude, has amplitude 0 here and is
+  // added to `failed`.
+  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int level, std::vector<FailedPath>& failed) const;
+  // Levels are 1 to num_levels(), by number of nodes; none that has more than `exact`, or where that was asked for.
+  int num_levels() const { return static_cast<int>(shapes_.size()); }
+  int64_t num_nodes(int level) const { return num_nodes(shapes_[static_cast<size_t>(level) - 1]); }
   // Where to begin with a path, from the motion of the meshes that it touches; num_levels() + 1 where none will do.
   int first_level(int64_t path) const;
-  // At nodes in every chirp, num_exact_nodes() in all.
-  std::vector<Echoes> exact(std::span<const int64_t> paths) const;
+  // Of the channels of one transmitter [rx], at num_exact_nodes() nodes: some in each of its chirps.
+  std::vector<Echoes> exact(std::span<const int64_t> paths, int transmitter) const;
+  // Frees the scene as posed for that.
+  void forget_exact(int transmitter) const;
   int64_t num_exact_nodes() const;
 
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
@@ -53,14 +63,22 @@ class Replayer {
 
  private:
   struct Level;
+  struct LevelShape {
+    int order;                                // nodes per piece
+    const std::vector<double>* cuts;          // between pieces, s
+  };
+  int64_t num_nodes(const LevelShape& shape) const;
+  void find_shapes();
+  FrameNodes nodes_of(size_t index) const;
   int exact_order() const;
   Instant instant(double time) const;
-  const Level& level(int index) const;
-  struct NodeValues;
-  NodeValues evaluate_level(const LocalPaths& block, const Level& level) const;
-  std::vector<Echoes> by_channel(const Level& level, size_t num_paths, const NodeValues& values) const;
-  bool follows(const FrameNodes& nodes, const NodeValues& values, size_t num_paths, size_t p) const;
-  std::vector<double> breakpoints() const;
+  size_t exact_level(int transmitter) const { return 1 + shapes_.size() + static_cast<size_t>(transmitter); }
+  const Level& level(size_t index) const;
+  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const Level& level) const;
+  void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, std::span<const Instant> instants,
+                           std::vector<Echoes>& lengths) const;
+  void raise_orders(const FrameNodes& nodes, const Echoes& lengths, std::vector<double>& needed) const;
+  int next_level(int index, double needed_order) const;
   void find_mesh_levels() const;
   bool fits(const Level& level, uint32_t mesh_id) const;
 
@@ -68,7 +86,10 @@ class Replayer {
   const Radar& radar_;
   ReplaySettings settings_;
   RadioConstants radio_;
+  bool antennas_have_phase_ = false;
   std::vector<uint8_t> mesh_moves_;       // by mesh ID
+  std::vector<double> breakpoints_, knots_;  // s
+  std::vector<LevelShape> shapes_;        // of levels 1, 2 ...
   Localiser localise_;
   mutable std::once_flag mesh_levels_made_;
   mutable std::vector<int> mesh_level_;   // by mesh ID: the first that follows its motion

@@ -1,9 +1,10 @@
 #include "echopath/sim/replay_stream.h"
 
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/signal/echo_states.h"
 #include "echopath/signal/echoes.h"
@@ -46,7 +47,7 @@ void ReplayStream::run(const Sink& sink) const {
 }
 
 void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink) const {
-  run_blocks(paths, block_size(num_channels(), 1), [&](auto part, auto&) { return replayer_.still(part); }, sink);
+  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto&) { return replayer_.still(part); }, sink);
 }
 
 // Each path at the order that its meshes need; where that was not enough, at the next.
@@ -54,22 +55,33 @@ void ReplayStream::add_moving(const std::vector<int64_t>& paths, const Sink& sin
   const int num_levels = replayer_.num_levels();
   std::vector<std::vector<int64_t>> by_level(static_cast<size_t>(num_levels) + 2);
   for (const int64_t path : paths) by_level[static_cast<size_t>(replayer_.first_level(path))].push_back(path);
-  const int64_t size = block_size(num_channels(), kNodesOfAPath);
   for (int level = 1; level <= num_levels; ++level) {
     const auto at = static_cast<size_t>(level);
-    const Replay replay = [&](auto part, std::vector<int64_t>& left) { return replayer_.interpolated(part, level, left); };
-    const std::vector<int64_t> failed = run_blocks(by_level[at], size, replay, sink);
-    by_level[at + 1].insert(by_level[at + 1].end(), failed.begin(), failed.end());
+    const Extent extent{0, num_channels(), replayer_.num_nodes(level)};
+    const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
+    for (const FailedPath& failed : run_blocks(by_level[at], extent, replay, sink)) {
+      by_level[static_cast<size_t>(failed.next_level)].push_back(failed.path);
+    }
   }
-  run_blocks(by_level.back(), block_size(num_channels(), replayer_.num_exact_nodes()),
-             [&](auto part, auto&) { return replayer_.exact(part); }, sink);
+  add_exact(by_level.back(), sink);
+}
+
+// Transmitters one after another: the scene as posed at the chirps of one is all that is held.
+void ReplayStream::add_exact(const std::vector<int64_t>& paths, const Sink& sink) const {
+  const int num_receivers = num_channels() / num_transmitters_;
+  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
+    run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.num_exact_nodes()},
+               [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, sink);
+    replayer_.forget_exact(transmitter);
+  }
 }
 
 // Blocks are replayed in parallel, a fixed number at a time, and handed over in their order. Returns the paths that `replay`
 // left.
-std::vector<int64_t> ReplayStream::run_blocks(const std::vector<int64_t>& paths, int64_t size, const Replay& replay,
-                                              const Sink& sink) const {
-  std::vector<int64_t> all_left;
+std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
+                                                 const Sink& sink) const {
+  const int64_t size = block_size(extent.num_channels, extent.num_nodes);
+  std::vector<FailedPath> all_left;
   const auto num_paths = static_cast<int64_t>(paths.size());
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
     const int64_t num_blocks = std::min(kBlocksInFlight, (num_paths - begin + size - 1) / size);
@@ -77,9 +89,9 @@ std::vector<int64_t> ReplayStream::run_blocks(const std::vector<int64_t>& paths,
       const int64_t first = begin + i * size;
       return std::span<const int64_t>(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
     };
-    std::vector<std::vector<Echoes>> by_channel(static_cast<size_t>(num_channels()));
+    std::vector<std::vector<Echoes>> by_channel(static_cast<size_t>(extent.num_channels));
     for (std::vector<Echoes>& blocks : by_channel) blocks.resize(static_cast<size_t>(num_blocks));
-    std::vector<std::vector<int64_t>> left(static_cast<size_t>(num_blocks));
+    std::vector<std::vector<FailedPath>> left(static_cast<size_t>(num_blocks));
     parallel_for(num_blocks, [&](int64_t i) {
       if (job_) job_->throw_if_cancelled();
       std::vector<Echoes> channels = replay(part(i), left[static_cast<size_t>(i)]);
@@ -88,29 +100,106 @@ std::vector<int64_t> ReplayStream::run_blocks(const std::vector<int64_t>& paths,
     const auto handed_over = static_cast<size_t>(std::min(size * num_blocks, num_paths - begin));
     for (size_t channel = 0; channel < by_channel.size(); ++channel) {
       if (job_) job_->throw_if_cancelled();
-      sink(static_cast<int>(channel), by_channel[channel], {paths.data() + begin, handed_over});
+      sink(extent.first_channel + static_cast<int>(channel), by_channel[channel], {paths.data() + begin, handed_over});
     }
-    for (const std::vector<int64_t>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
+    for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
   }
   return all_left;
 }
 
+namespace {
+
+// Values of all chirps of echoes [begin, end): few echoes at a time, whose nodes stay in the first-level cache.
+void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_chirps) {
+  EchoStates states;
+  for (int chirp = 0; chirp < num_chirps; ++chirp) {
+    evaluate_states(echoes, chirp, begin, static_cast<int>(end - begin), states);
+  }
+}
+
+}  // namespace
+
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job) {
+  constexpr int64_t kEchoes = EchoStates::kCapacity / 2;
   const ReplayStream stream(paths, radar, settings, job);
-  std::atomic<int64_t> path_chirps = 0;
+  int64_t path_chirps = 0;
   stream.run([&](int, std::span<Echoes> blocks, std::span<const int64_t>) {
     for (const Echoes& echoes : blocks) {
-      parallel_for(echoes.sampling.is_static() ? 1 : radar.waveform.num_chirps, [&](int64_t chirp) {
-        EchoStates states;
-        for (int64_t begin = 0; begin < echoes.num_echoes; begin += EchoStates::kCapacity) {
-          const auto count = static_cast<int>(std::min<int64_t>(EchoStates::kCapacity, echoes.num_echoes - begin));
-          evaluate_states(echoes, static_cast<int>(chirp), begin, count, states);
-        }
-        path_chirps += echoes.num_echoes;
+      const int num_chirps = echoes.sampling.is_static() ? 1 : radar.waveform.num_chirps;
+      parallel_for((echoes.num_echoes + kEchoes - 1) / kEchoes, [&](int64_t i) {
+        evaluate_chirps(echoes, i * kEchoes, std::min(echoes.num_echoes, (i + 1) * kEchoes), num_chirps);
       });
+      path_chirps += echoes.num_echoes * num_chirps;
     }
   });
   return path_chirps;
+}
+
+namespace {
+
+// Differences of one block of one channel to its values at the given chirps.
+class ErrorOfBlock {
+ public:
+  ErrorOfBlock(const Replayer& replayer, const Paths& paths, const Radar& radar, int channel)
+      : replayer_(replayer), paths_(paths), radar_(radar), channel_(channel) {}
+
+  void find(const Echoes& echoes, std::span<const int64_t> indices, const std::vector<int>& chirps, ReplayError& error) {
+    std::vector<double> largest(indices.size()), worst(indices.size());  // amplitudes
+    for (const int chirp : chirps) {
+      evaluate(indices, chirp);
+      for (size_t p = 0; p < indices.size(); ++p) compare(echoes, chirp, p, largest[p], worst[p], error);
+    }
+    for (size_t p = 0; p < indices.size(); ++p) {
+      if (largest[p] > 0.0) error.amplitude = std::max(error.amplitude, worst[p] / largest[p]);
+    }
+  }
+
+ private:
+  void evaluate(std::span<const int64_t> indices, int chirp) {
+    const auto transmitter = static_cast<int>(static_cast<size_t>(channel_) / radar_.receivers.size());
+    const double time = paths_.frame.start_time + radar_.chirp_time(transmitter, chirp);
+    replayer_.evaluate(indices, time, lengths_, amplitudes_);
+    const auto begin = static_cast<ptrdiff_t>(static_cast<size_t>(channel_) * indices.size()), end = begin + static_cast<ptrdiff_t>(indices.size());
+    lengths_ = {lengths_.begin() + begin, lengths_.begin() + end};
+    amplitudes_ = {amplitudes_.begin() + begin, amplitudes_.begin() + end};
+  }
+
+  void compare(const Echoes& echoes, int chirp, size_t p, double& largest, double& worst, ReplayError& error) const {
+    EchoStates state;
+    evaluate_states(echoes, chirp, static_cast<int64_t>(p), 1, state);
+    const std::complex<double> amplitude(state.amplitude[0], state.amplitude[1]);
+    if (amplitude == 0.0) return;  // left to a later block, or dark
+    const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
+    error.phase = std::max(error.phase, wavenumber * std::abs(kSpeedOfLight * state.delay[0] - lengths_[p]));
+    largest = std::max(largest, std::abs(amplitudes_[p]));
+    worst = std::max(worst, std::abs(amplitude - amplitudes_[p]));
+  }
+
+  const Replayer& replayer_;
+  const Paths& paths_;
+  const Radar& radar_;
+  int channel_;
+  std::vector<double> lengths_;
+  std::vector<std::complex<double>> amplitudes_;
+};
+
+}  // namespace
+
+ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
+                         Job* job) {
+  for (const int chirp : chirps) {
+    require(chirp >= 0 && chirp < radar.waveform.num_chirps, "chirps", "must be chirps of the radar", chirp);
+  }
+  const ReplayStream stream(paths, radar, settings, job);
+  ReplayError error;
+  stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
+    for (const Echoes& echoes : blocks) {
+      const auto count = static_cast<size_t>(echoes.num_echoes);
+      ErrorOfBlock(stream.replayer(), paths, radar, channel).find(echoes, indices.first(count), chirps, error);
+      indices = indices.subspan(count);
+    }
+  });
+  return error;
 }
 
 }  // namespace echopath

@@ -17,19 +17,29 @@ class ReplayStream {
 
   // Paths and radar must outlive the stream. Raises what Replayer does.
   ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
-      : num_paths_(paths.num_paths()), replayer_(paths, radar, settings), job_(job) {}
+      : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
+        replayer_(paths, radar, settings), job_(job) {}
 
   int num_channels() const { return replayer_.num_channels(); }
+  const Replayer& replayer() const { return replayer_; }
   // Memory is bounded by blocks. `sink` is called from one thread at a time. Raises Cancelled.
   void run(const Sink& sink) const;
 
  private:
-  using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<int64_t>&)>;
+  using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<FailedPath>&)>;
   void add_still(const std::vector<int64_t>& paths, const Sink& sink) const;
   void add_moving(const std::vector<int64_t>& paths, const Sink& sink) const;
-  std::vector<int64_t> run_blocks(const std::vector<int64_t>& paths, int64_t size, const Replay& replay, const Sink& sink) const;
+  void add_exact(const std::vector<int64_t>& paths, const Sink& sink) const;
+  // Channels that `replay` makes echoes of, at how many nodes.
+  struct Extent {
+    int first_channel, num_channels;
+    int64_t num_nodes;
+  };
+  std::vector<FailedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
+                                     const Sink& sink) const;
 
   int64_t num_paths_;
+  int num_transmitters_;
   Replayer replayer_;
   Job* job_;
 };
@@ -37,5 +47,15 @@ class ReplayStream {
 // Replays all paths at every chirp and for every channel, without synthesis, to see what that costs. Returns the number of
 // path-chirps, static paths once.
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
+
+// Largest differences between replay with these settings and evaluation at the middle of chirps.
+struct ReplayError {
+  double phase = 0.0;      // rad, at the start frequency
+  double amplitude = 0.0;  // relative to the largest amplitude of the path in these chirps
+};
+
+// In `chirps` (indices), over all paths and channels, each path where it follows its tolerances. Raises Cancelled.
+ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
+                         Job* job = nullptr);
 
 }  // namespace echopath

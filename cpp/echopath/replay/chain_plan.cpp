@@ -1,0 +1,148 @@
+#include "echopath/replay/chain_plan.h"
+
+#include <bit>
+
+#include "echopath/replay/segment_ids.h"
+
+namespace echopath {
+namespace {
+
+constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high} << 32 | low; }
+
+// Hits and events of a path in the order in which it was traced.
+struct TracedHits {
+  const Hit* recorded;
+  int count;
+  uint64_t diffuse_bits;
+  bool is_reversed;
+
+  int index(int k) const { return is_reversed ? count - 1 - k : k; }
+  const Hit& hit(int k) const { return recorded[index(k)]; }
+  // The recorded hits of [first, last].
+  const Hit* run(int first, int last) const { return recorded + (is_reversed ? index(last) : first); }
+  bool is_diffuse(int k) const { return diffuse_bits >> index(k) & 1; }
+};
+
+class ChainPlanner {
+ public:
+  ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular)
+      : paths_(paths), localise_(localise), slides_(specular != SpecularPoints::kMaterial) {
+    plan_.images.push_back({0, ChainPlan::kNone});
+  }
+
+  void add(size_t place, int64_t path) {
+    if (!add_chain(place, path)) plan_.others.push_back(place);
+  }
+  ChainPlan take() { return std::move(plan_); }
+
+ private:
+  struct Ends {
+    int first = -1, last = -1;  // material points
+  };
+
+  bool is_image(const TracedHits& hits, int k) const { return localise_.is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k); }
+
+  // Nothing where this path is none of those that are made of legs.
+  std::optional<Ends> ends_of(const TracedHits& hits) const {
+    Ends ends;
+    for (int k = 0; k < hits.count; ++k) {
+      if (!is_image(hits, k)) {
+        if (ends.first < 0) ends.first = k;
+        ends.last = k;
+        if (slides_ && !hits.is_diffuse(k)) return {};
+      } else if (!localise_.is_plane(hits.hit(k).mesh_id)) {
+        return {};
+      }
+    }
+    return ends;
+  }
+
+  bool add_chain(size_t place, int64_t path) {
+    const auto p = static_cast<size_t>(path);
+    if (paths_.diffuse[p] == 0 || !paths_.jones.empty()) return false;
+    const TracedHits hits{paths_.hits_of(path), paths_.num_bounces[p], paths_.diffuse[p], (paths_.flags[p] & kReversedPath) != 0};
+    const std::optional<Ends> ends = ends_of(hits);
+    if (!ends) return false;
+    plan_.chains.push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
+                            std::complex<double>(paths_.weight[p])});
+    return true;
+  }
+
+  // Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
+  uint32_t start_leg(const TracedHits& hits, int first) {
+    uint32_t& known = leg_of_(hits.run(0, first), first + 1, leg_kind(hits.is_reversed, hits.is_diffuse(first)));
+    if (known != SegmentIds::kNone) return known;
+    uint32_t image = 0;
+    for (int k = 0; k < first; ++k) image = image_in(image, hits.hit(k));
+    return known = leg(image, hits, first, hits.is_reversed);
+  }
+  uint32_t end_leg(const TracedHits& hits, int last) {
+    uint32_t& known = leg_of_(hits.run(last, hits.count - 1), hits.count - last, leg_kind(!hits.is_reversed, hits.is_diffuse(last)));
+    if (known != SegmentIds::kNone) return known;
+    uint32_t image = 0;
+    for (int k = hits.count; --k > last;) image = image_in(image, hits.hit(k));
+    return known = leg(image, hits, last, !hits.is_reversed);
+  }
+  static uint64_t leg_kind(bool of_receivers, bool is_diffuse) { return uint64_t{of_receivers} << 1 | uint64_t{is_diffuse}; }
+
+  uint32_t image_in(uint32_t parent, const Hit& hit) {
+    const uint32_t mirror = mirror_ids_(pair_key(hit.mesh_id, hit.triangle_id));
+    if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back({hit.mesh_id, hit.triangle_id, 0.0f, 0.0f});
+    const uint32_t image = image_ids_(pair_key(parent, mirror)) + 1;
+    if (image == plan_.images.size()) plan_.images.push_back({parent, mirror});
+    return image;
+  }
+
+  uint32_t point(const Hit& hit) {
+    const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id),
+                                   pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)));
+    if (id == plan_.points.size()) plan_.points.push_back(hit);
+    return id;
+  }
+
+  uint32_t leg(uint32_t image, const TracedHits& hits, int k, bool of_receivers) {
+    const bool is_diffuse = hits.is_diffuse(k);
+    const uint32_t at = point(hits.hit(k));
+    const uint32_t id = leg_ids_(pair_key(image, at), uint64_t{of_receivers} << 1 | uint64_t{is_diffuse});
+    if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers, is_diffuse});
+    return id;
+  }
+
+  uint32_t inner(const TracedHits& hits, const Ends& ends) {
+    if (ends.first == ends.last && !localise_.may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
+    const int count = ends.last - ends.first + 1;
+    ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
+    for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);
+    uint32_t& known = inner_of_[hits.is_reversed](hits.run(ends.first, ends.last), count, found.diffuse);
+    if (known != SegmentIds::kNone) return known;
+    for (int k = ends.first; k <= ends.last; ++k) {
+      plan_.inner_points.push_back(point(hits.hit(k)));
+      found.image |= uint64_t{is_image(hits, k)} << (k - ends.first);
+    }
+    plan_.inner.push_back(found);
+    return known = static_cast<uint32_t>(plan_.inner.size() - 1);
+  }
+
+  const Paths& paths_;
+  const Localiser& localise_;
+  bool slides_;
+  ChainPlan plan_;
+  SegmentIds leg_of_, inner_of_[2];  // inner parts: as recorded, reversed
+  DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
+};
+
+}  // namespace
+
+ChainPlan plan_chains(const Paths& paths, const Localiser& localise, SpecularPoints specular, std::span<const int64_t> indices) {
+  ChainPlanner planner(paths, localise, specular);
+  for (size_t place = 0; place < indices.size(); ++place) planner.add(place, indices[place]);
+  return planner.take();
+}
+
+ChainPlan unshared(size_t num_paths) {
+  ChainPlan plan;
+  for (size_t place = 0; place < num_paths; ++place) plan.others.push_back(place);
+  return plan;
+}
+
+}  // namespace echopath

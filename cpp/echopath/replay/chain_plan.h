@@ -1,0 +1,56 @@
+#pragma once
+// What the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path over each pair of the
+// mirror chains to its hits, so most paths are two legs that others have too.
+#include <optional>
+#include <span>
+
+#include "echopath/replay/dense_ids.h"
+#include "echopath/replay/local_paths.h"
+#include "echopath/replay/specular_slide.h"
+
+namespace echopath {
+
+struct ChainPlan {
+  static constexpr uint32_t kNone = ~uint32_t{0};
+
+  // Antennas as seen over mirrors, of transmitters and receivers alike: image `parent` seen in `mirror`. Image 0 is the
+  // antenna itself.
+  struct Image {
+    uint32_t parent, mirror;
+  };
+  // From the images of all transmitters or of all receivers to a point.
+  struct Leg {
+    uint32_t image, point;
+    bool of_receivers, is_diffuse;  // the point scatters diffusely
+  };
+  // What lies between the first and the last material point of a path: hits [begin, end) of `inner_points`.
+  struct Inner {
+    size_t begin, end;
+    uint64_t diffuse, image;  // bit per hit
+  };
+  struct Chain {
+    size_t place;              // of the path in its block
+    int64_t path;
+    uint32_t start, end;       // legs, in the order in which the path was traced
+    uint32_t inner;            // kNone: one material point, whose triangle keeps its area
+    bool is_reversed;          // it starts at a receiver
+    std::complex<double> weight;
+  };
+
+  std::vector<Hit> points;            // distinct hits
+  std::vector<Hit> mirrors;           // distinct triangles, at their first corner
+  std::vector<Image> images;
+  std::vector<Leg> legs;
+  std::vector<uint32_t> inner_points;
+  std::vector<Inner> inner;
+  std::vector<Chain> chains;          // diffuse paths
+  std::vector<size_t> others;         // places of the paths that are evaluated one by one
+};
+
+// For the paths of these indices. Paths stand among `others` that are coherent, polarised, or have sliding hits that move.
+ChainPlan plan_chains(const Paths& paths, const Localiser& localise, SpecularPoints specular, std::span<const int64_t> indices);
+
+// All of them stand among `others`.
+ChainPlan unshared(size_t num_paths);
+
+}  // namespace echopath

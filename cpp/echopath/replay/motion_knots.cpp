@@ -1,0 +1,47 @@
+#include "echopath/replay/motion_knots.h"
+
+#include <algorithm>
+
+#include "echopath/motion/skin.h"
+
+namespace echopath {
+namespace {
+
+void append(const std::vector<double>& times, std::vector<double>& all) { all.insert(all.end(), times.begin(), times.end()); }
+
+void append_knots(const Motion* motion, std::vector<double>& all) {
+  if (const auto* keyframes = dynamic_cast<const KeyframeMotion*>(motion)) append(keyframes->times(), all);
+}
+
+void append_knots(const Deformation* deformation, std::vector<double>& all) {
+  if (const auto* sequence = dynamic_cast<const VertexSequence*>(deformation)) append(sequence->times(), all);
+  if (const auto* skin = dynamic_cast<const Skin*>(deformation)) {
+    for (const Joint& joint : skin->joints()) append_knots(joint.motion.get(), all);
+  }
+}
+
+std::vector<double> ascending(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace
+
+std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar) {
+  std::vector<double> times = scene.breakpoints();
+  if (radar.motion) append(radar.motion->breakpoints(), times);
+  return ascending(std::move(times));
+}
+
+std::vector<double> motion_knots(const Scene& scene, const Radar& radar) {
+  std::vector<double> times = motion_breakpoints(scene, radar);
+  append_knots(radar.motion.get(), times);
+  for (const Node& node : scene.nodes()) {
+    append_knots(node.motion.get(), times);
+    append_knots(node.deformation.get(), times);
+  }
+  return ascending(std::move(times));
+}
+
+}  // namespace echopath

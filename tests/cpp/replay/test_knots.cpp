@@ -1,0 +1,93 @@
+// Frames longer than the knots of a keyframe motion are followed by polynomials between the knots.
+#include <gtest/gtest.h>
+
+#include "echopath/replay/motion_knots.h"
+#include "echopath/signal/echo_states.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+// rad: the aim of 1e-5; tails are estimates, and leave a fifth of the margin to paths near the aim
+constexpr double kPhaseTolerance = 2e-5;
+constexpr double kKnot = 8e-3;  // s, between keyframes
+
+// Sways as a limb does, sampled at 125 Hz.
+std::shared_ptr<const Motion> swaying() {
+  std::vector<double> times;
+  std::vector<Vec3> translations;
+  std::vector<Quaternion> rotations;
+  for (int i = 0; i < 40; ++i) {
+    const double t = i * kKnot;
+    times.push_back(t);
+    translations.emplace_back(-1.4 * t + 0.05 * std::sin(11 * t), 0.03 * std::cos(17 * t), 0.0);
+    rotations.emplace_back(Eigen::AngleAxisd(0.6 * std::sin(9 * t), Vec3(0.2, 1, 0.1).normalized()));
+  }
+  return std::make_shared<KeyframeMotion>(times, translations, rotations);
+}
+
+Radar long_frame() {
+  Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
+  radar.waveform.num_chirps = 128;
+  radar.waveform.chirp_interval = 720e-6;  // 12 transmitters of 60 us
+  return radar;
+}
+
+Paths record(const Radar& radar) {
+  Scene scene;
+  Surface surface = ellipsoid(Vec3(0, 0, -0.3), {.06, .06, .35}, 3);
+  Node node;
+  node.name = "limb";
+  node.placement = Eigen::Translation3d(8, 0.5, 0) * Transform::Identity();
+  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  node.material = lambert(0.4);
+  node.motion = swaying();
+  scene.add(node);
+  TraceSettings settings;
+  settings.num_rays = 2000;
+  settings.max_bounces = 1;
+  settings.start_time = 0.05;
+  return trace(scene, radar, settings);
+}
+
+TEST(MotionKnots, AreTheTimesOfKeyframes) {
+  const Paths paths = record(long_frame());
+  const std::vector<double> knots = motion_knots(*paths.scene, paths.radar);
+  ASSERT_EQ(knots.size(), 40u);
+  EXPECT_DOUBLE_EQ(knots[3], 3 * kKnot);
+  EXPECT_TRUE(motion_breakpoints(*paths.scene, paths.radar).empty());
+}
+
+TEST(MotionKnots, PolynomialsBetweenThemFollowLongFrames) {
+  const Radar radar = long_frame();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  int level = 1;
+  for (size_t i = 0; i < indices.size(); ++i) {
+    indices[i] = static_cast<int64_t>(i);
+    level = std::max(level, replayer.first_level(indices[i]));
+  }
+  ASSERT_LE(level, replayer.num_levels());
+  EXPECT_LT(replayer.num_nodes(level), replayer.num_exact_nodes() / 2);
+  std::vector<FailedPath> failed;
+  const Echoes echoes = replayer.interpolated(indices, level, failed).front();
+  EXPECT_LT(failed.size(), indices.size() / 20);  // grazing ones, whose amplitudes have a kink
+  EchoStates state;
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  double error = 0.0;
+  for (const int chirp : {0, 31, 64, 127}) {
+    replayer.evaluate(indices, paths.frame.start_time + radar.chirp_time(0, chirp), lengths, amplitudes);
+    for (size_t p = 0; p < indices.size(); ++p) {
+      evaluate_states(echoes, chirp, static_cast<int64_t>(p), 1, state);
+      error = std::max(error, kTwoPi * 77e9 * std::abs(state.delay[0] - lengths[p] / kSpeedOfLight));
+    }
+  }
+  EXPECT_LT(error, kPhaseTolerance);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -1,0 +1,139 @@
+// Paths put together from the legs that they share are those that are evaluated one by one.
+#include <gtest/gtest.h>
+
+#include "echopath/replay/chain_plan.h"
+#include "echopath/replay/evaluate_chains.h"
+#include "echopath/replay/hit_patches.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+constexpr double kRounding = 1e-13;  // relative: sums and products of about ten factors in another order
+constexpr double kFaintest = 1e-200;  // sqrt(W): footprints of grazing fields underflow, and tasks flush denormals
+
+MaterialPtr rough(double diffuse_share, bool mirror) {
+  Material material;
+  material.permittivity = std::complex<double>(5.0, -0.3);
+  material.scattering = std::sqrt(diffuse_share);
+  material.mirror = mirror;
+  return share(material);
+}
+
+void add_body(Scene& scene, const std::string& name, const Vec3& centre, const Transform& placement,
+              std::shared_ptr<const Motion> motion) {
+  Surface surface = ellipsoid(Vec3::Zero(), {.4, .3, .5}, 3);
+  Node node;
+  node.name = name;
+  node.placement = Eigen::Translation3d(centre) * placement;
+  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  node.material = rough(0.5, false);
+  node.motion = std::move(motion);
+  scene.add(node);
+}
+
+// Mirrors that scatter too, of which one drives away; bodies that turn, one of them stretched along its way.
+Scene scene_of_all_kinds() {
+  Scene scene;
+  add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, true));
+  add_rectangle(scene, "ground", {-20, -20, -1}, {60, 0, 0}, {0, 40, 0}, rough(0.1, true));
+  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, true), std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
+  const auto turns = std::make_shared<LinearMotion>(Vec3(-3, 1, 0), Vec3(0.5, 1, 4));
+  add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
+  add_body(scene, "far", {9, -1, 0.3}, Transform(Eigen::Scaling(1.0, 2.0, 0.5)), turns);
+  return scene;
+}
+
+Radar array() {
+  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  radar.transmitters.push_back(antenna_at({0, 0.02, 0.01}));
+  for (const double y : {-0.02, 0.05}) radar.receivers.push_back(antenna_at({0, y, 0.02}));
+  for (Antenna& antenna : radar.receivers) antenna.pattern = AntennaPattern::cosine_power(3.0);
+  radar.transmitters[1].pattern = AntennaPattern::cosine_power(2.5);
+  radar.transmitters[1].orientation = Quaternion(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  radar.motion = std::make_shared<LinearMotion>(Vec3(5, 0, 0), Vec3(0, 0, 0.4));
+  return radar;
+}
+
+Paths record(const Radar& radar) {
+  TraceSettings settings;
+  settings.num_rays = 3000;
+  settings.max_bounces = 4;
+  return trace(scene_of_all_kinds(), radar, settings);
+}
+
+std::vector<int64_t> all_of(const Paths& paths) {
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  for (size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<int64_t>(i);
+  return indices;
+}
+
+// Largest differences to paths evaluated one by one, relative to each value, over all channels.
+std::pair<double, double> differences(const Paths& paths, const Radar& radar, double time) {
+  const std::vector<int64_t> indices = all_of(paths);
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  Replayer(paths, radar).evaluate(indices, time, lengths, amplitudes);
+  const Localiser localise(paths, hit_patches(paths));
+  const Instant instant(*paths.scene, radar, localise.patches(), paths.frame.transmitter, time);
+  const LocalPaths block = localise(indices);
+  EvaluationScratch scratch(block.longest);
+  const size_t channels = radar.transmitters.size() * radar.receivers.size();
+  std::vector<double> length(channels);
+  std::vector<std::complex<double>> amplitude(channels);
+  double length_error = 0.0, amplitude_error = 0.0;
+  for (size_t p = 0; p < indices.size(); ++p) {
+    evaluate_path(block.paths[p], instant, radio_constants(paths, radar), scratch, {length.data(), amplitude.data(), 1});
+    for (size_t channel = 0; channel < channels; ++channel) {
+      const size_t at = channel * indices.size() + p;
+      length_error = std::max(length_error, std::abs(lengths[at] / length[channel] - 1.0));
+      const double difference = std::abs(amplitudes[at] - amplitude[channel]);
+      amplitude_error = std::max(amplitude_error, difference / std::max(std::abs(amplitude[channel]), kFaintest));
+    }
+  }
+  return {length_error, amplitude_error};
+}
+
+TEST(SharedLegs, PathsAreThoseEvaluatedOneByOne) {
+  const Radar radar = array();
+  const Paths paths = record(radar);
+  for (const double time : {paths.frame.trace_time, paths.frame.trace_time + 0.02}) {
+    const auto [length, amplitude] = differences(paths, radar, time);
+    EXPECT_LT(length, kRounding);
+    EXPECT_LT(amplitude, kRounding);
+  }
+}
+
+TEST(SharedLegs, TablesOfGainsAreReadInTheDirectionOfTheLeg) {
+  Radar radar = array();
+  const std::vector<double> angles = {-3.1, -1.5, 0.0, 1.0, 3.1};
+  std::vector<double> gains;
+  for (int i = 0; i < 25; ++i) gains.push_back(0.4 + 0.05 * (i * 7 % 11));
+  radar.transmitters[1].pattern = AntennaPattern::of_table(GainTable(angles, {-1.5, -0.7, 0.0, 0.6, 1.5}, gains, {}));
+  const Paths paths = record(radar);
+  const auto [length, amplitude] = differences(paths, radar, paths.frame.trace_time + 0.01);
+  EXPECT_LT(length, kRounding);
+  EXPECT_LT(amplitude, kRounding);
+}
+
+// The scene has all kinds of paths that the first test is about, and they do share.
+TEST(SharedLegs, RaysShareLegsAndPoints) {
+  const Radar radar = array();
+  const Paths paths = record(radar);
+  const std::vector<int64_t> indices = all_of(paths);
+  const ChainPlan plan = plan_chains(paths, Localiser(paths, hit_patches(paths)), SpecularPoints::kMaterial, indices);
+  EXPECT_EQ(plan.chains.size() + plan.others.size(), indices.size());
+  EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
+  EXPECT_LT(plan.points.size(), plan.legs.size());
+  const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };
+  EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.is_reversed; }));
+  EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.inner == ChainPlan::kNone; }));
+  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) { return !plan.legs[chain.start].is_diffuse; }));
+  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
+  EXPECT_GT(plan.inner.size(), 10u);
+}
+
+}  // namespace
+}  // namespace echopath

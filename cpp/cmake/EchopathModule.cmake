@@ -24,6 +24,12 @@ function(echopath_module name)
   target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options)
 endfunction()
 
+# Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for infinities,
+# and square roots without errno. Nothing that reorders sums, and nothing that a program notices by linking with it.
+function(echopath_finite_numbers name)
+  target_compile_options(echopath_${name} PRIVATE -fcx-limited-range -fno-math-errno)
+endfunction()
+
 # echopath_test(NAME [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
 function(echopath_test name)

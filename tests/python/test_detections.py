@@ -163,7 +163,7 @@ def expect_paths_hold(found, paths, radar, spectrum, i):
     assert len(index) and np.all(np.diff(share) <= 0.0) and 0.99 < share.sum() <= 1.0 + 1e-12
     whole = synthesised_power(paths, np.arange(paths.num_paths), radar, spectrum, found.cells[i])
     others = np.setdiff1d(np.arange(paths.num_paths), index)
-    assert synthesised_power(paths, index, radar, spectrum, found.cells[i]) == pytest.approx(whole, rel=1.0 - HELD)
+    assert synthesised_power(paths, index, radar, spectrum, found.cells[i]) == pytest.approx(whole, rel=1.0 - HELD, abs=0)
     assert synthesised_power(paths, others, radar, spectrum, found.cells[i]) < (1.0 - HELD) * whole
     return index
 

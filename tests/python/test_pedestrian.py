@@ -80,7 +80,7 @@ def test_mean_speed_is_the_asked_one(height, speed):
     person = Person(height, speed)
     for name in ("torso", "arm_left/hand", "leg_right/foot"):
         way = np.diff(person.center(name, [0.0, 2 * duration])[:, 0])[0]
-        assert way / (2 * duration) == pytest.approx(speed, rel=1e-3)
+        assert way / (2 * duration) == pytest.approx(speed, rel=1e-3, abs=0)
 
 
 def test_pelvis_is_above_the_origin_at_time_zero(person):
@@ -184,7 +184,7 @@ def test_segments_have_the_published_lengths_all_the_time(person, parent, child,
 def test_body_stands_its_height_and_foot_has_its_length(person):
     top = person.vertices("head", np.linspace(0.0, 1.2, 25))[:, :, 2].max()
     assert 0.96 * HEIGHT < top < 1.0 * HEIGHT                    # bent knees take a few per cent
-    assert np.ptp(person.parts["leg_left/foot"].mesh.vertices[:, 0]) == pytest.approx(0.152 * HEIGHT, rel=0.01)
+    assert np.ptp(person.parts["leg_left/foot"].mesh.vertices[:, 0]) == pytest.approx(0.152 * HEIGHT, rel=0.01, abs=0)
 
 
 def test_every_part_is_closed_and_faces_outwards(person):
@@ -203,7 +203,7 @@ def test_every_part_is_closed_and_faces_outwards(person):
 def test_triangles_are_many_enough_and_even(person):
     assert 5_000 <= person.actor.num_triangles <= 15_000
     finer = ep.actors.pedestrian(edge=0.012)
-    assert finer.num_triangles == pytest.approx(4 * person.actor.num_triangles, rel=0.15)
+    assert finer.num_triangles == pytest.approx(4 * person.actor.num_triangles, rel=0.15, abs=0)
     sides = np.concatenate([np.linalg.norm(c - np.roll(c, 1, axis=1), axis=-1).ravel() for c in
                             (np.asarray(p.mesh.vertices)[np.asarray(p.mesh.triangles)] for p in finer.parts)])
     assert np.quantile(sides, 0.99) < 1.6 * 0.012

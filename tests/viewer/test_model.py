@@ -293,7 +293,7 @@ def test_rays_have_the_length_that_replay_gives_them(session, frame):
         ends = segments.points[segments.ends].astype(float)
         pieces = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         lengths = np.bincount(segments.ray, pieces)
-        assert lengths == pytest.approx(frame.paths.lengths([session.time], 0, 0)[0][rays], rel=SINGLE)
+        assert lengths == pytest.approx(frame.paths.lengths([session.time], 0, 0)[0][rays], rel=SINGLE, abs=0)
 
 
 def test_a_selection_without_rays_has_no_segments(session):

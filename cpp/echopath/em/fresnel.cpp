@@ -1,13 +1,25 @@
 #include "echopath/em/fresnel.h"
 
+#include <cmath>
+
 namespace echopath {
 namespace {
+
+// Principal square root of a number far from the ends of the range of double.
+std::complex<double> principal_root(std::complex<double> squared) {
+  const double size = std::sqrt(std::norm(squared));
+  const double larger = std::sqrt(0.5 * (size + std::abs(squared.real())));  // of the root's two parts
+  if (larger == 0) return 0.0;
+  const double smaller = 0.5 * squared.imag() / larger;
+  if (squared.real() >= 0) return {larger, smaller};
+  return {std::abs(smaller), std::copysign(larger, smaller)};
+}
 
 // The principal root has Re q >= 0, hence Im q <= 0 for a lossy or lossless half space; a tiny permittivity below sin^2
 // lies on the cut and decays with Im q < 0.
 std::complex<double> transmitted_cosine(std::complex<double> permittivity, double cos_incidence) {
   const std::complex<double> squared = permittivity - (1.0 - cos_incidence * cos_incidence);
-  const std::complex<double> root = std::sqrt(squared);
+  const std::complex<double> root = principal_root(squared);
   return root.imag() > 0 ? -root : root;
 }
 

@@ -24,7 +24,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
 
-void set_ray(RTCRay& ray, const Vec3& from, const Vec3& direction, float far) {
+template <class Vector>
+void set_ray(RTCRay& ray, const Vector& from, const Vector& direction, float far) {
   ray.org_x = static_cast<float>(from.x());
   ray.org_y = static_cast<float>(from.y());
   ray.org_z = static_cast<float>(from.z());
@@ -39,25 +40,76 @@ void set_ray(RTCRay& ray, const Vec3& from, const Vec3& direction, float far) {
   ray.flags = 0;
 }
 
-void embree_intersect(RTCScene scene, RTCRayHit& query) {
+template <class Vector>
+void set_ray(RTCRay16& rays, int lane, const Vector& from, const Vector& direction, float far) {
+  rays.org_x[lane] = static_cast<float>(from.x());
+  rays.org_y[lane] = static_cast<float>(from.y());
+  rays.org_z[lane] = static_cast<float>(from.z());
+  rays.dir_x[lane] = static_cast<float>(direction.x());
+  rays.dir_y[lane] = static_cast<float>(direction.y());
+  rays.dir_z[lane] = static_cast<float>(direction.z());
+  rays.tnear[lane] = 0.0f;
+  rays.tfar[lane] = far;
+  rays.time[lane] = 0.0f;
+  rays.mask[lane] = 0xFFFFFFFFu;
+  rays.id[lane] = 0;
+  rays.flags[lane] = 0;
+}
+
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &query);
+void embree_intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+
+void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &queries, &arguments);
+}
+
+void embree_occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+
+void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays); }
 #else
+void embree_intersect(RTCScene scene, RTCRayHit& query) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &query);
-#endif
+}
+
+void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &context, &queries);
 }
 
 void embree_occluded(RTCScene scene, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(scene, &ray);
-#else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, &ray);
-#endif
 }
+
+void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene, &context, &rays);
+}
+#endif
+
+void forget_hit(RTCHit& hit) {
+  hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+void forget_hit(RTCHit16& hits, int lane) {
+  hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
+// -1 for each lane of a packet that is in use.
+struct alignas(64) Lanes {
+  std::array<int, kPacketSize> valid{};
+};
 
 }  // namespace
 
@@ -76,6 +128,8 @@ struct EmbreeScene::Device {
     if (code != RTC_ERROR_NONE) throw DeviceError(std::string("Embree: ") + what + " failed, code " + std::to_string(code));
   }
   void add_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+  void ask(const QueryLog::Ray& ray, bool is_shadow) const;
+  void ask(const QueryLog::Ray* rays, int count, bool is_shadow) const;
 };
 
 void EmbreeScene::Device::add_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices,
@@ -99,7 +153,7 @@ void EmbreeScene::Device::add_mesh(unsigned mesh_id, const std::vector<Vec3>& ve
 }
 
 EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job)
-    : device_(std::make_unique<Device>()), scene_(&scene) {
+    : device_(std::make_unique<Device>()) {
   device_->device = rtcNewDevice(nullptr);
   if (!device_->device) throw DeviceError("Embree: no device could be made");
   device_->scene = rtcNewScene(device_->device);
@@ -121,6 +175,11 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
     device_->add_mesh(mesh_id, vertices, node.mesh->triangles());
     normals_.push_back(node.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>());
   }
+  for (uint32_t mesh_id = 0; mesh_id < num_meshes; ++mesh_id) {
+    const std::vector<Vec3>& normals = normals_[mesh_id];
+    surfaces_.push_back({scene.node_of(mesh_id).mesh->triangles().data(), vertices_[mesh_id].data(),
+                         normals.empty() ? nullptr : normals.data()});
+  }
   device_->lift = 4.0 * 0x1.0p-24 * largest;
   reach_ = 2.0 * largest;
   rtcCommitScene(device_->scene);
@@ -129,12 +188,6 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
 }
 
 EmbreeScene::~EmbreeScene() = default;
-
-std::array<Vec3, 3> EmbreeScene::corners(uint32_t mesh_id, uint32_t triangle_id) const {
-  const Triangle& triangle = scene_->node_of(mesh_id).mesh->triangles()[triangle_id];
-  const std::vector<Vec3>& vertices = vertices_[mesh_id];
-  return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
-}
 
 Vec3 EmbreeScene::origin_near(const Scene& scene, const Pose& pose, const Vec3& near) {
   Eigen::AlignedBox3d box;
@@ -151,25 +204,54 @@ Vec3 EmbreeScene::moved_up(const Vec3& from, const Vec3& direction) const {
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
   RTCRayHit query;
-  set_ray(query.ray, moved_up(from, direction), direction, kInfinity);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  const Vec3 start = moved_up(from, direction);
+  set_ray(query.ray, start, direction, kInfinity);
+  forget_hit(query.hit);
+  if (log_) {
+    log_->calls.push_back({QueryLog::Kind::kClosest, 1});
+    log_->add(start, direction, kInfinity);
+  }
   embree_intersect(device_->scene, query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
-
   out.hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  return confirm(from, direction, out);
+}
+
+void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count, Verdict* verdicts, RayHit* hits) const {
+  alignas(64) RTCRayHit16 queries;
+  Lanes lanes;
+  std::fill_n(lanes.valid.begin(), count, -1);
+  if (log_) log_->calls.push_back({QueryLog::Kind::kClosestPacket, static_cast<uint8_t>(count)});
+  for (int lane = 0; lane < count; ++lane) {
+    const Vec3 start = moved_up(from, directions[lane]);
+    set_ray(queries.ray, lane, start, directions[lane], kInfinity);
+    forget_hit(queries.hit, lane);
+    if (log_) log_->add(start, directions[lane], kInfinity);
+  }
+  embree_intersect(device_->scene, lanes.valid.data(), queries);
+  const RTCHit16& met = queries.hit;
+  for (int lane = 0; lane < count; ++lane) {
+    hits[lane].hit = {met.geomID[lane], met.primID[lane], met.u[lane], met.v[lane]};
+    verdicts[lane] = confirm(from, directions[lane], hits[lane]);
+  }
+}
+
+// Rebuilds in double what Embree reports, the `hit.hit` of a ray.
+EmbreeScene::Verdict EmbreeScene::confirm(const Vec3& from, const Vec3& direction, RayHit& out) const {
+  if (out.hit.mesh_id == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
   const auto [a, b, c] = corners(out.hit.mesh_id, out.hit.triangle_id);
   const double u = out.hit.u, v = out.hit.v;
   out.position = a + u * (b - a) + v * (c - a);
   out.distance = direction.dot(out.position - from);
-  const double miss = (from + out.distance * direction - out.position).norm();
-  if (out.distance <= 0 || miss > kFalseHitAbsolute + kFalseHitRelative * out.distance) return Verdict::kFalseHit;
+  const double squared_miss = (from + out.distance * direction - out.position).squaredNorm();
+  const double allowed = kFalseHitAbsolute + kFalseHitRelative * out.distance;
+  if (out.distance <= 0 || squared_miss > allowed * allowed) return Verdict::kFalseHit;
   out.normal = (b - a).cross(c - a).normalized();
   out.is_smooth = false;
-  if (!normals_[out.hit.mesh_id].empty()) curve({a, b, c}, direction, out);
+  out.stretch = 1.0;
+  if (surfaces_[out.hit.mesh_id].normals) curve({a, b, c}, direction, out);
   if (out.normal.dot(direction) > 0) {
     out.normal = -out.normal;
-    out.curvature = -out.curvature;
+    if (out.is_smooth) out.curvature = -out.curvature;
   }
   return Verdict::kHit;
 }
@@ -177,9 +259,10 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direct
 // Moves the hit to the curved surface, unless a crease or a grazing ray forbids it. Where that lies behind the facet
 // (concave), rays that leave it would meet the facet: there the position stays.
 void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const {
-  const Triangle& triangle = scene_->node_of(hit.hit.mesh_id).mesh->triangles()[hit.hit.triangle_id];
-  const std::vector<Vec3>& of_vertices = normals_[hit.hit.mesh_id];
-  const std::array<Vec3, 3> normals = {of_vertices[triangle[0]], of_vertices[triangle[1]], of_vertices[triangle[2]]};
+  const Surface& surface = surfaces_[hit.hit.mesh_id];
+  const Triangle& triangle = surface.triangles[hit.hit.triangle_id];
+  const std::array<Vec3, 3> normals = {surface.normals[triangle[0]], surface.normals[triangle[1]],
+                                       surface.normals[triangle[2]]};
   if (!is_smooth_facet(hit.normal, normals)) return;
   const SmoothPoint smooth = smooth_point(corners, normals, hit.hit.u, hit.hit.v);
   if (std::abs(smooth.normal.dot(direction)) < kSmoothGrazing) return;
@@ -191,16 +274,84 @@ void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& directio
   hit.curvature = smooth.curvature;
 }
 
-bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
-  const Vec3 segment = to - from;
-  const double length = segment.norm();
-  if (length <= 2.0 * device_->lift) return false;
-  RTCRay ray;
-  const Vec3 direction = segment / length, start = moved_up(from, direction);
+// `far` is 0 where the points are too near to each other for anything to lie between them.
+EmbreeScene::Line EmbreeScene::line_between(const Vec3& from, const Vec3& to) const {
+  const Vec3 whole = to - from;
+  const double length = whole.norm();
+  if (length <= 2.0 * device_->lift) return {from, Vec3::UnitX(), 0.0f};
+  const Vec3 direction = whole / length, start = moved_up(from, direction);
   const double rest = length - direction.dot(start - from);
-  set_ray(ray, start, direction, static_cast<float>(rest * (1.0 - 1e-6)));
+  return {start, direction, static_cast<float>(rest * (1.0 - 1e-6))};
+}
+
+// Embree marks an occluded ray with a far end of -infinity.
+bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
+  const Line line = line_between(from, to);
+  if (line.far <= 0) return false;
+  RTCRay ray;
+  set_ray(ray, line.from, line.direction, line.far);
+  if (log_) {
+    log_->calls.push_back({QueryLog::Kind::kShadow, 1});
+    log_->add(line.from, line.direction, line.far);
+  }
   embree_occluded(device_->scene, ray);
-  return ray.tfar < 0;  // Embree marks an occluded ray with -infinity
+  return ray.tfar < 0;
+}
+
+void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* blocked) const {
+  if (count == 1) {  // a packet of one would be slower
+    *blocked = occluded(segments->from, segments->to);
+    return;
+  }
+  alignas(64) RTCRay16 rays;
+  for (size_t begin = 0; begin < count; begin += kPacketSize) {
+    const size_t num_lanes = std::min<size_t>(kPacketSize, count - begin);
+    Lanes lanes;
+    if (log_) log_->calls.push_back({QueryLog::Kind::kShadowPacket, static_cast<uint8_t>(num_lanes)});
+    for (size_t k = 0; k < num_lanes; ++k) {
+      const Line line = line_between(segments[begin + k].from, segments[begin + k].to);
+      set_ray(rays, static_cast<int>(k), line.from, line.direction, line.far);
+      lanes.valid[k] = line.far > 0 ? -1 : 0;
+      if (log_) log_->add(line.from, line.direction, line.far);
+    }
+    embree_occluded(device_->scene, lanes.valid.data(), rays);
+    for (size_t k = 0; k < num_lanes; ++k) blocked[begin + k] = rays.tfar[k] < 0;
+  }
+}
+
+void EmbreeScene::ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const {
+  const QueryLog::Ray* rays = log.rays.data() + begin.ray;
+  for (size_t i = begin.call; i < end.call; ++i) {
+    const auto [kind, count] = log.calls[i];
+    const bool is_shadow = kind == QueryLog::Kind::kShadow || kind == QueryLog::Kind::kShadowPacket;
+    const bool is_single = kind == QueryLog::Kind::kClosest || kind == QueryLog::Kind::kShadow;
+    if (one_by_one || is_single) {
+      for (int k = 0; k < count; ++k) device_->ask(rays[k], is_shadow);
+    } else {
+      device_->ask(rays, count, is_shadow);
+    }
+    rays += count;
+  }
+}
+
+void EmbreeScene::Device::ask(const QueryLog::Ray& ray, bool is_shadow) const {
+  RTCRayHit query;
+  set_ray(query.ray, ray.from, ray.direction, ray.far);
+  if (is_shadow) return embree_occluded(scene, query.ray);
+  forget_hit(query.hit);
+  embree_intersect(scene, query);
+}
+
+void EmbreeScene::Device::ask(const QueryLog::Ray* rays, int count, bool is_shadow) const {
+  alignas(64) RTCRayHit16 queries;
+  Lanes lanes;
+  for (int lane = 0; lane < count; ++lane) {
+    set_ray(queries.ray, lane, rays[lane].from, rays[lane].direction, rays[lane].far);
+    lanes.valid[static_cast<size_t>(lane)] = rays[lane].far > 0 ? -1 : 0;
+    if (!is_shadow) forget_hit(queries.hit, lane);
+  }
+  if (is_shadow) embree_occluded(scene, lanes.valid.data(), queries.ray);
+  else embree_intersect(scene, lanes.valid.data(), queries);
 }
 
 Vec3 EmbreeScene::lifted(const Vec3& point, const Vec3& normal) const { return point + device_->lift * normal; }

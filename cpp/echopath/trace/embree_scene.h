@@ -9,6 +9,7 @@
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
 #include "echopath/trace/paths.h"
+#include "echopath/trace/query_log.h"
 
 namespace echopath {
 
@@ -21,6 +22,12 @@ struct RayHit {
   double stretch = 1.0;
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
 };
+
+struct Segment {
+  Vec3 from, to;
+};
+
+inline constexpr int kPacketSize = 16;  // rays that Embree follows at a time
 
 // Coordinates are relative to `origin` (world), so that single precision resolves what lies around it. A ray that starts far
 // outside the scene is moved up to it in double precision first.
@@ -37,25 +44,51 @@ class EmbreeScene {
   // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
   // does not find on the ray (slivers near grazing); treated as lost.
   Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // Likewise of `count` rays, at most kPacketSize, from one point; 4 times as fast where they are nearly parallel.
+  void intersect(const Vec3& from, const Vec3* directions, int count, Verdict* verdicts, RayHit* hits) const;
   // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;
+  // Likewise of `count` segments; 4 times as fast, in whatever order.
+  void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
+  // From now on every query is written down, too; null: no more. One thread at a time may ask while that lasts.
+  void record_queries(QueryLog* log) { log_ = log; }
+  // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
+  // nothing else.
+  void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const;
 
   // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
   static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near);
 
-  std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const;
+  std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
+    const Surface& surface = surfaces_[mesh_id];
+    const Triangle& triangle = surface.triangles[triangle_id];
+    return {surface.vertices[triangle[0]], surface.vertices[triangle[1]], surface.vertices[triangle[2]]};
+  }
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return vertices_[mesh_id]; }
 
  private:
-  Vec3 moved_up(const Vec3& from, const Vec3& direction) const;
-
   struct Device;
-  std::unique_ptr<Device> device_;
-  const Scene* scene_;
-  double reach_ = 0.0;  // m: radius around the origin that holds the scene
+  struct Surface {  // of one mesh: where its arrays begin
+    const Triangle* triangles;
+    const Vec3* vertices;
+    const Vec3* normals;  // null where facets are meant
+  };
+  // A line as Embree takes it.
+  struct Line {
+    Vec3 from, direction;
+    float far;
+  };
+  Vec3 moved_up(const Vec3& from, const Vec3& direction) const;
+  Line line_between(const Vec3& from, const Vec3& to) const;
+  Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
+
+  std::unique_ptr<Device> device_;
+  QueryLog* log_ = nullptr;
+  double reach_ = 0.0;  // m: radius around the origin that holds the scene
+  std::vector<Surface> surfaces_;            // by mesh ID
 
   std::vector<std::vector<Vec3>> vertices_;  // by mesh ID, relative to the origin
   std::vector<std::vector<Vec3>> normals_;   // by mesh ID, of vertices; empty where facets are meant

@@ -1,5 +1,6 @@
 #include "echopath/trace/legs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace echopath {
@@ -14,70 +15,113 @@ AntennaView LegFinder::view_of(const Vec3& antenna) const {
   return {antenna, find_beams(antenna, mirrors_, kMaxLegMirrors)};
 }
 
-void LegFinder::find(const Vec3& point, const Vec3& normal, const AntennaView& antenna, int max_mirrors, MirrorSequence skip,
-                     std::vector<Leg>& legs, int64_t& num_queries) const {
+void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
   legs.clear();
-  const Vec3 line = antenna.position - point;
-  if (skip != kDirect && normal.dot(line) > 0) {
-    ++num_queries;
-    if (!geometry_.occluded(geometry_.lifted(point, normal), antenna.position)) {
-      Leg& leg = legs.emplace_back();
-      leg.length = line.norm();
-      leg.to_antenna = line / leg.length;
-      leg.at_antenna = -leg.to_antenna;
-    }
-  }
+  search.segments.clear();
+  if (query.skip != kDirect && query.direct != Sight::kBlocked) add_direct(query, antenna, legs, search);
+  const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const Beam& beam : antenna.beams) {
-    if (static_cast<int>(beam.mirrors.size()) > max_mirrors) break;
-    if (beam.sequence == skip) continue;
-    Leg leg;
-    if (over_mirrors(point, normal, antenna, beam, leg, num_queries)) legs.push_back(leg);
+    if (static_cast<int>(beam.mirrors.size()) > query.max_mirrors) break;
+    if (beam.sequence != query.skip) add_over_mirrors(query, antenna, beam, legs, search);
   }
+  if (!search.segments.empty()) keep_open(num_known, legs, search);
 }
 
-bool LegFinder::over_mirrors(const Vec3& point, const Vec3& normal, const AntennaView& antenna, const Beam& beam, Leg& leg,
-                             int64_t& num_queries) const {
+void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs,
+                           LegSearch& search) const {
+  const Vec3 line = antenna.position - query.point;
+  if (query.normal.dot(line) <= 0) return;
+  if (query.direct == Sight::kUnknown) {
+    search.segments.push_back({geometry_.lifted(query.point, query.normal), antenna.position});
+  }
+  Leg& leg = legs.emplace_back();
+  leg.length = line.norm();
+  leg.to_antenna = line / leg.length;
+  leg.at_antenna = -leg.to_antenna;
+}
+
+void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const Beam& beam,
+                                 std::vector<Leg>& legs, LegSearch& search) const {
+  const Vec3& point = query.point;
   const Vec3 line = beam.image() - point;
+  if (query.normal.dot(line) <= 0) return;
   const bool is_on_plane = beam.lit_normal.dot(point) - beam.offset < kOnPlane;
-  if (normal.dot(line) <= 0 || is_on_plane || !beam.reaches(point, kRim)) return false;
+  if (is_on_plane || !beam.reaches(point, kRim)) return;
+  const size_t num_segments = search.segments.size();
+  Leg& leg = legs.emplace_back();
   leg.sequence = beam.sequence;
   leg.length = line.norm();
-  leg.to_antenna = leg.at_antenna = line / leg.length;
-
-  // Closest-hit queries answer both whether a mirror is there and whether the way to it is free.
-  Vec3 from = geometry_.lifted(point, normal), position = point;
-  for (size_t k = beam.mirrors.size(); k-- > 0;) {
-    RayHit met;
-    ++num_queries;
-    if (!bounce(beam.mirrors[k], from, (beam.images[k] - position).normalized(), leg, met)) return false;
-    position = met.position;
-    from = geometry_.lifted(position, leg.bounces[static_cast<size_t>(leg.num_bounces - 1)].normal);
-  }
-  ++num_queries;
-  if (geometry_.occluded(from, antenna.position)) return false;
-  for (int k = 0; k < leg.num_bounces; ++k) {
-    leg.at_antenna = mirrors_[static_cast<size_t>(leg.bounces[static_cast<size_t>(k)].mirror)].reflect(leg.at_antenna);
-  }
-  leg.at_antenna = -leg.at_antenna;
-  return std::abs(leg.gain) > 0;
+  leg.to_antenna = line / leg.length;
+  if (set_bounces(point, query.normal, antenna.position, beam, leg, search.segments)) return;
+  legs.pop_back();
+  search.segments.resize(num_segments);
 }
 
-// Adds the bounce that a ray from `from` makes next, if it is one off this mirror.
-bool LegFinder::bounce(int index, const Vec3& from, const Vec3& direction, Leg& leg, RayHit& met) const {
+// From the point over the mirrors to the antenna. False where the way misses one of them.
+bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const Beam& beam, Leg& leg,
+                            std::vector<Segment>& segments) const {
+  Vec3 position = point, from = geometry_.lifted(point, normal), met;
+  for (size_t k = beam.mirrors.size(); k-- > 0;) {
+    if (!bounce(beam.mirrors[k], position, beam.images[k], leg, met)) return false;
+    const Vec3 to = geometry_.lifted(met, leg.bounces[static_cast<size_t>(leg.num_bounces - 1)].normal);
+    segments.push_back({from, to});
+    position = met;
+    from = to;
+  }
+  segments.push_back({from, antenna});
+  leg.at_antenna = (position - antenna).normalized();
+  return true;
+}
+
+// Adds the bounce of a wave from a point toward an image behind the mirror; sets where they meet.
+bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  if (geometry_.intersect(from, direction, met) != EmbreeScene::Verdict::kHit) return false;
-  if (met.hit.mesh_id != mirror.mesh_id) return false;
+  const double before = mirror.signed_distance(from), behind = mirror.signed_distance(image);
+  if (before * behind >= 0) return false;
+  const std::optional<Hit> hit = mirror.mesh.locate(from + before / (before - behind) * (image - from));
+  if (!hit) return false;
+  // On the facet itself, which may lie a little beside the plane.
+  const auto [a, b, c] = geometry_.corners(hit->mesh_id, hit->triangle_id);
+  met = a + double{hit->u} * (b - a) + double{hit->v} * (c - a);
   LegBounce& bounce = leg.bounces[static_cast<size_t>(leg.num_bounces++)];
   bounce.mirror = index;
-  bounce.hit = met.hit;
-  bounce.direction = direction;
-  bounce.normal = direction.dot(mirror.normal) < 0 ? mirror.normal : Vec3(-mirror.normal);
-  const PolarizationMode mode = polarization_mode(polarization_, direction, mirror.normal);
-  const SurfaceResponse response = respond(*mirror.material, frequency_, -direction.dot(bounce.normal), mode);
-  leg.gain *= response.gamma * response.coherent;
-  bounce.specular_share = response.coherent * response.coherent;
-  leg.specular_share *= bounce.specular_share;
+  bounce.hit = *hit;
+  bounce.direction = (image - from).normalized();
+  bounce.normal = before > 0 ? mirror.normal : Vec3(-mirror.normal);
   return true;
+}
+
+// Leaves the legs whose ways are free, of which the first `num_known` are known to be.
+void LegFinder::keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& search) const {
+  const size_t count = search.segments.size();
+  search.num_queries += static_cast<int64_t>(count);
+  search.blocked.resize(count);
+  geometry_.occluded(search.segments.data(), count, search.blocked.data());
+  const uint8_t* blocked = search.blocked.data();
+  size_t num_open = num_known;
+  for (size_t i = num_known; i < legs.size(); ++i) {
+    const int num_segments = legs[i].num_bounces + 1;
+    const bool is_open = std::none_of(blocked, blocked + num_segments, [](uint8_t value) { return value != 0; });
+    blocked += num_segments;
+    if (!is_open) continue;
+    if (num_open != i) legs[num_open] = legs[i];
+    Leg& leg = legs[num_open];
+    set_gain(leg);
+    if (std::norm(leg.gain) > 0) ++num_open;
+  }
+  legs.resize(num_open);
+}
+
+void LegFinder::set_gain(Leg& leg) const {
+  for (int k = 0; k < leg.num_bounces; ++k) {
+    LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
+    const Mirror& mirror = mirrors_[static_cast<size_t>(bounce.mirror)];
+    const PolarizationMode mode = polarization_mode(polarization_, bounce.direction, mirror.normal);
+    const SurfaceResponse response = respond(*mirror.material, frequency_, -bounce.direction.dot(bounce.normal), mode);
+    leg.gain *= response.gamma * response.coherent;
+    bounce.specular_share = response.coherent * response.coherent;
+    leg.specular_share *= bounce.specular_share;
+  }
 }
 
 }  // namespace echopath

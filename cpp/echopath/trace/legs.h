@@ -34,22 +34,42 @@ struct AntennaView {
   std::vector<Beam> beams;
 };
 
+enum class Sight : uint8_t { kUnknown, kOpen, kBlocked };
+
+// Where legs are searched.
+struct LegQuery {
+  Vec3 point, normal;       // m; unit, on the lit side
+  int max_mirrors = 0;
+  MirrorSequence skip = -1;  // a sequence that is left out, negative for none
+  Sight direct = Sight::kUnknown;  // of the antenna itself
+};
+
+// What a search needs while it lasts; kept from one to the next for its memory.
+struct LegSearch {
+  std::vector<Segment> segments;  // of all legs tried, in their order
+  std::vector<uint8_t> blocked;
+  int64_t num_queries = 0;        // of all searches
+};
+
 class LegFinder {
  public:
   LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization)
       : geometry_(geometry), mirrors_(mirrors), frequency_(frequency), polarization_(polarization) {}
 
   AntennaView view_of(const Vec3& antenna) const;
-  // All visible legs between `point` (unit normal on the lit side) and `antenna` over at most `max_mirrors` mirrors, direct
-  // first, then in the order of the beams. `skip`: a sequence that is left out, negative for none. Queries made are added to
-  // `num_queries`.
-  void find(const Vec3& point, const Vec3& normal, const AntennaView& antenna, int max_mirrors, MirrorSequence skip,
-            std::vector<Leg>& legs, int64_t& num_queries) const;
+  // All visible legs between a point and `antenna`, direct first, then in the order of the beams.
+  // Where a leg meets its mirrors follows from the images alone; shadow queries, in packets, tell whether its way is free.
+  void find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
 
  private:
-  bool over_mirrors(const Vec3& point, const Vec3& normal, const AntennaView& antenna, const Beam& beam, Leg& leg,
-                    int64_t& num_queries) const;
-  bool bounce(int mirror, const Vec3& from, const Vec3& direction, Leg& leg, RayHit& met) const;
+  void add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
+  void add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const Beam& beam, std::vector<Leg>& legs,
+                        LegSearch& search) const;
+  bool set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const Beam& beam, Leg& leg,
+                   std::vector<Segment>& segments) const;
+  bool bounce(int mirror, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const;
+  void keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& search) const;
+  void set_gain(Leg& leg) const;
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;

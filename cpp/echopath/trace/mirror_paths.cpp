@@ -8,7 +8,6 @@
 namespace echopath {
 namespace {
 
-constexpr double kOutside = 1e-9;     // m: how far outside its polygon a specular point may lie
 constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are at a common edge
 constexpr size_t kMaxBeams = 20000;   // sequences of mirrors tried; the longest are left out beyond
 // A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the true
@@ -17,29 +16,10 @@ constexpr double kAside = 1e-5;  // m
 const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
 constexpr int kImageStratum = 255;
 
-// Barycentric hit of a point of the plane in a mirror's mesh.
-std::optional<Hit> locate(const EmbreeScene& geometry, const Scene& scene, const Mirror& mirror, const Vec3& point) {
-  const auto num_triangles = static_cast<uint32_t>(scene.node_of(mirror.mesh_id).mesh->triangles().size());
-  for (uint32_t i = 0; i < num_triangles; ++i) {
-    const auto [a, b, c] = geometry.corners(mirror.mesh_id, i);
-    const Vec3 cross = (b - a).cross(c - a);
-    const double twice_area = cross.norm();
-    const Vec3 normal = cross / twice_area;
-    const auto height = [&](const Vec3& from, const Vec3& to) {  // distance inside an edge, m
-      return normal.dot((to - from).cross(point - from)) / (to - from).norm();
-    };
-    if (height(a, b) < -kOutside || height(b, c) < -kOutside || height(c, a) < -kOutside) continue;
-    const double u = normal.dot((a - c).cross(point - c)) / twice_area, v = normal.dot((b - a).cross(point - a)) / twice_area;
-    return Hit{mirror.mesh_id, i, static_cast<float>(u), static_cast<float>(v)};
-  }
-  return std::nullopt;
-}
-
 class ImageSearch {
  public:
-  ImageSearch(const EmbreeScene& geometry, const Scene& scene, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
-              PathBlock& block)
-      : geometry_(geometry), scene_(scene), mirrors_(mirrors), settings_(settings), block_(block) {}
+  ImageSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, PathBlock& block)
+      : geometry_(geometry), mirrors_(mirrors), settings_(settings), block_(block) {}
 
   void run() {
     for (const Beam& beam : find_beams(settings_.transmitter, mirrors_, settings_.max_bounces, kMaxBeams)) {
@@ -68,7 +48,7 @@ class ImageSearch {
     if (!find_points(receiver) || !sees_all(receiver)) return false;
     std::vector<Hit> hits;
     for (size_t k = 0; k < points_.size(); ++k) {
-      const std::optional<Hit> hit = locate(geometry_, scene_, mirror(k), points_[k]);
+      const std::optional<Hit> hit = mirror(k).mesh.locate(points_[k]);
       if (!hit) return false;
       hits.push_back(*hit);
     }
@@ -151,7 +131,6 @@ class ImageSearch {
   }
 
   const EmbreeScene& geometry_;
-  const Scene& scene_;
   const std::vector<Mirror>& mirrors_;
   const SbrSettings& settings_;
   PathBlock& block_;
@@ -162,9 +141,9 @@ class ImageSearch {
 
 }  // namespace
 
-void add_mirror_paths(const EmbreeScene& geometry, const Scene& scene, const std::vector<Mirror>& mirrors,
-                      const SbrSettings& settings, PathBlock& block) {
-  ImageSearch(geometry, scene, mirrors, settings, block).run();
+void add_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
+                      PathBlock& block) {
+  ImageSearch(geometry, mirrors, settings, block).run();
 }
 
 }  // namespace echopath

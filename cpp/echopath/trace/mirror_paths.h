@@ -9,7 +9,7 @@ namespace echopath {
 // each other; weight = product of Gamma s. A path through an edge is the limit of those on both sides of it: the sequences
 // of either side share its field in halves (the two orders of a corner; a seam between two mirrors; the rim of one).
 // Stratum 255.
-void add_mirror_paths(const EmbreeScene& geometry, const Scene& scene, const std::vector<Mirror>& mirrors,
-                      const SbrSettings& settings, PathBlock& block);
+void add_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
+                      PathBlock& block);
 
 }  // namespace echopath

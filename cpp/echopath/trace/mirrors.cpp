@@ -9,6 +9,7 @@ namespace {
 constexpr double kFlatAbsolute = 1e-4;   // m
 constexpr double kFlatRelative = 1e-6;   // of the mesh's extent
 constexpr double kTeLimit = 0.70710678118654752;
+constexpr double kNormalIncidence = 1e-12;  // sine of incidence
 constexpr double kAlongTravel = 0.1;  // sine between field and direction of travel
 
 Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_id) {
@@ -18,9 +19,10 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
   mirror.material = scene.node_of(mesh_id).material.get();
   mirror.point.setZero();
   Vec3 area_normal = Vec3::Zero(), reference = Vec3::Zero();
+  std::vector<std::array<Vec3, 3>> all_corners;
   double weight = 0.0;
   for (uint32_t i = 0; i < triangles.size(); ++i) {
-    const auto [a, b, c] = geometry.corners(mesh_id, i);
+    const auto& [a, b, c] = all_corners.emplace_back(geometry.corners(mesh_id, i));
     Vec3 cross = (b - a).cross(c - a);
     if (i == 0) reference = cross;
     if (cross.dot(reference) < 0) cross = -cross;  // windings may differ
@@ -30,6 +32,7 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
   }
   mirror.point /= weight;
   mirror.normal = area_normal.normalized();
+  mirror.mesh = PlaneMesh(mesh_id, all_corners, mirror.normal);
   return mirror;
 }
 
@@ -85,12 +88,13 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
 }
 
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
-  const Vec3 across = polarization - polarization.dot(direction) * direction;
+  const double along = polarization.dot(direction);
   const Vec3 te_axis = direction.cross(normal);
-  const double scale = across.norm() * te_axis.norm();
-  if (te_axis.norm() < 1e-12) return PolarizationMode::kTe;  // normal incidence: both are the same
-  if (across.norm() < kAlongTravel) return PolarizationMode::kTm;
-  return std::abs(across.dot(te_axis)) >= kTeLimit * scale ? PolarizationMode::kTe : PolarizationMode::kTm;
+  const double te_squared = te_axis.squaredNorm(), across_squared = polarization.squaredNorm() - along * along;
+  if (te_squared < kNormalIncidence * kNormalIncidence) return PolarizationMode::kTe;  // both are the same
+  if (across_squared < kAlongTravel * kAlongTravel) return PolarizationMode::kTm;
+  const double te = polarization.dot(te_axis);  // the axis lies across the direction
+  return te * te >= kTeLimit * kTeLimit * te_squared * across_squared ? PolarizationMode::kTe : PolarizationMode::kTm;
 }
 
 }  // namespace echopath

@@ -4,6 +4,7 @@
 
 #include "echopath/em/surface_response.h"
 #include "echopath/trace/embree_scene.h"
+#include "echopath/trace/plane_mesh.h"
 
 namespace echopath {
 
@@ -13,6 +14,7 @@ struct Mirror {
   Vec3 normal;  // unit
   const Material* material = nullptr;
   std::vector<Vec3> outline;  // corners of the convex hull, in order around it
+  PlaneMesh mesh;
 
   double signed_distance(const Vec3& p) const { return normal.dot(p - point); }
   Vec3 image(const Vec3& p) const { return p - 2.0 * signed_distance(p) * normal; }

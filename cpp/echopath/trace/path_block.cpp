@@ -1,6 +1,10 @@
 #include "echopath/trace/path_block.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "echopath/base/large_array.h"
+#include "echopath/base/parallel.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -10,13 +14,9 @@ namespace echopath {
 
 void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
-  offsets.push_back(offset);
-  num_bounces.push_back(static_cast<uint8_t>(count));
-  diffuse.push_back(diffuse_bits);
-  weight.emplace_back(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
-  stratum.push_back(static_cast<uint8_t>(path_stratum));
-  flags.push_back(0);
-  batch.push_back(current_batch);
+  const std::complex<float> rounded(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
+  rows.push_back({offset, diffuse_bits, rounded, 0, static_cast<uint8_t>(count), static_cast<uint8_t>(path_stratum),
+                  current_batch});
 }
 
 void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
@@ -26,7 +26,7 @@ void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::com
 
 void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
-  pending_.push_back(offsets.size());
+  pending_.push_back(rows.size());
   used_depth_ = std::max(used_depth_, skipped + count);
   add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
 }
@@ -36,37 +36,100 @@ void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits,
   uint64_t reversed_bits = 0;
   for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
   add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
-  flags.back() = kReversedPath;
+  rows.back().flags = kReversedPath;
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
 void PathBlock::set_jones(const JonesMatrix& matrix) {
-  jones.resize(offsets.size());
+  jones.resize(rows.size());
   jones.back() = matrix;
 }
 
 void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
-  curved_cell.resize(offsets.size());
+  curved_cell.resize(rows.size());
   curved_cell.back() = cell;
 }
 
 void PathBlock::end_ray(const Hit* ray_hits) {
   const auto base = static_cast<int64_t>(hits.size());
   hits.insert(hits.end(), ray_hits, ray_hits + used_depth_);
-  for (const size_t path : pending_) offsets[path] += base;
+  for (const size_t path : pending_) rows[path].offset += base;
   pending_.clear();
   used_depth_ = 0;
 }
 
-void PathBlock::shrink_to_fit() {
-  hits.shrink_to_fit();
-  offsets.shrink_to_fit();
-  num_bounces.shrink_to_fit();
-  diffuse.shrink_to_fit();
-  weight.shrink_to_fit();
-  stratum.shrink_to_fit();
-  curved_cell.shrink_to_fit();
-  jones.shrink_to_fit();
+void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
+  PathFan& fan = fans.emplace_back();
+  fan.num_before = rows.size();
+  fan.hit = hit;
+  fan.stratum = static_cast<uint8_t>(path_stratum);
+  fan.batch = current_batch;
+  fan.max_bounces = static_cast<uint32_t>(max_bounces);
+}
+
+void PathBlock::add_leg(std::complex<double> factor) {
+  const std::complex<float> rounded(static_cast<float>(factor.real()), static_cast<float>(factor.imag()));
+  fan_legs.push_back({rounded, static_cast<uint32_t>(fan_hits.size()), 0});
+}
+
+void PathBlock::add_leg_hit(const Hit& hit) {
+  fan_hits.push_back(hit);
+  ++fan_legs.back().num_hits;
+}
+
+void PathBlock::end_fan() {
+  const PathFan& fan = fans.back();
+  const FanLeg* legs = fan_legs.data() + fan_legs.size() - fan.num_in - fan.num_out;
+  FanPairs(fan, legs, fan_hits.data()).count(num_fan_paths_, num_fan_hits_);
+}
+
+void PathBlock::clear() {
+  hits.clear();
+  rows.clear();
+  curved_cell.clear();
+  jones.clear();
+  fans.clear();
+  fan_legs.clear();
+  fan_hits.clear();
+  statistics = TraceStatistics();
+  num_fan_paths_ = num_fan_hits_ = 0;
+}
+
+// The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.
+void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const {
+  for (size_t i = begin; i < end; ++i) {
+    const Row& from = rows[i];
+    *to.offsets = first_hit + from.offset;
+    *to.num_bounces = from.num_bounces;
+    *to.diffuse = from.diffuse;
+    *to.weight = from.weight;
+    *to.stratum = from.stratum;
+    *to.batch = from.batch;
+    *to.flags = from.flags;
+    to.skip_rows(1);
+  }
+  // These end with the last path that has an entry.
+  for (size_t i = begin; i < std::min(end, curved_cell.size()); ++i) paths.curved_cell[row + i - begin] = curved_cell[i];
+  for (size_t i = begin; i < std::min(end, jones.size()); ++i) paths.jones[row + i - begin] = jones[i];
+}
+
+void PathBlock::write(PathRows to, Paths& paths) const {
+  const int64_t first_hit = to.first_hit;
+  const int64_t* const first_row = paths.offsets.data();
+  std::copy(hits.begin(), hits.end(), to.hits);
+  to.skip_hits(hits.size());
+  std::vector<int64_t> places;
+  const FanLeg* legs = fan_legs.data();
+  size_t done = 0;
+  const auto write_until = [&](size_t end) {
+    write_own(std::exchange(done, end), end, first_hit, static_cast<size_t>(to.offsets - first_row), to, paths);
+  };
+  for (const PathFan& fan : fans) {
+    write_until(fan.num_before);
+    FanPairs(fan, legs, fan_hits.data()).write(to, places);
+    legs += fan.num_in + fan.num_out;
+  }
+  write_until(rows.size());
 }
 
 namespace {
@@ -87,55 +150,54 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_false_hits += part.num_false_hits;
 }
 
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& part) {
-  all.insert(all.end(), part.begin(), part.end());
-}
+// Where each block begins in the record, and where the last one ends.
+struct Places {
+  std::vector<size_t> paths{0}, hits{0};
 
-// A column that exists only where some path needs it: zeros for those before.
-template <class T>
-void append_sparse(std::vector<T>& all, const std::vector<T>& part, size_t before) {
-  if (part.empty()) return;
-  all.resize(before);
-  append(all, part);
+  explicit Places(const std::vector<PathBlock>& blocks) {
+    for (const PathBlock& block : blocks) {
+      paths.push_back(paths.back() + block.num_paths());
+      hits.push_back(hits.back() + block.num_hits());
+    }
+  }
+};
+
+// Columns one by one beside each other: their memory is touched for the first time here.
+void make_room(const std::vector<PathBlock>& blocks, size_t num_paths, Paths& paths) {
+  const auto has = [&](const auto& column) {
+    return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock& block) { return !(block.*column).empty(); });
+  };
+  const bool has_cells = has(&PathBlock::curved_cell), has_jones = has(&PathBlock::jones);
+  const std::function<void()> columns[] = {
+      [&] { resize_large(paths.offsets, num_paths); },     [&] { resize_large(paths.diffuse, num_paths); },
+      [&] { resize_large(paths.weight, num_paths); },      [&] { resize_large(paths.flags, num_paths); },
+      [&] { resize_large(paths.num_bounces, num_paths); }, [&] { resize_large(paths.stratum, num_paths); },
+      [&] { resize_large(paths.batch, num_paths); },       [&] { resize_large(paths.curved_cell, has_cells ? num_paths : 0); },
+      [&] { resize_large(paths.jones, has_jones ? num_paths : 0); }};
+  parallel_for(std::ssize(columns), [&](int64_t i) { columns[i](); });
 }
 
 }  // namespace
 
 void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
-  size_t num_hits = 0, num_paths = 0;
-  for (const PathBlock& block : blocks) {
-    num_hits += block.hits.size();
-    num_paths += block.offsets.size();
-  }
+  const Places places(blocks);
   auto hits = std::make_shared<std::vector<Hit>>();
-  hits->reserve(num_hits);
-  paths.offsets.reserve(num_paths);
-  paths.num_bounces.reserve(num_paths);
-  paths.diffuse.reserve(num_paths);
-  paths.weight.reserve(num_paths);
-  paths.stratum.reserve(num_paths);
-  paths.flags.reserve(num_paths);
-  paths.batch.reserve(num_paths);
-  for (PathBlock& block : blocks) {
-    if (job) job->throw_if_cancelled();
-    const auto base = static_cast<int64_t>(hits->size());
-    append(*hits, block.hits);
-    for (const int64_t offset : block.offsets) paths.offsets.push_back(base + offset);
-    append(paths.num_bounces, block.num_bounces);
-    append(paths.diffuse, block.diffuse);
-    append(paths.weight, block.weight);
-    append(paths.stratum, block.stratum);
-    append(paths.flags, block.flags);
-    append(paths.batch, block.batch);
-    const size_t before = paths.offsets.size() - block.offsets.size();
-    append_sparse(paths.curved_cell, block.curved_cell, before);
-    append_sparse(paths.jones, block.jones, before);
-    add_statistics(paths.frame.statistics, block.statistics);
-    block = PathBlock();  // frees it: the peak stays near one copy of the record
-  }
-  if (!paths.curved_cell.empty()) paths.curved_cell.resize(num_paths);
-  if (!paths.jones.empty()) paths.jones.resize(num_paths);
+  resize_large(*hits, places.hits.back());
+  make_room(blocks, places.paths.back(), paths);
+  Job own(job);  // its progress is not that of the rays
+  parallel_for(
+      std::ssize(blocks),
+      [&](int64_t index) {
+        const auto i = static_cast<size_t>(index);
+        const size_t row = places.paths[i], hit = places.hits[i];
+        const PathRows rows{hits->data() + hit,           static_cast<int64_t>(hit),  paths.offsets.data() + row,
+                            paths.num_bounces.data() + row, paths.diffuse.data() + row, paths.weight.data() + row,
+                            paths.stratum.data() + row,     paths.batch.data() + row,   paths.flags.data() + row};
+        blocks[i].write(rows, paths);
+      },
+      &own);
+  for (PathBlock& block : blocks) add_statistics(paths.frame.statistics, block.statistics);
+  blocks.clear();
   paths.hits = std::move(hits);
   paths.frame.statistics.num_paths = paths.num_paths();
   give_back_free_memory();

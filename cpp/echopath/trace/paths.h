@@ -20,6 +20,9 @@ struct Hit {  // 16 bytes
   uint32_t mesh_id;
   uint32_t triangle_id;
   float u, v;
+
+  Hit() {}  // not set: so that an array of hits is made without touching its memory
+  Hit(uint32_t mesh, uint32_t triangle, float first, float second) : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
 };
 static_assert(sizeof(Hit) == 16);
 

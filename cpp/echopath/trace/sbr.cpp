@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
@@ -53,32 +54,86 @@ RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const st
       receiver_(legs_.view_of(settings.receiver)), mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) material_.push_back(scene.node_of(id).material.get());
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 
-void RayShooter::shoot(int64_t index, PathBlock& block) const {
+void RayShooter::shoot(int64_t begin, int64_t end, PathBlock& block) const {
+  thread_local Scratch scratch;
+  thread_local Packet packet;
+  for (int64_t first = begin; first < end; first += kPacketSize) {
+    shoot_packet(first, static_cast<int>(std::min<int64_t>(kPacketSize, end - first)), packet, scratch, block);
+  }
+  block.statistics.num_queries += std::exchange(scratch.search.num_queries, 0);
+}
+
+// Together to their first hits, each on its own from there.
+void RayShooter::shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const {
+  for (int k = 0; k < count; ++k) {
+    packet.strata[k] = plan_.stratum_of(begin + k);
+    packet.directions[k] = plan_.direction(packet.strata[k], begin + k);
+  }
+  geometry_.intersect(settings_.transmitter, packet.directions.data(), count, packet.verdicts.data(), packet.hits.data());
+  block.statistics.num_queries += count;
+  look_at_receiver(count, packet, block);
+  Surface surface;
+  for (int k = 0; k < count; ++k) {
+    Ray ray = launched(begin + k, packet.strata[k], packet.directions[k]);
+    block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, ray.index));
+    surface.point = packet.hits[k];
+    surface.receiver = packet.receiver[k];
+    if (arrive(ray, packet.verdicts[k], surface, block)) follow(ray, surface, scratch, block);
+    block.end_ray(ray.hits.data());
+  }
+}
+
+// From all first hits together: they lie beside each other. What a mirror needs depends on more.
+void RayShooter::look_at_receiver(int count, Packet& packet, PathBlock& block) const {
+  std::array<int, kPacketSize> asked;
+  size_t num_asked = 0;
+  for (int k = 0; k < count; ++k) {
+    const RayHit& hit = packet.hits[k];
+    packet.receiver[k] = Sight::kUnknown;
+    if (packet.verdicts[k] != EmbreeScene::Verdict::kHit || material_[hit.hit.mesh_id]->mirror) continue;
+    if (hit.normal.dot(settings_.receiver - hit.position) <= 0) continue;
+    packet.segments[num_asked] = {geometry_.lifted(hit.position, hit.normal), settings_.receiver};
+    asked[num_asked++] = k;
+  }
+  if (num_asked == 0) return;
+  geometry_.occluded(packet.segments.data(), num_asked, packet.blocked.data());
+  block.statistics.num_queries += static_cast<int64_t>(num_asked);
+  for (size_t i = 0; i < num_asked; ++i) packet.receiver[asked[i]] = packet.blocked[i] ? Sight::kBlocked : Sight::kOpen;
+}
+
+RayShooter::Ray RayShooter::launched(int64_t index, int stratum, const Vec3& direction) const {
   Ray ray;
   ray.index = index;
-  ray.stratum = plan_.stratum_of(index);
+  ray.stratum = stratum;
   ray.from = settings_.transmitter;
-  ray.direction = ray.launch_direction = plan_.direction(ray.stratum, index);
-  block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, index));
-  ray.leg_density = plan_.ray_density(ray.direction, ray.stratum);
-  if (settings_.is_polarized) ray.polarized = launched_fields(ray.direction);
-  if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
-  thread_local Scratch scratch;
-  Surface surface;
-  while (advance(ray, surface, block)) {
+  ray.direction = ray.launch_direction = direction;
+  ray.leg_density = ray.launch_density = plan_.ray_density(direction, stratum);
+  if (settings_.is_polarized) ray.polarized = launched_fields(direction);
+  if (has_smooth_) ray.rays = RayDifferential::from_point(direction);
+  return ray;
+}
+
+// From its first hit on.
+void RayShooter::follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const {
+  do {
     connect(ray, surface, scratch, block);
     if (ray.depth == settings_.max_bounces || !bounce(ray, surface, scratch, block)) break;
-  }
-  block.end_ray(ray.hits.data());
+  } while (advance(ray, surface, block));
 }
 
 bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ++block.statistics.num_queries;
-  const EmbreeScene::Verdict verdict = geometry_.intersect(ray.from, ray.direction, surface.point);
+  surface.receiver = Sight::kUnknown;
+  return arrive(ray, geometry_.intersect(ray.from, ray.direction, surface.point), surface, block);
+}
+
+// At the point of `surface`, if it is one.
+bool RayShooter::arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface, PathBlock& block) const {
   if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
   if (verdict != EmbreeScene::Verdict::kHit) return false;
   surface.cos_incidence = -surface.point.normal.dot(ray.direction);
@@ -94,7 +149,7 @@ bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;
   if (has_smooth_ && ray.coherent) follow_tube(ray, surface);
-  surface.material = scene_.node_of(surface.point.hit.mesh_id).material.get();
+  surface.material = material_[surface.point.hit.mesh_id];
   const PolarizationMode mode = polarization_mode(settings_.polarization, ray.direction, surface.point.normal);
   surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence, mode);
   if (!surface.material->mirror) {
@@ -198,8 +253,8 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probabi
                                 PathBlock& block) const {
   const Vec3& normal = surface.point.normal;
   const Vec3 out = cosine_lobe(normal, scatter_numbers(ray, block.current_batch));
-  if (ray.coherent) begin_chain(ray, surface, probability, scratch, block);
-  ray.coefficient *= std::abs(surface.response.gamma) * surface.response.diffuse;
+  if (ray.coherent) begin_chain(ray, surface, probability, scratch);
+  ray.coefficient *= diffuse_coefficient(surface.response);
   ray.area *= surface.area;
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
   ray.coherent = false;

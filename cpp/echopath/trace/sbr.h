@@ -34,16 +34,21 @@ class RayShooter {
  public:
   RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchPlan& plan,
              const SbrSettings& settings);
-  // Traces ray number `ray` of the plan and appends its paths. Thread-safe for different blocks.
-  void shoot(int64_t ray, PathBlock& block) const;
+  // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
+  void shoot(int64_t begin, int64_t end, PathBlock& block) const;
 
  private:
   struct Ray;      // what the ray carries
   struct Surface;  // where it is
   struct Scratch;
   struct Odds;     // of going on
+  struct Packet;   // of neighbouring rays up to their first hits
   struct Chain;    // of diffuse hits
 
+  void shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const;
+  void look_at_receiver(int count, Packet& packet, PathBlock& block) const;
+  Ray launched(int64_t index, int stratum, const Vec3& direction) const;
+  void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   struct MirrorBounce;
@@ -53,14 +58,20 @@ class RayShooter {
               bool with_reversal, PathBlock& block) const;
   void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
+  bool arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  void record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
+                       PathBlock& block) const;
   Leg own_leg(const Ray& ray) const;
+  LegQuery legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const;
   double counted_share(const Surface& surface) const;
   bool is_counted(const Ray& ray, const Surface& surface) const;
-  double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const;
+  double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const;
+  void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
+                  PathBlock& block) const;
   bool bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
@@ -70,11 +81,10 @@ class RayShooter {
   static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
   SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;
   // sbr_diffuse.cpp: chains of several diffuse hits.
-  void begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
+  void begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch) const;
   void leave_diffuse(const Ray& ray, const Surface& surface, const Vec3& out, double probability, Chain& chain) const;
   void leave_specular(const Ray& ray, const Surface& surface, double probability, Chain& chain) const;
-  void find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch,
-                          PathBlock& block) const;
+  void find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch) const;
   void connect_chain(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   double share_of_order(const Surface& surface, const SurfaceResponse& response, const Leg& leg, const Chain& chain) const;
   void record_reversed(const Ray& ray, const Chain& chain, const Leg& leg, uint64_t bits, std::complex<double> weight,
@@ -104,6 +114,7 @@ class RayShooter {
   LegFinder legs_;
   AntennaView transmitter_, receiver_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
+  std::vector<const Material*> material_;  // by mesh ID
   std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then

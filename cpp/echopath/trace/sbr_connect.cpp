@@ -34,10 +34,16 @@ bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& directi
   return !suffices(mirror, to_receiver, surface.point.distance);
 }
 
+LegQuery RayShooter::legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const {
+  return {surface.point.position, surface.point.normal, max_mirrors, skip, surface.receiver};
+}
+
 void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   const Vec3& point = surface.point.position;
   scratch.receive.clear();
-  if ((point - settings_.receiver).norm() < kNearAntenna || (point - settings_.transmitter).norm() < kNearAntenna) {
+  scratch.has_receive = false;
+  const auto is_near = [&](const Vec3& antenna) { return (point - antenna).squaredNorm() < kNearAntenna * kNearAntenna; };
+  if (is_near(settings_.receiver) || is_near(settings_.transmitter)) {
     ++block.statistics.num_near_antenna;
     return;
   }
@@ -47,8 +53,9 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   const bool in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
   // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
   if (in_pairs && !is_counted(ray, surface)) return;
-  legs_.find(point, surface.point.normal, receiver_, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther,
-             scratch.receive, block.statistics.num_queries);
+  legs_.find(legs_from(surface, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther), receiver_, scratch.receive,
+             scratch.search);
+  scratch.has_receive = true;
   if (scratch.receive.empty() && ray.coherent) return;
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
   if (!radiates_power) return;
@@ -63,7 +70,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
-  const double launch_area = tube_area / (plan_.ray_density(ray.launch_direction, ray.stratum) * surface.cos_incidence) * surface.point.stretch;
+  const double launch_area = tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
   const double sign = ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0;
   // Polarised, all coefficients are in the matrix.
   const std::complex<double> scalar =
@@ -122,7 +129,7 @@ std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surfac
 
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   const std::complex<double> scalar =
-      settings_.is_polarized ? 1.0 : ray.coefficient * std::abs(surface.response.gamma) * surface.response.diffuse;
+      settings_.is_polarized ? 1.0 : ray.coefficient * diffuse_coefficient(surface.response);
   const std::complex<double> weight = scalar * std::sqrt(surface.area) * phase_factor(ray);
   const uint64_t bits = uint64_t{1} << (ray.depth - 1);
   const bool with_reversal = ray.mirror.mesh >= 0;
@@ -155,45 +162,62 @@ bool RayShooter::is_counted(const Ray& ray, const Surface& surface) const {
   return uniform2(settings_.seed, Stream::kThinning, static_cast<uint64_t>(ray.index), hit)[0] < share;
 }
 
-// The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here.
-double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& legs) const {
+// The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here, the ray's own
+// way and the `others`.
+double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const {
   const double aimed_share = counted_share(surface);
-  double hits_per_area = 0.0;
-  for (const Leg& leg : legs) {
-    const int own_stratum = leg.sequence == ray.sequence ? ray.stratum : -1;
-    hits_per_area += plan_.ray_density(leg.at_antenna, own_stratum, aimed_share) * leg.specular_share *
+  const double own_density =
+      aimed_share == 1.0 ? ray.launch_density : plan_.ray_density(ray.launch_direction, ray.stratum, aimed_share);
+  double hits_per_area =
+      own_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
+  for (const Leg& leg : others) {
+    hits_per_area += plan_.ray_density(leg.at_antenna, -1, aimed_share) * leg.specular_share *
                      surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
   }
   return 1.0 / hits_per_area;
 }
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
-  find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch, block);
-  scratch.transmit.push_back(own_leg(ray));
-  if (settings_.is_polarized) follow_legs(ray, scratch);
-  const double root_area = std::sqrt(material_area(ray, surface, scratch.transmit));
-  const std::complex<double> phase = phase_factor(ray);
+  find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch);
+  const std::complex<double> weight = std::sqrt(material_area(ray, surface, scratch.transmit)) * phase_factor(ray);
+  if (settings_.is_polarized) return record_matrices(ray, surface, weight, scratch, block);
+  if (!scratch.transmit.empty() || scratch.receive.size() > 1 || scratch.receive[0].num_bounces > 0) {
+    return record_fan(ray, surface, weight, scratch, block);
+  }
+  const std::complex<double> own = weight * diffuse_coefficient(surface.response) * ray.coefficient;
+  block.add_prefix(0, ray.depth, uint64_t{1} << (ray.depth - 1), own, ray.stratum);
+}
 
+void RayShooter::record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
+                            PathBlock& block) const {
+  block.begin_fan(surface.point.hit, ray.stratum, settings_.max_bounces);
+  for (const Leg& in : scratch.transmit) {
+    block.add_leg_in(weight * diffuse_coefficient(response_toward(surface, in.to_antenna)) * in.gain);
+    for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[static_cast<size_t>(k)].hit);
+  }
+  block.add_leg_in(weight * diffuse_coefficient(surface.response) * ray.coefficient);
+  for (int k = 0; k < ray.depth - 1; ++k) block.add_leg_hit(ray.hits[static_cast<size_t>(k)]);
+  for (const Leg& out : scratch.receive) {
+    block.add_leg_out(out.gain);
+    for (int k = 0; k < out.num_bounces; ++k) block.add_leg_hit(out.bounces[static_cast<size_t>(k)].hit);
+  }
+  block.end_fan();
+}
+
+// A path over each pair of legs with its matrix, where polarised.
+void RayShooter::record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
+                                 PathBlock& block) const {
+  scratch.transmit.push_back(own_leg(ray));
+  follow_legs(ray, scratch);
   for (size_t i = 0; i < scratch.transmit.size(); ++i) {
     const Leg& in = scratch.transmit[i];
-    const SurfaceResponse response = response_toward(surface, in.to_antenna);
-    const std::complex<double> scalar =
-        settings_.is_polarized ? 1.0 : std::abs(response.gamma) * response.diffuse * in.gain;
-    const std::complex<double> weight = root_area * scalar * phase;
-    const uint64_t bits = uint64_t{1} << in.num_bounces;
     for (size_t j = 0; j < scratch.receive.size(); ++j) {
       const Leg& out = scratch.receive[j];
       const int count = in.num_bounces + 1 + out.num_bounces;
       if (count > settings_.max_bounces) continue;
-      if (out.num_bounces == 0 && in.sequence == ray.sequence) {
-        block.add_prefix(0, count, bits, weight, ray.stratum);
-      } else if (out.num_bounces == 0 && in.num_bounces == 0) {
-        block.add_prefix(ray.depth - 1, count, bits, weight, ray.stratum);
-      } else {
-        const auto hits = pair_hits(in, surface.point.hit, out);
-        block.add(hits.data(), count, bits, settings_.is_polarized ? weight : weight * out.gain, ray.stratum);
-      }
-      if (settings_.is_polarized) block.set_jones(pair_matrix(ray, surface, scratch, i, j));
+      const auto hits = pair_hits(in, surface.point.hit, out);
+      block.add(hits.data(), count, uint64_t{1} << in.num_bounces, weight, ray.stratum);
+      block.set_jones(pair_matrix(ray, surface, scratch, i, j));
     }
   }
 }

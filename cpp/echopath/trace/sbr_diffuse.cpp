@@ -31,8 +31,6 @@ Leg own_way_back(const Vec3& arrival, const Vec3& departure, std::complex<double
   return leg;
 }
 
-double diffuse_coefficient(const SurfaceResponse& response) { return std::abs(response.gamma) * response.diffuse; }
-
 }  // namespace
 
 // What the surface makes of a wave that comes from where `direction` points, a unit vector.
@@ -43,8 +41,7 @@ SurfaceResponse RayShooter::response_toward(const Surface& surface, const Vec3& 
 }
 
 // Before a coherent ray leaves a surface diffusely, with the given probability.
-void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch,
-                             PathBlock& block) const {
+void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch) const {
   Chain& chain = scratch.chain;
   chain = Chain();
   chain.first = ray.depth - 1;
@@ -56,9 +53,8 @@ void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double prob
     return;
   }
   // A hit that does not count as an echo (is_counted) has no legs yet.
-  if (scratch.receive.empty()) {
-    legs_.find(surface.point.position, surface.point.normal, receiver_, ray.depth - 1, kOther, scratch.receive,
-               block.statistics.num_queries);
+  if (!scratch.has_receive) {
+    legs_.find(legs_from(surface, ray.depth - 1, kOther), receiver_, scratch.receive, scratch.search);
   }
   const Leg* back = leg_over(scratch.receive, ray.sequence);
   if (!back) return;
@@ -97,10 +93,10 @@ void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double p
 }
 
 // The visible transmit legs of a hit that rays can come over, but for `skip`.
-void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch,
-                                    PathBlock& block) const {
-  legs_.find(surface.point.position, surface.point.normal, transmitter_, max_mirrors, skip, scratch.transmit,
-             block.statistics.num_queries);
+void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch) const {
+  LegQuery query = legs_from(surface, max_mirrors, skip);
+  query.direct = Sight::kUnknown;
+  legs_.find(query, transmitter_, scratch.transmit, scratch.search);
   std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
 }
 
@@ -119,7 +115,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
   const Chain& chain = scratch.chain;
   if (scratch.receive.empty() && !chain.back) return;
   scratch.transmit.clear();
-  if (chain.back || chain.odds > 0) find_transmit_legs(surface, settings_.max_bounces - ray.depth, kOther, scratch, block);
+  if (chain.back || chain.odds > 0) find_transmit_legs(surface, settings_.max_bounces - ray.depth, kOther, scratch);
   const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
   const std::complex<double> common = std::sqrt(ray.area * surface.area) * phase_factor(ray);
   const auto weighted = [&](std::complex<double> scalar) { return settings_.is_polarized ? common : common * scalar; };

@@ -1,6 +1,7 @@
 #pragma once
 // What sbr.cpp and sbr_connect.cpp share: the state of a ray. Internal to the module.
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "echopath/em/jones.h"
@@ -32,6 +33,7 @@ struct RayShooter::Ray {
   bool coherent = true;       // regime C
   MirrorSequence sequence = kDirect;  // how the transmitter was left
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
+  double launch_density = 0.0;        // rays per sr of all strata toward its launch direction
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
@@ -54,7 +56,18 @@ struct RayShooter::Surface {
   double cos_incidence = 0.0;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  Sight receiver = Sight::kUnknown;  // as seen from here
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
+};
+
+struct RayShooter::Packet {
+  std::array<int, kPacketSize> strata;
+  std::array<Vec3, kPacketSize> directions;
+  std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
+  std::array<RayHit, kPacketSize> hits;
+  std::array<Sight, kPacketSize> receiver;  // from the hits
+  std::array<Segment, kPacketSize> segments;
+  std::array<uint8_t, kPacketSize> blocked;
 };
 
 struct RayShooter::Odds {
@@ -76,8 +89,15 @@ struct RayShooter::Chain {
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
   std::vector<FieldPair> incident, axes;  // of these, for pairs, where polarised (sbr_polarization.cpp)
+  bool has_receive = false;                     // `receive` is that of the ray's hit
+  LegSearch search;
   Chain chain;  // of rays that have left a diffuse hit
 };
+
+// |Gamma| S: of the field that a diffuse hit scatters.
+inline double diffuse_coefficient(const SurfaceResponse& response) {
+  return std::sqrt(std::norm(response.gamma)) * response.diffuse;
+}
 
 // Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
 double curvature_along(const RayHit& point, const Vec3& direction);

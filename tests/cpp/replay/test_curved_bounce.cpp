@@ -70,7 +70,7 @@ DoubleBounces double_bounces(const Scenery& scenery, const EmbreeScene& geometry
   const std::vector<Mirror> no_mirrors;
   const RayShooter shooter(*paths.scene, geometry, no_mirrors, scenery.plan, settings);
   std::vector<PathBlock> blocks(1);
-  for (int64_t ray = 0; ray < scenery.plan.first_ray.back(); ++ray) shooter.shoot(ray, blocks[0]);
+  shooter.shoot(0, scenery.plan.first_ray.back(), blocks[0]);
   join_blocks(blocks, paths);
   paths.frame.strata = scenery.plan.strata;
   std::vector<uint8_t> forward, backward;

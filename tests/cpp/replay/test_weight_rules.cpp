@@ -109,7 +109,7 @@ Paths trace_with_odds(const Scene& scene, double specular_probability, uint64_t 
   odds.specular_probability = specular_probability;
   const RayShooter shooter(scene, geometry, no_mirrors, plan, odds);
   std::vector<PathBlock> blocks(1);
-  for (int64_t ray = 0; ray < plan.first_ray.back(); ++ray) shooter.shoot(ray, blocks.front());
+  shooter.shoot(0, plan.first_ray.back(), blocks.front());
   join_blocks(blocks, paths);
   return paths;
 }

@@ -1,6 +1,7 @@
 // The record of a trace: determinism, shapes, offsets of the world, and what is refused.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 
 #include "echopath/base/parallel.h"
@@ -114,6 +115,42 @@ TEST(Trace, HitsLieOnTheirTriangles) {
     EXPECT_LE(hit.normal.dot(direction), 0.0);
   }
   EXPECT_GT(num_hits, 100);
+}
+
+// Packets answer what single rays answer, whatever stands beside them.
+TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  std::vector<Vec3> directions;
+  for (int i = 0; i < 5000; ++i) directions.push_back(Vec3(std::cos(0.01 * i), std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized());
+  std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
+  std::array<RayHit, kPacketSize> hits;
+  int num_hits = 0, num_different = 0;
+  std::vector<Segment> segments;
+  for (size_t begin = 0; begin < directions.size();) {
+    const int count = std::min(1 + static_cast<int>(begin % kPacketSize), static_cast<int>(directions.size() - begin));
+    geometry.intersect(Vec3::Zero(), &directions[begin], count, verdicts.data(), hits.data());
+    for (int k = 0; k < count; ++k, ++begin) {
+      RayHit single;
+      const EmbreeScene::Verdict verdict = geometry.intersect(Vec3::Zero(), directions[begin], single);
+      num_different += verdict != verdicts[static_cast<size_t>(k)] ? 1 : 0;
+      if (verdict != EmbreeScene::Verdict::kHit || verdicts[static_cast<size_t>(k)] != verdict) continue;
+      ++num_hits;
+      num_different += (single.position - hits[static_cast<size_t>(k)].position).norm() > 1e-4 ? 1 : 0;
+      segments.push_back({geometry.lifted(single.position, single.normal), Vec3(12.0, 0.4 * std::sin(1.0 * num_hits), 0.2)});
+    }
+  }
+  EXPECT_GT(num_hits, 1000);
+  EXPECT_LE(num_different, 5);  // rays through an edge
+  std::vector<uint8_t> blocked(segments.size());
+  geometry.occluded(segments.data(), segments.size(), blocked.data());
+  int num_blocked = 0, num_other = 0;
+  for (size_t i = 0; i < segments.size(); ++i) {
+    num_blocked += blocked[i];
+    num_other += blocked[i] != (geometry.occluded(segments[i].from, segments[i].to) ? 1 : 0) ? 1 : 0;
+  }
+  EXPECT_GT(num_blocked, 20);
+  EXPECT_LE(num_other, 5);
 }
 
 // The density of rays over directions integrates to their number.

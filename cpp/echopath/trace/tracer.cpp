@@ -1,0 +1,112 @@
+#include "echopath/trace/tracer.h"
+
+#include "echopath/base/parallel.h"
+#include "echopath/trace/mirror_paths.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kRaysPerBlock = 1024;
+
+// The whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
+void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
+  const auto boresight = [](const Antenna& antenna) -> Vec3 { return antenna.orientation * Vec3::UnitX(); };
+  const Vec3 first = boresight(radar.transmitters.front());
+  launch.boresight = (world_from_radar.linear() * first).normalized();
+  for (const Antenna& antenna : radar.transmitters) {
+    if (!antenna.pattern.is_dark_behind() || boresight(antenna).dot(first) < 1.0 - 1e-9) return;
+  }
+  launch.field_versine = 1.0;
+}
+
+TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
+  TraceFrame frame;
+  frame.start_time = settings.start_time;
+  frame.trace_time = settings.start_time + 0.5 * radar.frame_duration();
+  const Transform world_from_radar = radar.world_from_radar(frame.trace_time);
+  frame.transmitter = mean_position(radar.transmitters, world_from_radar);
+  frame.receiver = mean_position(radar.receivers, world_from_radar);
+  frame.seed = settings.seed;
+  frame.max_bounces = settings.max_bounces;
+  frame.footprint = settings.footprint;
+  frame.sampler = settings.sampler;
+  frame.num_batches = settings.batches;
+  frame.polarization = settings.polarization;
+  return frame;
+}
+
+Paths empty_record(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
+  settings.validate();
+  radar.validate();
+  scene.require_times(settings.start_time, settings.start_time + radar.frame_duration());
+  Paths paths;
+  paths.scene = std::make_shared<const Scene>(scene);
+  paths.radar = radar;
+  paths.frame = make_frame(radar, settings);
+  return paths;
+}
+
+}  // namespace
+
+Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job)
+    : empty_(empty_record(scene, radar, settings)), pose_(*empty_.scene, empty_.frame.trace_time),
+      world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
+      origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter)),
+      geometry_(*empty_.scene, pose_, origin_, job), mirrors_(find_mirrors(*empty_.scene, geometry_)),
+      plan_(plan_rays(settings)), sbr_(settings_of_rays(settings)),
+      shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_) {
+  empty_.frame.strata = plan_.strata;
+  empty_.frame.statistics.num_rays = num_rays();
+}
+
+LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
+  LaunchSettings launch;
+  launch.num_rays = settings.num_rays;
+  launch.seed = settings.seed;
+  launch.sampler = settings.sampler;
+  launch.batches = settings.batches;
+  launch.max_image_mirrors = std::min(kMaxLegMirrors, settings.max_bounces - 1);
+  launch.transmitter = empty_.frame.transmitter - origin_;
+  set_field_of_view(empty_.radar, world_from_radar_, launch);
+  return plan_launch(*empty_.scene, geometry_, mirrors_, launch);
+}
+
+SbrSettings Tracer::settings_of_rays(const TraceSettings& settings) const {
+  SbrSettings sbr;
+  sbr.max_bounces = settings.max_bounces;
+  sbr.is_polarized = settings.polarization == PolarizationModel::kJones;
+  sbr.seed = settings.seed;
+  sbr.frequency = empty_.radar.waveform.start_frequency;
+  sbr.transmitter = empty_.frame.transmitter - origin_;
+  sbr.receiver = empty_.frame.receiver - origin_;
+  const Antenna& first = empty_.radar.transmitters.front();
+  sbr.polarization = (world_from_radar_.linear() * (first.orientation * first.polarization)).normalized();
+  return sbr;
+}
+
+int64_t Tracer::num_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
+
+void Tracer::shoot_block(int64_t index, PathBlock& block) const {
+  shooter_.shoot(index * kRaysPerBlock, std::min(num_rays(), (index + 1) * kRaysPerBlock), block);
+}
+
+Paths Tracer::run(Job* job) const {
+  std::vector<PathBlock> blocks(1);
+  add_mirror_paths(geometry_, mirrors_, sbr_, blocks.front());
+  blocks.resize(static_cast<size_t>(num_blocks()) + 1);
+  if (job) job->start(num_blocks());
+  parallel_for(
+      num_blocks(),
+      [&](int64_t i) {
+        thread_local PathBlock block;  // with room from those before: what is kept is no larger than it needs to be
+        block.clear();
+        shoot_block(i, block);
+        blocks[static_cast<size_t>(i) + 1] = block;
+      },
+      job);
+  Paths paths = empty_;
+  join_blocks(blocks, paths, job);
+  return paths;
+}
+
+}  // namespace echopath

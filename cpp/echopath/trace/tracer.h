@@ -1,0 +1,37 @@
+#pragma once
+// The steps of a trace: what is made once for all its rays, and the rays in blocks. Internal to the module.
+#include "echopath/trace/sbr.h"
+#include "echopath/trace/trace.h"
+
+namespace echopath {
+
+class Tracer {
+ public:
+  // Raises what `trace` raises.
+  Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job);
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+  // Shoots all rays; the same record each time.
+  Paths run(Job* job) const;
+  int64_t num_rays() const { return plan_.first_ray.back(); }
+  int64_t num_blocks() const;
+  void shoot_block(int64_t index, PathBlock& block) const;
+  EmbreeScene& geometry() { return geometry_; }
+  const EmbreeScene& geometry() const { return geometry_; }
+
+ private:
+  LaunchPlan plan_rays(const TraceSettings& settings);
+  SbrSettings settings_of_rays(const TraceSettings& settings) const;
+
+  Paths empty_;  // scene, radar and frame of the record
+  Pose pose_;
+  Transform world_from_radar_;
+  Vec3 origin_;
+  EmbreeScene geometry_;
+  std::vector<Mirror> mirrors_;
+  LaunchPlan plan_;
+  SbrSettings sbr_;
+  RayShooter shooter_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,149 @@
+// The record that blocks of rays become: every path over the hits, with the weight and in the order in which it was added.
+#include <gtest/gtest.h>
+
+#include "echopath/trace/path_block.h"
+
+namespace echopath {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr float kRounding = 1e-6f;  // single precision, relative
+
+Hit hit(uint32_t mesh_id) { return {mesh_id, mesh_id + 100, 0.25f, 0.5f}; }
+
+struct Expected {
+  std::vector<uint32_t> meshes;
+  uint64_t diffuse;
+  Complex weight;
+};
+
+std::vector<uint32_t> meshes_of(const Paths& paths, size_t path) {
+  std::vector<uint32_t> meshes;
+  for (int k = 0; k < paths.num_bounces[path]; ++k) meshes.push_back(paths.hits_of(static_cast<int64_t>(path))[k].mesh_id);
+  return meshes;
+}
+
+void expect_paths(const Paths& paths, const std::vector<Expected>& expected) {
+  ASSERT_EQ(paths.num_paths(), std::ssize(expected));
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(meshes_of(paths, i), expected[i].meshes) << i;
+    EXPECT_EQ(paths.diffuse[i], expected[i].diffuse) << i;
+    EXPECT_LT(std::abs(paths.weight[i] - std::complex<float>(expected[i].weight)), kRounding * std::abs(expected[i].weight));
+  }
+}
+
+// Legs as lists of meshes in order of travel.
+struct Legs {
+  std::vector<std::vector<uint32_t>> in, out;
+};
+
+Complex factor(size_t leg, bool is_out) { return {1.0 + static_cast<double>(leg), is_out ? 0.5 : -0.25}; }
+
+void add_fan(PathBlock& block, const Legs& legs, int max_bounces) {
+  block.begin_fan(hit(0), 2, max_bounces);
+  for (size_t i = 0; i < legs.in.size(); ++i) {
+    block.add_leg_in(factor(i, false));
+    for (const uint32_t mesh : legs.in[i]) block.add_leg_hit(hit(mesh));
+  }
+  for (size_t j = 0; j < legs.out.size(); ++j) {
+    block.add_leg_out(factor(j, true));
+    for (const uint32_t mesh : legs.out[j]) block.add_leg_hit(hit(mesh));
+  }
+  block.end_fan();
+}
+
+std::vector<Expected> pairs(const Legs& legs, size_t max_bounces) {
+  std::vector<Expected> all;
+  for (size_t i = 0; i < legs.in.size(); ++i) {
+    for (size_t j = 0; j < legs.out.size(); ++j) {
+      std::vector<uint32_t> meshes = legs.in[i];
+      meshes.push_back(0);
+      meshes.insert(meshes.end(), legs.out[j].begin(), legs.out[j].end());
+      if (meshes.size() <= max_bounces) all.push_back({meshes, uint64_t{1} << legs.in[i].size(), factor(i, false) * factor(j, true)});
+    }
+  }
+  return all;
+}
+
+Paths joined(std::vector<PathBlock> blocks) {
+  Paths paths;
+  join_blocks(blocks, paths);
+  return paths;
+}
+
+TEST(PathBlock, FansAreAllPairsOfTheirLegs) {
+  const std::vector<std::vector<uint32_t>> ways = {{}, {1}, {2}, {3, 4}, {5, 6}};
+  for (const size_t num_in : {1, 2, 3, 5}) {
+    for (const size_t num_out : {1, 2, 3, 5}) {
+      for (const size_t max_bounces : {1, 2, 3, 4, 5}) {
+        for (const bool is_bent_first : {false, true}) {
+          Legs legs{{ways.begin(), ways.begin() + num_in}, {ways.begin(), ways.begin() + num_out}};
+          if (is_bent_first) std::reverse(legs.in.begin(), legs.in.end());
+          std::vector<PathBlock> blocks(2);
+          add_fan(blocks[1], legs, static_cast<int>(max_bounces));
+          expect_paths(joined(blocks), pairs(legs, max_bounces));
+        }
+      }
+    }
+  }
+}
+
+// A direct way shares the hits of one over a mirror.
+TEST(PathBlock, FansShareHits) {
+  const Legs legs{{{}, {1}, {2}}, {{}, {1}, {2}}};
+  std::vector<PathBlock> blocks(1);
+  add_fan(blocks[0], legs, 4);
+  const Paths paths = joined(blocks);
+  EXPECT_EQ(paths.num_paths(), 9);
+  EXPECT_EQ(paths.num_hits(), 4 * 3);  // two ways in by two ways out over mirrors
+}
+
+TEST(PathBlock, OrderIsThatOfAdding) {
+  PathBlock block;
+  const Hit ray[] = {hit(7), hit(8)};
+  const Legs legs{{{}, {1}}, {{}}};
+  block.add(ray, 1, 1, Complex(2.0, 0.0), 0);
+  add_fan(block, legs, 4);
+  block.add_prefix(1, 1, 1, Complex(3.0, 0.0), 0);
+  block.end_ray(ray);
+  add_fan(block, legs, 4);
+  block.add_reversal(ray, 2, 1, Complex(4.0, 0.0), 0);
+  std::vector<Expected> expected = {{{7}, 1, 2.0}};
+  const std::vector<Expected> fan = pairs(legs, 4);
+  expected.insert(expected.end(), fan.begin(), fan.end());
+  expected.push_back({{8}, 1, 3.0});
+  expected.insert(expected.end(), fan.begin(), fan.end());
+  expected.push_back({{8, 7}, 2, 4.0});
+  // Behind a block of its own, so that places are not those of the block.
+  std::vector<PathBlock> blocks(3);
+  blocks[0].add(ray, 2, 3, Complex(5.0, 0.0), 0);
+  blocks[2] = block;
+  expected.insert(expected.begin(), {{7, 8}, 3, 5.0});
+  expect_paths(joined(blocks), expected);
+}
+
+TEST(PathBlock, OptionalColumnsStayWithTheirPaths) {
+  PathBlock block;
+  const Hit ray[] = {hit(7)};
+  add_fan(block, {{{}, {1}}, {{}}}, 4);
+  block.add(ray, 1, 0, Complex(2.0, 0.0), 0);
+  block.set_curved_cell({1, 2, 3, 4, 5, 6, 7});
+  add_fan(block, {{{}}, {{}}}, 4);
+  const Paths paths = joined({block});
+  ASSERT_EQ(paths.curved_cell.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(paths.curved_cell[i][6], i == 2 ? 7.0f : 0.0f) << i;
+  EXPECT_TRUE(paths.jones.empty());
+}
+
+TEST(PathBlock, ClearedBlockIsEmpty) {
+  PathBlock block;
+  add_fan(block, {{{}, {1}}, {{}}}, 4);
+  block.clear();
+  EXPECT_EQ(block.num_paths(), 0u);
+  EXPECT_EQ(block.num_hits(), 0u);
+  EXPECT_EQ(joined({block}).num_paths(), 0);
+}
+
+}  // namespace
+}  // namespace echopath

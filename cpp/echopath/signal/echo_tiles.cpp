@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
@@ -12,6 +15,8 @@ namespace {
 
 constexpr int kLanes = TileAtChirps::kLanes;
 constexpr int kDelayBits = 16;  // 64 places in each cell of 512 samples
+constexpr int kMostDrifts = 64;
+constexpr int kEchoesOfCell = 4;  // for each class of drift, as few as make moments worth while
 constexpr int kDigitBits = 11;  // of a pass of the radix sort
 
 // Sorts by bits [first_bit, end_bit), equal ones in their order.
@@ -36,35 +41,100 @@ const double* EchoTiles::nodes(const Tile& tile) const {
   return nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes;
 }
 
-// A key is, from its highest bits: group, delay, block, echo in the block.
-void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay) {
-  num_nodes_ = blocks.front().sampling.num_nodes;
-  int64_t total = 0, largest = 1;
-  for (const Echoes& block : blocks) {
-    total += block.num_echoes;
-    largest = std::max(largest, block.num_echoes);
+// Classes of echoes by how far they drift over the frame.
+struct DriftClasses {
+  double least = 0.0;   // s, of delay
+  double width = 1.0;   // s
+  int count = 1;
+};
+
+namespace {
+
+struct Extent {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
   }
+  void add(const Extent& other) {
+    least = std::min(least, other.least);
+    most = std::max(most, other.most);
+  }
+  double size() const { return std::max(0.0, most - least); }
+};
+
+double drift_of(const Echoes& block, int64_t echo) {
+  return block.delay[static_cast<size_t>((block.sampling.num_nodes - 1) * block.num_echoes + echo)] -
+         block.delay[static_cast<size_t>(echo)];
+}
+
+// As narrow as a cell, unless that leaves few echoes for each cell and class.
+DriftClasses classes_of_drift(std::span<const Echoes> blocks, double longest_delay, int num_cells) {
+  std::vector<std::pair<Extent, Extent>> by_block(blocks.size());
+  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
+    const Echoes& block = blocks[static_cast<size_t>(b)];
+    auto& [delay, drift] = by_block[static_cast<size_t>(b)];
+    for (int64_t p = 0; p < block.num_echoes; ++p) {
+      delay.add(std::clamp(block.delay[static_cast<size_t>(p)], 0.0, longest_delay));
+      drift.add(std::clamp(drift_of(block, p), -longest_delay, longest_delay));
+    }
+  });
+  Extent delay, drift;
+  double total = 0.0;
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    delay.add(by_block[b].first);
+    drift.add(by_block[b].second);
+    total += static_cast<double>(blocks[b].num_echoes);
+  }
+  const double cell = longest_delay / num_cells, cells = 1.0 + delay.size() / cell;
+  const double most = std::clamp(total / (cells * kEchoesOfCell), 1.0, static_cast<double>(kMostDrifts));
+  DriftClasses classes;
+  classes.least = drift.least;
+  classes.width = std::max(cell, drift.size() / std::floor(most));
+  classes.count = std::min(kMostDrifts, 1 + static_cast<int>(drift.size() / classes.width));
+  return classes;
+}
+
+}  // namespace
+
+void EchoTiles::set_bits(std::span<const Echoes> blocks, int num_groups, int num_drifts) {
+  int64_t largest = 1;
+  for (const Echoes& block : blocks) largest = std::max(largest, block.num_echoes);
   local_bits_ = bits_for(static_cast<uint64_t>(largest));
   index_bits_ = local_bits_ + bits_for(blocks.size());
-  const int delay_bits = std::min(kDelayBits, 64 - index_bits_ - bits_for(static_cast<uint64_t>(num_groups)));
-  require(delay_bits >= 0, "num_groups", "leaves too few bits for so many echoes", num_groups);
-  group_shift_ = index_bits_ + delay_bits;
-  const double steps = static_cast<double>((uint64_t{1} << delay_bits) - 1);
+  drift_bits_ = bits_for(static_cast<uint64_t>(num_drifts));
+  group_bits_ = bits_for(static_cast<uint64_t>(num_groups));
+  delay_bits_ = std::min(kDelayBits, 63 - index_bits_ - drift_bits_ - group_bits_);
+  require(delay_bits_ >= 0, "num_groups", "leaves too few bits for so many echoes", num_groups);
+}
 
-  std::vector<int64_t> first(blocks.size());
-  for (size_t b = 1; b < blocks.size(); ++b) first[b] = first[b - 1] + blocks[b - 1].num_echoes;
-  std::vector<uint64_t> order(static_cast<size_t>(total));
+std::vector<uint64_t> EchoTiles::keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts) const {
+  std::vector<int64_t> first(blocks.size() + 1);
+  for (size_t b = 0; b < blocks.size(); ++b) first[b + 1] = first[b] + blocks[b].num_echoes;
+  const double steps = static_cast<double>((uint64_t{1} << delay_bits_) - 1) / longest_delay;
+  std::vector<uint64_t> keys(static_cast<size_t>(first.back()));
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
     const Echoes& block = blocks[static_cast<size_t>(b)];
     const double* delay = block.delay.data() + int64_t{num_nodes_ / 2} * block.num_echoes;
-    uint64_t* keys = order.data() + first[static_cast<size_t>(b)];
+    uint64_t* out = keys.data() + first[static_cast<size_t>(b)];
     for (int64_t p = 0; p < block.num_echoes; ++p) {
-      const auto place = static_cast<uint64_t>(std::clamp(delay[p] / longest_delay, 0.0, 1.0) * steps);
+      const auto place = static_cast<uint64_t>(std::clamp(delay[p], 0.0, longest_delay) * steps);
+      const double drift = (drift_of(block, p) - drifts.least) / drifts.width;
+      const auto drift_class = static_cast<uint64_t>(std::clamp(drift, 0.0, drifts.count - 1.0));
       const uint64_t group = block.group.empty() ? 0 : block.group[static_cast<size_t>(p)];
-      keys[p] = ((group << delay_bits | place) << index_bits_) | static_cast<uint64_t>(b) << local_bits_ | static_cast<uint64_t>(p);
+      const uint64_t order = ((group << drift_bits_ | drift_class) << delay_bits_) | place;
+      out[p] = order << index_bits_ | static_cast<uint64_t>(b) << local_bits_ | static_cast<uint64_t>(p);
     }
   });
-  radix_sort(order, index_bits_, group_shift_ + bits_for(static_cast<uint64_t>(num_groups)));
+  return keys;
+}
+
+void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
+  num_nodes_ = blocks.front().sampling.num_nodes;
+  const DriftClasses drifts = classes_of_drift(blocks, longest_delay, num_cells);
+  set_bits(blocks, num_groups, drifts.count);
+  std::vector<uint64_t> order = keys(blocks, longest_delay, drifts);
+  radix_sort(order, index_bits_, group_shift() + group_bits_);
   cut(order);
   gather(blocks, order);
 }
@@ -75,7 +145,7 @@ void EchoTiles::cut(const std::vector<uint64_t>& order) {
   first_.clear();
   const auto total = static_cast<int64_t>(order.size());
   const auto group_of = [&](int64_t i) {
-    return group_shift_ == 64 ? 0u : static_cast<uint32_t>(order[static_cast<size_t>(i)] >> group_shift_);
+    return static_cast<uint32_t>(order[static_cast<size_t>(i)] >> group_shift());
   };
   int64_t vector = 0;
   for (int64_t begin = 0; begin < total;) {

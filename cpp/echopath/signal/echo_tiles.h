@@ -9,9 +9,11 @@
 
 namespace echopath {
 
+struct DriftClasses;
+
 // Neighbours in delay share cells of the grid, where their kernels are summed at once (cell moments), and the rows of a
-// group stay in the cache. Delays are compared in the middle of the frame: what moves otherwise than its neighbours mixes
-// the order later on, which costs time alone.
+// group stay in the cache. Delays are compared in the middle of the frame, among echoes that drift alike over it, where there
+// are enough of them: what moves otherwise than its neighbours mixes the order, which costs time alone.
 class EchoTiles {
  public:
   struct Tile {
@@ -20,19 +22,24 @@ class EchoTiles {
     uint32_t group;
   };
 
-  // From `blocks` that share one sampling. Delays in [0, longest_delay] are told apart, others are not. Reuses memory.
-  void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay);
+  // From `blocks` that share one sampling. Delays in [0, longest_delay], which is so many cells long, are told apart, others
+  // are not. Reuses memory.
+  void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells);
 
   int num_nodes() const { return num_nodes_; }
   const std::vector<Tile>& tiles() const { return tiles_; }
   const double* nodes(const Tile& tile) const;
 
  private:
+  void set_bits(std::span<const Echoes> blocks, int num_groups, int num_drifts);
+  std::vector<uint64_t> keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts) const;
   void cut(const std::vector<uint64_t>& order);
   void gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order);
 
   int num_nodes_ = 0;
-  int index_bits_ = 0, local_bits_ = 0, group_shift_ = 0;
+  // A key is, from its highest bits: group, drift, delay, block, echo in the block.
+  int local_bits_ = 0, index_bits_ = 0, delay_bits_ = 0, drift_bits_ = 0, group_bits_ = 0;
+  int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
   std::vector<Tile> tiles_;
   std::vector<int64_t> first_;     // [tiles], place of the first echo of each in the order
   std::vector<double> nodes_;

@@ -29,12 +29,11 @@ ECHOPATH_INLINE Carrier carrier_of(const CarrierModel& model, Vec tau, Vec rate,
   const double centre = 2.0 * model.centre_frequency, rest = 2.0 * model.centre_frequency_rest;
   const Vec swept = tau * (model.slope * model.sample_interval);
   const Vec frequency = multiply_add(rate, model.centre_frequency * model.sample_interval - swept, swept);
-  const Vec turns = all(centre) * tau + kRoundingShift;
-  const Vec begun = exact_multiply_add(all(centre), tau, kRoundingShift - turns) + tau * (rest - model.slope * tau) +
-                    frequency * (2.0 * model.reference_offset);
-  const Vec more_turns = begun + kRoundingShift;
-  const PhasorOf<Vec> phasor = phasor_of_half_turns<Vec>(begun - (more_turns - kRoundingShift));
-  const Mask sign = (bits(turns) ^ bits(more_turns)) << 63;  // odd numbers of half turns
+  const Vec beside = tau * (rest - model.slope * tau) + frequency * (2.0 * model.reference_offset);
+  const Vec turns = (all(centre) * tau + beside) + kRoundingShift;
+  const Vec left = exact_multiply_add(all(centre), tau, kRoundingShift - turns) + beside;
+  const PhasorOf<Vec> phasor = phasor_of_half_turns<Vec>(left);
+  const Mask sign = bits(turns) << 63;  // of an odd number of half turns
   const Vec c = from_bits(bits(phasor.re) ^ sign), s = from_bits(bits(phasor.im) ^ sign);
   const Mask kept = (frequency >= 0.0) & (frequency < model.highest_frequency);
   return {kept ? frequency : Vec{}, kept ? re * c + im * s : Vec{}, kept ? re * s - im * c : Vec{}};
@@ -68,6 +67,76 @@ ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Pl
   const Cells cell = __builtin_convertvector(left, Cells) + 1;
   *reinterpret_cast<UnalignedCells*>(places.cell + p) = cell;
   store(places.t + p, 2.0 * (__builtin_convertvector(cell, Vec) - left) - 1.0);
+}
+
+int num_runs(const int32_t* cell, int count) {
+  int changes = 0;
+  for (int p = 1; p < count; ++p) changes += cell[p] != cell[p - 1] ? 1 : 0;
+  return 1 + changes;
+}
+
+// How many echoes each of the cells of a tile has, for each of kCounters shares of the tile: a counter that was just raised is
+// not yet ready to be raised again.
+struct CellCounts {
+  static constexpr int kCounters = 4;
+  int share;           // echoes of each share but the last
+  int32_t lowest;
+  int num_cells;       // from the lowest to the highest; no counts where they are more than kCellsOfTile
+  int num_taken = 0;   // that have echoes
+  int32_t count[kCellsOfTile][kCounters];
+};
+
+// Calls visit(echo, share), the shares in turn.
+template <class Visit>
+ECHOPATH_INLINE void visit_shares(int share, int count, Visit visit) {
+  const int in_all = count - (CellCounts::kCounters - 1) * share;
+  for (int p = 0; p < in_all; ++p) {
+    for (int k = 0; k < CellCounts::kCounters; ++k) visit(k * share + p, k);
+  }
+  for (int k = 0; k < CellCounts::kCounters - 1; ++k) {
+    for (int p = in_all > 0 ? in_all : 0; p < share && k * share + p < count; ++p) visit(k * share + p, k);
+  }
+}
+
+CellCounts count_cells(const int32_t* cell, int count) {
+  int32_t lowest = cell[0], highest = cell[0];
+  for (int p = 1; p < count; ++p) {
+    lowest = cell[p] < lowest ? cell[p] : lowest;
+    highest = cell[p] > highest ? cell[p] : highest;
+  }
+  CellCounts counts;
+  counts.share = (count + CellCounts::kCounters - 1) / CellCounts::kCounters;
+  counts.lowest = lowest;
+  counts.num_cells = highest - lowest + 1;
+  if (counts.num_cells > kCellsOfTile) return counts;
+  for (int c = 0; c < counts.num_cells; ++c) {
+    for (int k = 0; k < CellCounts::kCounters; ++k) counts.count[c][k] = 0;
+  }
+  visit_shares(counts.share, count, [&](int p, int k) __attribute__((always_inline)) { ++counts.count[cell[p] - lowest][k]; });
+  for (int c = 0; c < counts.num_cells; ++c) {
+    int32_t sum = 0;
+    for (int k = 0; k < CellCounts::kCounters; ++k) sum += counts.count[c][k];
+    counts.num_taken += sum != 0 ? 1 : 0;
+  }
+  return counts;
+}
+
+// In the order of the cells, equal ones in theirs. `counts` then tells where the echoes of each share and cell end.
+void bring_together(const Places& places, int count, CellCounts& counts, Places& sorted) {
+  int32_t sum = 0;
+  for (int c = 0; c < counts.num_cells; ++c) {
+    for (int k = 0; k < CellCounts::kCounters; ++k) {
+      const int32_t here = counts.count[c][k];
+      counts.count[c][k] = sum;
+      sum += here;
+    }
+  }
+  visit_shares(counts.share, count, [&](int p, int k) __attribute__((always_inline)) {
+    const int32_t to = counts.count[places.cell[p] - counts.lowest][k]++;
+    sorted.t[to] = places.t[p];
+    sorted.re[to] = places.re[p];
+    sorted.im[to] = places.im[p];
+  });
 }
 
 template <int kWidth>
@@ -138,7 +207,7 @@ struct Spreader {
   }
 
   // The kernel is a polynomial in t: a run of echoes needs its values once.
-  ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* first) const {
+  ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* row) const {
     alignas(64) double sum_re[kTerms + 2 * kLanes], sum_im[kTerms + 2 * kLanes];
     add_moments<0, (kTerms < kTermsAtOnce ? kTerms : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
     Vec re[kVectors] = {}, im[kVectors] = {};
@@ -151,14 +220,24 @@ struct Spreader {
         im[v] = multiply_add(coefficient, all(sum_im[d]), im[v]);
       }
     }
-    add_window(re, im, first + places.cell[begin]);
+    add_window(re, im, row);
   }
 
   void add_runs(const Places& places, int count, double* first) const {
     for (int begin = 0; begin < count;) {
       int end = begin + 1;
       while (end < count && places.cell[end] == places.cell[begin]) ++end;
-      add_run(places, begin, end, first);
+      add_run(places, begin, end, first + places.cell[begin]);
+      begin = end;
+    }
+  }
+
+  // After bring_together.
+  void add_cells(const Places& sorted, const CellCounts& counts, double* first) const {
+    int begin = 0;
+    for (int c = 0; c < counts.num_cells; ++c) {
+      const int end = counts.count[c][CellCounts::kCounters - 1];
+      if (end > begin) add_run(sorted, begin, end, first + counts.lowest + c);
       begin = end;
     }
   }
@@ -171,64 +250,17 @@ struct Spreader {
   }
 };
 
-int num_runs(const int32_t* cell, int count) {
-  int changes = 0;
-  for (int p = 1; p < count; ++p) changes += cell[p] != cell[p - 1] ? 1 : 0;
-  return 1 + changes;
-}
-
-// How many echoes each of the cells of a tile has.
-struct CellCounts {
-  int32_t lowest;
-  int num_cells;       // between the lowest and the highest; the rest is void where they are more than kCellsOfTile
-  int num_taken = 0;   // that have echoes
-  int32_t count[kCellsOfTile];
-};
-
-CellCounts count_cells(const int32_t* cell, int count) {
-  int32_t lowest = cell[0], highest = cell[0];
-  for (int p = 1; p < count; ++p) {
-    lowest = cell[p] < lowest ? cell[p] : lowest;
-    highest = cell[p] > highest ? cell[p] : highest;
-  }
-  CellCounts counts;
-  counts.lowest = lowest;
-  counts.num_cells = highest - lowest + 1;
-  if (counts.num_cells > kCellsOfTile) return counts;
-  for (int c = 0; c < counts.num_cells; ++c) counts.count[c] = 0;
-  for (int p = 0; p < count; ++p) ++counts.count[cell[p] - lowest];
-  for (int c = 0; c < counts.num_cells; ++c) counts.num_taken += counts.count[c] != 0 ? 1 : 0;
-  return counts;
-}
-
-// In the order of the cells, equal ones in theirs.
-void bring_together(const Places& places, int count, const CellCounts& counts, Places& sorted) {
-  int32_t next[kCellsOfTile];
-  int32_t sum = 0;
-  for (int c = 0; c < counts.num_cells; ++c) {
-    next[c] = sum;
-    sum += counts.count[c];
-  }
-  for (int p = 0; p < count; ++p) {
-    const int32_t to = next[places.cell[p] - counts.lowest]++;
-    sorted.t[to] = places.t[p];
-    sorted.re[to] = places.re[p];
-    sorted.im[to] = places.im[p];
-    sorted.cell[to] = places.cell[p];
-  }
-}
-
 template <int kWidth>
 void spread_tile(const Spreading& spreading, const Places& places, int count, double* row) {
   constexpr int kFew = kFewInCell[Spreader<kWidth>::kPadded > 8];
   const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
   const int runs = num_runs(places.cell, count);
   if (runs * kShortRun > count) {
-    const CellCounts counts = count_cells(places.cell, count);
+    CellCounts counts = count_cells(places.cell, count);
     if (counts.num_cells <= kCellsOfTile && 2 * counts.num_taken <= runs && counts.num_taken * kFew <= count) {
       Places sorted;
       bring_together(places, count, counts, sorted);
-      return spreader.add_runs(sorted, count, row);
+      return spreader.add_cells(sorted, counts, row);
     }
     if (runs * kFew > count) return spreader.add_apart(places, count, row);
   }

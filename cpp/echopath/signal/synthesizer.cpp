@@ -22,7 +22,7 @@ namespace {
 constexpr int64_t kRecurrenceLimit = 75;  // echoes below which the recurrence beats the FFT of a NUFFT row
 // Tasks of chirps own whole groups of this many, whose echoes are read once.
 constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
-constexpr int kGroupsPerTask = 4;         // at most; fewer where that would leave threads without work
+constexpr int kGroupsPerTask = 8;         // at most; fewer where that would leave threads without work
 constexpr int64_t kStillParts = 16;       // at most, of echoes at rest; their number must not depend on the threads
 constexpr int64_t kEchoesOfPart = 1024;   // at least, for each group: adding up the parts must cost little
 
@@ -190,7 +190,7 @@ void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, J
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
   const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
   rows.moving.resize(chirp_size * waveform_.num_chirps);
-  if (spread_) tiles_.assign(blocks, num_groups_, longest_delay());
+  if (spread_) tiles_.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
     double* const first_row = rows.moving.data() + chirp_size * first;
     if (spread_) return add_tiles(blocks.front().sampling, first, count, first_row, job);

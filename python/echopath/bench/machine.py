@@ -11,8 +11,8 @@ import echopath as ep
 
 def machine() -> dict:
     """Processor, threads and versions, as the JSON of a benchmark has them."""
-    return {"processor": _processor(), "threads": ep.num_threads(), "system": platform.platform(),
-            "python": platform.python_version(), "numpy": np.__version__, "echopath": ep.__version__}
+    return {"processor": _processor(), "threads": ep.num_threads(), "instruction_set": ep._core.instruction_set(),
+            "system": platform.platform(), "python": platform.python_version(), "numpy": np.__version__, "echopath": ep.__version__}
 
 
 def _processor() -> str:

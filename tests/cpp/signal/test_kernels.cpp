@@ -28,7 +28,7 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
   const CarrierModel model(w, w.num_samples / 2);
   const Echoes echoes = testing::exact_echoes(w, testing::MovingPoints(1003, 3, 20.0, 24.0));
   EchoTiles tiles;
-  tiles.assign(std::span(&echoes, 1), 1, w.sampling_rate / w.slope());
+  tiles.assign(std::span(&echoes, 1), 1, w.sampling_rate / w.slope(), 1024);
   for (int width = NufftKernel::kMinWidth; width <= NufftKernel::kMaxWidth; ++width) {
     const NufftKernel kernel(width);
     const Spreading spreading{width, kernel.coefficients.data(), 1024.0, 1064};

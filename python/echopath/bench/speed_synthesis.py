@@ -1,0 +1,191 @@
+"""IF synthesis: time per path and chirp against the error, beside FINUFFT and the direct sum."""
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import echopath as ep
+
+PATHS, QUICK_PATHS = 102_400, 4_096
+CHIRPS, QUICK_CHIRPS = 128, 16
+NODES = 4                                       # of the polynomials in time, of delays and amplitudes
+TOLERANCES = tuple(10.0 ** -n for n in range(1, 14))
+TARGETS = {1e-4: 4.0, 1e-6: 5.0, 1e-10: 4.0}    # times FINUFFT
+RATE_TOLERANCE, RATE_TARGET = 1e-6, 400e6       # path-chirps/s
+REPEATS = 5
+SUM_PATHS = 2_048                               # of the sums without a grid, whose time per path is always the same
+ERROR_CHIRPS = 2                                # of which the direct sum is made
+BODIES = 40                                     # that move each as a whole, 2 m deep
+FASTEST = 30.0                                  # m/s
+RANGES = (2.0, 72.0)                            # m
+
+
+def waveform(num_chirps: int):
+    """77 GHz, 1 GHz, 512 samples."""
+    return ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=num_chirps,
+                            chirp_interval=60e-6)
+
+
+class Echoes:
+    """Random moving echoes: delays and amplitudes [nodes, paths] at the nodes of a frame.
+
+    scattered: each has a speed of its own, else those of a body share it
+    """
+
+    def __init__(self, num_paths: int, num_chirps: int, *, scattered: bool = False, seed: int = 1):
+        draw = np.random.default_rng(seed)
+        self.waveform = waveform(num_chirps)
+        times = ep._core.trial_node_times(self.waveform, NODES)
+        body = draw.integers(0, BODIES, num_paths)
+        place = draw.uniform(RANGES[0], RANGES[1] - 2.0, BODIES)[body] + 2.0 * draw.random(num_paths)
+        speed = draw.uniform(-FASTEST, FASTEST, num_paths if scattered else BODIES)[slice(None) if scattered else body]
+        if scattered:
+            place = draw.uniform(*RANGES, num_paths)
+        self.delays = 2.0 * (place + speed * times[:, None]) / ep.speed_of_light
+        turn = np.exp(2j * np.pi * draw.random(num_paths))
+        self.amplitudes = draw.random(num_paths) * turn * (1.0 + 0.1 * np.sin(50.0 * times[:, None]))
+
+    @property
+    def num_paths(self) -> int:
+        return self.delays.shape[1]
+
+    def trial(self, **settings):
+        """(wall seconds, processor seconds, samples [chirp, sample]) of their synthesis."""
+        return ep._core.synthesis_trial(self.waveform, self.delays, self.amplitudes, **settings)
+
+    def in_few_chirps(self, num_chirps: int) -> Echoes:
+        """The same nodes for a shorter frame, which the echoes cross quicker."""
+        other = object.__new__(Echoes)
+        other.waveform, other.delays, other.amplitudes = waveform(num_chirps), self.delays, self.amplitudes
+        return other
+
+
+def finufft_version() -> str | None:
+    """None where it is not installed."""
+    try:
+        import finufft
+    except ImportError:
+        return None
+    return finufft.__version__
+
+
+def tones_at_rest(delays, amplitudes, of_waveform):
+    """Points [P] in [-pi, pi) and strengths [P] of a type-1 transform with the samples of echoes at rest; extended precision.
+
+    delays: [P] s; amplitudes: [P] sqrt(W)
+    """
+    tau = delays.astype(np.longdouble)
+    slope = np.longdouble(of_waveform.bandwidth) * of_waveform.sampling_rate / of_waveform.num_samples
+    middle = np.longdouble(of_waveform.num_samples // 2) / of_waveform.sampling_rate
+    cycles = of_waveform.start_frequency * tau + slope * tau * (middle - tau / 2)
+    beat = slope * tau / of_waveform.sampling_rate
+    turn = 2 * np.longdouble(np.pi) * (cycles - np.rint(cycles))
+    points = (2.0 * np.pi * (beat - np.rint(beat))).astype(float)
+    return points, np.conj(amplitudes) * (np.cos(turn).astype(float) + 1j * np.sin(turn).astype(float))
+
+
+class Finufft:
+    """Its quickest settings for one tolerance, on one thread, as its own documents advise for one small transform."""
+
+    def __init__(self, points, strengths, num_samples: int, tolerance: float):
+        self.points, self.strengths, self.num_samples, self.tolerance = points, strengths, num_samples, tolerance
+        tried = [{"upsampfac": factor, "spread_sort": sort} for factor in (2.0, 1.25) for sort in (0, 1)]
+        self.settings = min((one for one in tried if self._works(one)), key=lambda one: min(self._seconds(one) for _ in range(3)))
+
+    def seconds(self) -> float:
+        """Of the processor, for one chirp: its points set, its samples made."""
+        return self._seconds(self.settings)
+
+    def samples(self):
+        plan = self._plan(self.settings)
+        plan.setpts(self.points)
+        return plan.execute(self.strengths)
+
+    def _works(self, settings) -> bool:
+        """A narrow grid cannot reach every tolerance."""
+        return settings["upsampfac"] == 2.0 or self.tolerance >= 1e-8
+
+    def _plan(self, settings):
+        import finufft
+
+        return finufft.Plan(1, (self.num_samples,), eps=max(self.tolerance, 1e-14), isign=1, nthreads=1, **settings)
+
+    def _seconds(self, settings) -> float:
+        plan = self._plan(settings)
+        began = time.process_time()
+        plan.setpts(self.points)
+        plan.execute(self.strengths)
+        return time.process_time() - began
+
+
+def relative_error(actual, expected) -> float:
+    return float(np.linalg.norm(actual - expected) / np.linalg.norm(expected))
+
+
+def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
+    """Times in ns per path and chirp of one thread, processor time, best of alternated repeats; errors against the direct sum."""
+    paths, chirps = (QUICK_PATHS, QUICK_CHIRPS) if quick else (PATHS, CHIRPS)
+    threads = ep.num_threads()
+    ep.set_num_threads(1)
+    try:
+        found = {"paths": paths, "chirps": chirps, "nodes": NODES, "samples": 512, "rows": _rows(paths, chirps, quick, tell),
+                 "sums": [_sum_row(method, chirps) for method in ("recurrence", "direct")]}
+    finally:
+        ep.set_num_threads(threads)
+    found["rates"] = [_rate(paths, chirps, count, scattered) for scattered in (False, True) for count in sorted({1, threads})]
+    return found
+
+
+def _rows(paths: int, chirps: int, quick: bool, tell) -> list[dict]:
+    bodies, scattered = Echoes(paths, chirps), Echoes(paths, chirps, scattered=True)
+    points, strengths = tones_at_rest(bodies.delays[0], bodies.amplitudes[0], bodies.waveform)
+    frame = bodies.in_few_chirps(ERROR_CHIRPS)
+    moving_truth = frame.trial(method="direct")[2]
+    truth = ep._core.synthesis_trial(waveform(1), bodies.delays[:1], bodies.amplitudes[:1], method="direct")[2][0]
+    rows = []
+    for tolerance in TOLERANCES:
+        theirs = Finufft(points, strengths, 512, tolerance) if finufft_version() else None
+        ours_s, scattered_s, theirs_s = [], [], []
+        for _ in range(2 if quick else REPEATS):
+            ours_s.append(bodies.trial(method="nufft", tolerance=tolerance)[1])
+            scattered_s.append(scattered.trial(method="nufft", tolerance=tolerance)[1])
+            theirs_s += [theirs.seconds() for _ in range(5)] if theirs else []
+        row = {"tolerance": tolerance, "error": relative_error(frame.trial(method="nufft", tolerance=tolerance)[2], moving_truth),
+               "ns": 1e9 * min(ours_s) / (paths * chirps), "scattered_ns": 1e9 * min(scattered_s) / (paths * chirps)}
+        if theirs:
+            row |= {"finufft_ns": 1e9 * min(theirs_s) / paths, "finufft_settings": theirs.settings,
+                    "finufft_error": relative_error(theirs.samples(), truth)}
+            row["gain"] = row["finufft_ns"] / row["ns"]
+            row["scattered_gain"] = row["finufft_ns"] / row["scattered_ns"]
+        rows.append(row)
+        if tell:
+            tell()
+    return rows
+
+
+def _sum_row(method: str, chirps: int) -> dict:
+    """A sum without a grid. Its error: against phases in extended precision, for echoes at rest."""
+    some = Echoes(SUM_PATHS, 4)
+    seconds = min(some.trial(method=method)[1] for _ in range(3))
+    count = 64
+    points, strengths = tones_at_rest(some.delays[0, :count], some.amplitudes[0, :count], some.waveform)
+    n = np.arange(512) - 256
+    turn = points.astype(np.longdouble)[:, None] * n
+    truth = (strengths[:, None] * (np.cos(turn) + 1j * np.sin(turn))).sum(0).astype(complex)
+    made = ep._core.synthesis_trial(waveform(1), some.delays[:1, :count], some.amplitudes[:1, :count], method=method)[2][0]
+    return {"method": method, "ns": 1e9 * seconds / (SUM_PATHS * 4), "error": relative_error(made, truth)}
+
+
+def _rate(paths: int, chirps: int, threads: int, scattered: bool) -> dict:
+    """Path-chirps per second, lengths and amplitudes interpolated in time."""
+    kept = ep.num_threads()
+    ep.set_num_threads(threads)
+    try:
+        echoes = Echoes(paths, chirps, scattered=scattered)
+        trials = [echoes.trial(method="nufft", tolerance=RATE_TOLERANCE)[:2] for _ in range(REPEATS)]
+    finally:
+        ep.set_num_threads(kept)
+    wall, processor = (min(column) for column in zip(*trials, strict=True))
+    return {"threads": threads, "scattered": scattered, "tolerance": RATE_TOLERANCE, "per_second": paths * chirps / wall,
+            "per_second_of_free_cores": paths * chirps * threads / processor}

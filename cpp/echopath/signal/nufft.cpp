@@ -30,8 +30,10 @@ class Nufft : public SpreadMethod {
         grid_size_(grid_size_for(num_samples, width)),
         fft_(grid_size_, FftDirection::kBackward),
         correction_(num_samples) {
-    for (int n = 0; n < num_samples; ++n) {
-      correction_[n] = 1.0 / kernel_.transform(static_cast<double>(n - reference_sample()) / grid_size_);
+    for (int bin = 0; bin <= reference_sample(); ++bin) {
+      const double correction = 1.0 / kernel_.transform(static_cast<double>(bin) / grid_size_);  // even in the bin
+      correction_[reference_sample() - bin] = correction;
+      if (reference_sample() + bin < num_samples) correction_[reference_sample() + bin] = correction;
     }
   }
 

@@ -19,16 +19,23 @@ Real kernel_value(Real beta, int width, Real u) {
   return std::exp(beta * (std::sqrt(std::max(Real{0}, 1 - x * x)) - 1));
 }
 
+// Chebyshev polynomial k at node i of count: [k, i].
+std::vector<Real> chebyshev_table(int count) {
+  std::vector<Real> table;
+  for (int k = 0; k < count; ++k) {
+    for (int i = 0; i < count; ++i) table.push_back(std::cos(k * (i + Real{0.5}) * std::numbers::pi_v<Real> / count));
+  }
+  return table;
+}
+
 // Coefficients (lowest power first) of the polynomial through `value` at the count Chebyshev nodes of [-1, 1].
-std::vector<Real> polynomial_through_chebyshev_nodes(const std::vector<Real>& value) {
+std::vector<Real> polynomial_through_chebyshev_nodes(const std::vector<Real>& value, const std::vector<Real>& table) {
   const int count = static_cast<int>(value.size());
   std::vector<Real> sum(count), previous(count), current(count);
   current[0] = 1;  // T_0
   for (int k = 0; k < count; ++k) {
     Real weight = 0;
-    for (int i = 0; i < count; ++i) {
-      weight += value[i] * std::cos(k * (i + Real{0.5}) * std::numbers::pi_v<Real> / count);
-    }
+    for (int i = 0; i < count; ++i) weight += value[i] * table[static_cast<size_t>(k) * count + i];
     weight *= (k == 0 ? Real{1} : Real{2}) / count;
     for (int power = 0; power < count; ++power) sum[power] += weight * current[power];
     // T_{k+1} = 2 t T_k - T_{k-1}, and T_1 = t.
@@ -53,29 +60,35 @@ NufftKernel::NufftKernel(int kernel_width)
     : width(kernel_width), beta(0.98 * std::numbers::pi * kernel_width * 0.75) {
   const int terms = degree(width) + 1, stride = padded(width);
   coefficients.assign(static_cast<size_t>(terms) * stride, 0.0);
+  const std::vector<Real> table = chebyshev_table(terms);
+  set_nodes();
   std::vector<Real> value(terms);
   for (int piece = 0; piece < width; ++piece) {
     for (int i = 0; i < terms; ++i) {
-      const Real t = std::cos((i + Real{0.5}) * std::numbers::pi_v<Real> / terms);
+      const Real t = table[static_cast<size_t>(terms) + i];
       value[i] = kernel_value(beta, width, piece - Real(width) / 2 + (t + 1) / 2);
     }
-    const std::vector<Real> power = polynomial_through_chebyshev_nodes(value);
+    const std::vector<Real> power = polynomial_through_chebyshev_nodes(value, table);
     for (int d = 0; d < terms; ++d) {
       coefficients[static_cast<size_t>(terms - 1 - d) * stride + piece] = static_cast<double>(power[d]);
     }
   }
 }
 
-double NufftKernel::transform(double cycles) const {
-  // u = (width / 2) sin(a) takes the root away; the midpoint rule then errs only at the ends, by about 1e-5 exp(-beta).
-  constexpr int kNodes = 256;
-  double sum = 0.0;
+// u = (width / 2) sin(a) takes the root away; the midpoint rule then errs only at the ends, by about 1e-4 exp(-beta).
+void NufftKernel::set_nodes() {
+  constexpr int kNodes = 32;  // on the positive half: the kernel is even
   for (int i = 0; i < kNodes; ++i) {
-    const double a = std::numbers::pi * ((i + 0.5) / kNodes - 0.5);
-    const double u = 0.5 * width * std::sin(a);
-    sum += std::exp(beta * (std::cos(a) - 1.0)) * std::cos(2.0 * std::numbers::pi * cycles * u) * std::cos(a);
+    const double a = std::numbers::pi / 2 * (i + 0.5) / kNodes;
+    places_.push_back(0.5 * width * std::sin(a));
+    weights_.push_back(std::exp(beta * (std::cos(a) - 1.0)) * std::cos(a) * std::numbers::pi / kNodes * 0.5 * width);
   }
-  return sum * std::numbers::pi / kNodes * 0.5 * width;
+}
+
+double NufftKernel::transform(double cycles) const {
+  double sum = 0.0;
+  for (size_t i = 0; i < places_.size(); ++i) sum += weights_[i] * std::cos(2.0 * std::numbers::pi * cycles * places_[i]);
+  return sum;
 }
 
 }  // namespace echopath

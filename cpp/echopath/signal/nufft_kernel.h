@@ -26,6 +26,10 @@ struct NufftKernel {
   double beta;
   // [degree + 1, padded], highest power first: value i at t in [-1, 1] is phi(i - width / 2 + (t + 1) / 2).
   std::vector<double> coefficients;
+
+ private:
+  void set_nodes();
+  std::vector<double> places_, weights_;  // of the quadrature in `transform`
 };
 
 }  // namespace echopath

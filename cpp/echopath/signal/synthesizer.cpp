@@ -19,7 +19,7 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kRecurrenceLimit = 75;  // echoes below which the recurrence beats the FFT of a NUFFT row
+constexpr int64_t kRecurrenceLimit = 40;  // echoes below which the recurrence beats the FFT of a NUFFT row
 // Tasks of chirps own whole groups of this many, whose echoes are read once.
 constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
 constexpr int kGroupsPerTask = 8;         // at most; fewer where that would leave threads without work

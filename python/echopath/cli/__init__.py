@@ -64,10 +64,10 @@ def _parser() -> argparse.ArgumentParser:
     _add_labels(commands)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay", "labels", "hard"],
+    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
-                            "and coherent sums, each with its bound")
+                            "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
@@ -192,7 +192,7 @@ def _labels(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import hard, labels, replay, report, run_labels, run_physics, run_replay
+    from ..bench import hard, labels, replay, report, run_labels, run_physics, run_replay, run_speed, speed
     from .progress import progress_bars
 
     with progress_bars() as progress:
@@ -202,6 +202,8 @@ def _bench(options) -> None:
             lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
         elif options.what == "hard":
             lines = hard.describe(hard.run_hard(options.out, quick=options.quick, progress=progress))
+        elif options.what == "speed":
+            lines = speed.describe(run_speed(options.out, quick=options.quick, progress=progress))
         else:
             lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
     print("\n".join(lines))

@@ -1,0 +1,170 @@
+"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, and the street beside its floor."""
+from __future__ import annotations
+
+import csv
+import io
+import json
+import time
+from pathlib import Path
+
+import echopath as ep
+
+from ..files import written_whole
+from . import replay_cases, speed_frames, speed_synthesis
+from .machine import machine
+
+REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
+PHASE_TOLERANCES = (1e-1, 1e-3, 1e-5, 1e-7)
+COLUMNS = ("tolerance", "ns", "error", "scattered_ns", "finufft_ns", "finufft_error", "gain", "scattered_gain")
+
+
+def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
+    """Measures everything, writes speed.json, speed.csv and two figures into `folder` and returns what the JSON holds.
+
+    quick: few paths, for a look; progress: callable (stage, fraction) or None
+    """
+    from .speed_figure import draw_frames, draw_synthesis
+
+    began = time.perf_counter()
+    tell = _counter(progress, quick)
+    results = {"machine": machine(), "finufft": speed_synthesis.finufft_version(), "quick": quick}
+    results["synthesis"] = speed_synthesis.measure_synthesis(quick=quick, tell=tell)
+    results["frames"] = speed_frames.measure_frames(quick=quick, tell=tell)
+    results["replay"] = [_replay(case, quick) for case in replay_cases.all_cases()]
+    tell()
+    results["street"] = speed_frames.measure_street(None, quick=quick)
+    tell()
+    results["must_reach"] = verdicts(results)
+    results["seconds"] = time.perf_counter() - began
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in (("speed.json", json.dumps(results, indent=1) + "\n"), ("speed.csv", _csv(results["synthesis"]["rows"]))):
+        with written_whole(folder / name) as temporary:
+            Path(temporary).write_text(text, encoding="utf-8")
+    draw_synthesis(results, folder / "speed_synthesis.png")
+    draw_frames(results, folder / "speed_frames.png")
+    return results
+
+
+def _counter(progress, quick: bool):
+    counts = (speed_synthesis.TOLERANCES, speed_frames.QUICK_PATHS if quick else speed_frames.PATHS, speed_frames.CHIRPS,
+              speed_frames.ARRAYS, speed_frames.PARTS)
+    steps, done = 2 + sum(map(len, counts)), 0
+
+    def tell():
+        nonlocal done
+        done += 1
+        if progress:
+            progress("speed", min(1.0, done / steps))
+
+    return tell
+
+
+def _csv(rows: list[dict]) -> str:
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, fieldnames=COLUMNS, restval="", extrasaction="ignore", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def _replay(case, quick: bool) -> dict:
+    """Processor seconds of a trace and of its replay at all chirps without synthesis, for each aim for the phase."""
+    rays = QUICK_REPLAY_RAYS if quick else REPLAY_RAYS
+    trace_s, paths = _processor_time(lambda: ep.trace(case.scene, case.radar, num_rays=rays, max_bounces=case.max_bounces))
+    ep._core.replay_only(paths, case.radar)
+    rows = [{"phase_tolerance": tolerance,
+             "replay_s": _processor_time(lambda: ep._core.replay_only(paths, case.radar, phase_tolerance=tolerance))[0]}
+            for tolerance in PHASE_TOLERANCES]
+    return {"name": case.name, "title": case.title, "paths": paths.num_paths, "trace_s": trace_s, "rows": rows}
+
+
+def _processor_time(work):
+    began = time.process_time()
+    result = work()
+    return time.process_time() - began, result
+
+
+def verdicts(results: dict) -> list[dict]:
+    """What must be reached: one row {what, limit, measured, holds} each; only what the run has measured."""
+    rows = []
+    for row in results["synthesis"]["rows"]:
+        target = speed_synthesis.TARGETS.get(row["tolerance"])
+        if target and "gain" in row:
+            rows.append(_row(f"synthesis at {row['tolerance']:.0e}, times FINUFFT", target, row["gain"]))
+    fastest = max(results["synthesis"]["rates"], key=lambda row: (row["threads"], not row["scattered"]))
+    rows.append(_row(f"path-chirps/s at 1e-6, {fastest['threads']} threads", speed_synthesis.RATE_TARGET,
+                     fastest["per_second_of_free_cores"]))
+    excess = speed_frames.linearity(results["frames"]["paths"])
+    if excess is not None:
+        rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
+    most = max(row["peak_bytes"] for rows_of in results["frames"].values() for row in rows_of)
+    rows.append(_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True))
+    street = results["street"]
+    if street["floor"]["queries_s"] is not None:
+        rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"], most=True))
+    return rows
+
+
+def _row(what: str, limit: float, measured: float, *, most: bool = False) -> dict:
+    return {"what": what, "limit": limit, "measured": measured, "holds": bool(measured <= limit if most else measured >= limit)}
+
+
+def describe(results: dict) -> list[str]:
+    """Lines for people: synthesis, rates, frames, replay, the street with its floor, what must be reached."""
+    found = results["machine"]
+    lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
+             f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
+             *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
+             *_street_lines(results["street"]), "", "must reach" + " " * 42 + "limit     measured"]
+    lines += [f"  {row['what']:<44}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
+              for row in results["must_reach"]]
+    return lines + ["", f"{results['seconds']:.0f} s in all"]
+
+
+def _synthesis_lines(found: dict) -> list[str]:
+    lines = [f"synthesis, {found['paths']:,} echoes, {found['chirps']} chirps of {found['samples']} samples, one thread: "
+             "processor time in ns per echo and chirp",
+             "              echoes of bodies,        each echo at      FINUFFT, points and        gain",
+             " tolerance    lengths and amplitudes   a speed of its    strengths given",
+             "              interpolated    error    own                        error      bodies  own"]
+    for row in found["rows"]:
+        theirs = (f"{row['finufft_ns']:14.2f}{row['finufft_error']:13.1e}{row['gain']:10.1f}{row['scattered_gain']:6.1f}"
+                  if "gain" in row else "")
+        lines.append(f"{row['tolerance']:10.0e}{row['ns']:14.2f}{row['error']:12.1e}{row['scattered_ns']:12.2f}{theirs}")
+    lines += [f"{row['method']:>10}{row['ns']:14.2f}{row['error']:12.1e}" for row in found["sums"]]
+    lines.append("")
+    for row in found["rates"]:
+        kind = "a speed of its own each" if row["scattered"] else "bodies"
+        lines.append(f"{row['threads']} threads, {kind:<24}{1e-6 * row['per_second']:7.0f} M path-chirps/s by the clock, "
+                     f"{1e-6 * row['per_second_of_free_cores']:.0f} M by processor time")
+    return lines
+
+
+def _frame_lines(frames: dict) -> list[str]:
+    lines = ["", "street paths repeated, whole signal       wall s  processor s   peak MiB"]
+    for kind, rows in frames.items():
+        for row in rows:
+            each = f"   {1e9 * row['processor_s'] / row['paths']:8.1f} ns per path" if kind == "paths" else ""
+            lines.append(f"  {row[kind]:>12,} {kind:<22}{row['wall_s']:12.3f}{row['processor_s']:13.3f}"
+                         f"{row['peak_bytes'] / 2 ** 20:11,.0f}{each}")
+    return lines
+
+
+def _replay_lines(cases: list[dict]) -> list[str]:
+    lines = ["", "replay of 128 chirps without synthesis, processor time over that of the trace, by aim for the phase in rad",
+             f"{'':26}   paths  trace s" + "".join(f"{tolerance:>9.0e}" for tolerance in PHASE_TOLERANCES)]
+    for case in cases:
+        shares = "".join(f"{row['replay_s'] / max(case['trace_s'], 1e-9):9.2f}" for row in case["rows"])
+        lines.append(f"{case['title']:<26}{case['paths']:>8}{case['trace_s']:9.3f}{shares}")
+    return lines
+
+
+def _street_lines(street: dict) -> list[str]:
+    floor = street["floor"]
+    queries = "not measured" if floor["queries_s"] is None else f"{floor['queries_s']:.3f} s"
+    return ["", f"street, {street['rays']:,} rays, {street['chirps']} chirps, {street['paths']:,} paths, {street['moving_paths']:,} moving: "
+            f"trace {street['trace_s']:.3f} s, replay alone {street['replay_s']:.3f} s, signal {street['synthesize_s']:.3f} s, "
+            f"both partitions {street['decompose_s']:.3f} s, frame {street['frame_s']:.3f} s",
+            f"  its floor: own Embree queries at the bare rate {queries}; moving path-chirps x {speed_frames.MOVING_NS} ns "
+            f"{floor['moving_s']:.3f} s; static paths once {floor['still_s']:.3f} s"]

@@ -1,0 +1,76 @@
+"""The speed benchmark with few paths: its truths, its files, and what it says without FINUFFT."""
+import json
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.bench import speed, speed_frames, speed_synthesis
+from echopath.cli import main
+
+EXTENDED = 1e-12   # of a sum in extended precision against the direct one
+
+
+def test_tones_at_rest_are_those_of_the_direct_sum():
+    """Truth from the tones, written out as exponentials; the sum goes through the whole of synthesis."""
+    echoes = speed_synthesis.Echoes(40, 1, seed=3)
+    points, strengths = speed_synthesis.tones_at_rest(echoes.delays[0], echoes.amplitudes[0], echoes.waveform)
+    samples = np.exp(1j * points * (np.arange(512)[:, None] - 256)) @ strengths
+    made = ep._core.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
+    assert speed_synthesis.relative_error(made, samples) < EXTENDED
+
+
+@pytest.mark.parametrize("scattered", [False, True])
+def test_echoes_of_a_trial_move_as_they_should(scattered):
+    """Direct sums in neighbouring chirps: each echo at its delay, against delays written out per chirp."""
+    echoes = speed_synthesis.Echoes(30, 8, scattered=scattered)
+    nodes = ep._core.trial_node_times(echoes.waveform, speed_synthesis.NODES)
+    # Straight motion: two nodes tell the delay at every chirp.
+    rate = (echoes.delays[-1] - echoes.delays[0]) / (nodes[-1] - nodes[0])
+    times = 60e-6 * np.arange(8) + 0.5 * 511 / 20e6
+    delays = echoes.delays[0] + rate * (times[:, None] - nodes[0])
+    still = np.broadcast_to(echoes.amplitudes[0], delays.shape)
+    constant = np.broadcast_to(echoes.amplitudes[0], echoes.amplitudes.shape)
+    expected = ep._core.synthesize_echoes(echoes.waveform, delays, still, method="direct")
+    made = ep._core.synthesis_trial(echoes.waveform, echoes.delays, constant, method="direct")[2]
+    assert speed_synthesis.relative_error(made, expected) < 1e-8  # differences of delays tell the rate to 1e-10
+
+
+def test_repeated_paths_are_the_record_again_and_again():
+    scene = speed_frames.street()
+    seed = ep.trace(scene.scene, scene.radar, num_rays=300)
+    few = speed_frames.with_frame(scene.radar, 2)
+    twice = speed_frames.repeated(seed, 2 * seed.num_paths)
+    one, two = ep.synthesize(seed, few), ep.synthesize(twice, few)
+    assert np.abs(two - 2.0 * one).max() < 1e-6 * np.abs(two).max()
+
+
+def test_spread_of_the_cost_per_path_is_seen():
+    rows = [{"paths": count, "processor_s": count * cost} for count, cost in ((1000, 9.0), (100_000, 1.0), (1_000_000, 1.3))]
+    assert speed_frames.linearity(rows) == pytest.approx(0.3)
+    assert speed_frames.linearity(rows[:2]) is None
+
+
+def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(speed_synthesis, "finufft_version", lambda: None)
+    monkeypatch.setattr(speed_synthesis, "TOLERANCES", (1e-3, 1e-6))
+    monkeypatch.setattr(speed_frames, "CHIRPS", (2, 4))
+    monkeypatch.setattr(speed_frames, "ARRAYS", ((1, 1), (1, 2)))
+    cases = speed.replay_cases.all_cases()[:1]
+    monkeypatch.setattr(speed.replay_cases, "all_cases", lambda: cases)
+    assert main(["bench", "speed", "--quick", "--out", str(tmp_path / "b")]) == 0
+    results = json.loads((tmp_path / "b" / "speed.json").read_text())
+    for row in results["synthesis"]["rows"]:
+        assert row["error"] < 1.1 * row["tolerance"] and "finufft_ns" not in row
+    assert "not installed" in capsys.readouterr().out
+    assert (tmp_path / "b" / "speed.csv").read_text().startswith("tolerance,ns,error")
+    for name in ("speed_synthesis.png", "speed_frames.png"):
+        assert (tmp_path / "b" / name).stat().st_size > 10_000
+
+
+def test_finufft_holds_its_own_tolerance_against_our_direct_sum():
+    pytest.importorskip("finufft")
+    echoes = speed_synthesis.Echoes(500, 1)
+    points, strengths = speed_synthesis.tones_at_rest(echoes.delays[0], echoes.amplitudes[0], echoes.waveform)
+    direct = ep._core.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
+    assert speed_synthesis.relative_error(speed_synthesis.Finufft(points, strengths, 512, 1e-9).samples(), direct) < 1e-8

@@ -10,7 +10,7 @@ from pathlib import Path
 import echopath as ep
 
 from ..files import written_whole
-from . import replay_cases, speed_frames, speed_synthesis
+from . import replay_cases, speed_frames, speed_synthesis, speed_tracer
 from .machine import machine
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
@@ -32,7 +32,9 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["frames"] = speed_frames.measure_frames(quick=quick, tell=tell)
     results["replay"] = [_replay(case, quick) for case in replay_cases.all_cases()]
     tell()
-    results["street"] = speed_frames.measure_street(None, quick=quick)
+    results["tracer"] = speed_tracer.measure_tracer(quick=quick)
+    tell()
+    results["street"] = speed_frames.measure_street(quick=quick)
     tell()
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
@@ -49,7 +51,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
 def _counter(progress, quick: bool):
     counts = (speed_synthesis.TOLERANCES, speed_frames.QUICK_PATHS if quick else speed_frames.PATHS, speed_frames.CHIRPS,
               speed_frames.ARRAYS, speed_frames.PARTS)
-    steps, done = 2 + sum(map(len, counts)), 0
+    steps, done = 3 + sum(map(len, counts)), 0
 
     def tell():
         nonlocal done
@@ -100,8 +102,10 @@ def verdicts(results: dict) -> list[dict]:
         rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
     most = max(row["peak_bytes"] for rows_of in results["frames"].values() for row in rows_of)
     rows.append(_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True))
+    rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"], row["share"])
+             for row in results["tracer"]]
     street = results["street"]
-    if street["floor"]["queries_s"] is not None:
+    if street["floor_s"]:
         rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"], most=True))
     return rows
 
@@ -116,8 +120,8 @@ def describe(results: dict) -> list[str]:
     lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
-             *_street_lines(results["street"]), "", "must reach" + " " * 42 + "limit     measured"]
-    lines += [f"  {row['what']:<44}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
+             *_tracer_lines(results["tracer"]), *_street_lines(results["street"]), "", "must reach" + " " * 52 + "limit     measured"]
+    lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
     return lines + ["", f"{results['seconds']:.0f} s in all"]
 
@@ -158,6 +162,14 @@ def _replay_lines(cases: list[dict]) -> list[str]:
         shares = "".join(f"{row['replay_s'] / max(case['trace_s'], 1e-9):9.2f}" for row in case["rows"])
         lines.append(f"{case['title']:<26}{case['paths']:>8}{case['trace_s']:9.3f}{shares}")
     return lines
+
+
+def _tracer_lines(rows: list[dict]) -> list[str]:
+    if not rows:
+        return ["", "tracer beside its own queries: not measured"]
+    lines = ["", "tracer beside a bare loop over its own queries, packed alike", " triangles  threads   queries   trace s    bare s   share of it"]
+    return lines + [f"{row['triangles']:>10,}{row['threads']:>9}{row['queries']:>10,}{row['trace_s']:10.4f}{row['bare_s']:10.4f}"
+                    f"{row['share']:12.2f}" for row in rows]
 
 
 def _street_lines(street: dict) -> list[str]:

@@ -11,6 +11,7 @@ import echopath as ep
 from ..materials import data_folder
 from ..scene_file import load_scene
 from ..stages import StageClock
+from .speed_tracer import bare_share, can_ask_again
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
@@ -33,16 +34,15 @@ def street():
 
 
 def repeated(paths, count: int):
-    """`count` paths: those of a record again and again."""
-    hits, offsets, bounces = paths.hits, paths.offsets, paths.num_bounces
-    times = -(-count // paths.num_paths)
-    columns = {name: np.tile(np.asarray(getattr(paths, name)), times)[:count]
+    """`count` paths of the mixture and in the order of a record: all of it again and again, and a random share at last."""
+    times, rest = divmod(count, paths.num_paths)
+    some = np.sort(np.random.default_rng(1).permutation(paths.num_paths)[:rest])
+    chosen = np.concatenate([np.tile(np.arange(paths.num_paths), times), some])
+    turn = np.concatenate([np.repeat(np.arange(times), paths.num_paths), np.full(rest, times)])
+    columns = {name: np.asarray(getattr(paths, name))[chosen]
                for name in ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
-    block = np.repeat(np.arange(times), paths.num_paths)[:count] * len(hits)
-    starts = np.tile(offsets, times)[:count] + block
-    del bounces
-    return ep.Paths.from_arrays(hits=np.tile(hits, times), offsets=starts, scene=paths.scene, radar=paths.radar,
-                                frame=paths.frame, **columns)
+    return ep.Paths.from_arrays(hits=np.tile(paths.hits, times + (rest > 0)), offsets=paths.offsets[chosen] + turn * len(paths.hits),
+                                scene=paths.scene, radar=paths.radar, frame=paths.frame, **columns)
 
 
 def with_frame(radar, num_chirps: int, array=(1, 1)):
@@ -103,11 +103,8 @@ def linearity(rows: list[dict]) -> float | None:
     return max(costs) / min(costs) - 1.0 if len(costs) > 1 else None
 
 
-def measure_street(bare_rates, *, quick: bool = False) -> dict:
-    """The frame of the demo with both partitions, and the floor under it, term by term.
-
-    bare_rates: callable (scene, radar, num_rays) -> seconds of its own Embree queries at the bare rate, or None
-    """
+def measure_street(*, quick: bool = False) -> dict:
+    """The frame of the demo with both partitions, and the floor under it, term by term."""
     scene = street()
     rays = QUICK_STREET_RAYS if quick else STREET_RAYS
     trace_s, paths = _wall(lambda: ep.trace(scene.scene, scene.radar, num_rays=rays))
@@ -119,12 +116,12 @@ def measure_street(bare_rates, *, quick: bool = False) -> dict:
     parts_s, _ = _wall(lambda: ep.decompose(paths, scene.radar, scene.parts))
     one_chirp = with_frame(scene.radar, 1)
     still_s, _ = _wall(lambda: ep.synthesize(paths, one_chirp))
-    queries_s = bare_rates(scene.scene, scene.radar, rays) if bare_rates else None
+    queries_s = bare_share(scene.scene, scene.radar, rays)["bare_s"] if can_ask_again() else None
     moving_s = 1e-9 * MOVING_NS * moving * chirps * 2.0 / ep.num_threads()
     terms = {"queries_s": queries_s, "moving_s": moving_s, "still_s": still_s * (1.0 - moving / max(1, paths.num_paths))}
     return {"rays": rays, "paths": paths.num_paths, "moving_paths": moving, "chirps": chirps, "trace_s": trace_s,
             "replay_s": replay_s, "synthesize_s": whole_s, "decompose_s": parts_s, "frame_s": trace_s + parts_s,
-            "floor": terms, "floor_s": sum(value for value in terms.values() if value is not None)}
+            "floor": terms, "floor_s": sum(terms.values()) if can_ask_again() else None}
 
 
 def _wall(work):

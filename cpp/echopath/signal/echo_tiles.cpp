@@ -172,7 +172,8 @@ void EchoTiles::gather(std::span<const Echoes> blocks, const std::vector<uint64_
     const int padded = (tile.count + kLanes - 1) / kLanes * kLanes;
     for (int p = 0; p < padded; ++p) {
       const bool is_real = p < tile.count;
-      const uint64_t index = order[static_cast<size_t>(first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1))] & index_mask;
+      const int64_t place = first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1);
+      const uint64_t index = order[static_cast<size_t>(place)] & index_mask;
       const Echoes& block = blocks[static_cast<size_t>(index >> local_bits_)];
       double* at = out + int64_t{p / kLanes} * num_nodes_ * 3 * kLanes + p % kLanes;
       auto from = static_cast<int64_t>(index & local_mask);

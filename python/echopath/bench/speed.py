@@ -1,4 +1,5 @@
-"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, and the street beside its floor."""
+"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, tracer, the street beside its
+floor."""
 from __future__ import annotations
 
 import csv
@@ -40,7 +41,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in (("speed.json", json.dumps(results, indent=1) + "\n"), ("speed.csv", _csv(results["synthesis"]["rows"]))):
+    for name, text in (("speed.json", json.dumps(results, indent=1) + "\n"),
+                       ("speed.csv", _csv(results["synthesis"]["rows"]))):
         with written_whole(folder / name) as temporary:
             Path(temporary).write_text(text, encoding="utf-8")
     draw_synthesis(results, folder / "speed_synthesis.png")
@@ -102,16 +104,19 @@ def verdicts(results: dict) -> list[dict]:
         rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
     most = max(row["peak_bytes"] for rows_of in results["frames"].values() for row in rows_of)
     rows.append(_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True))
-    rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"], row["share"])
+    rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"],
+                  row["share"])
              for row in results["tracer"]]
     street = results["street"]
     if street["floor_s"]:
-        rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"], most=True))
+        rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"],
+                         most=True))
     return rows
 
 
 def _row(what: str, limit: float, measured: float, *, most: bool = False) -> dict:
-    return {"what": what, "limit": limit, "measured": measured, "holds": bool(measured <= limit if most else measured >= limit)}
+    holds = measured <= limit if most else measured >= limit
+    return {"what": what, "limit": limit, "measured": measured, "holds": bool(holds)}
 
 
 def describe(results: dict) -> list[str]:
@@ -120,7 +125,8 @@ def describe(results: dict) -> list[str]:
     lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
-             *_tracer_lines(results["tracer"]), *_street_lines(results["street"]), "", "must reach" + " " * 52 + "limit     measured"]
+             *_tracer_lines(results["tracer"]), *_street_lines(results["street"]), "",
+             "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
     return lines + ["", f"{results['seconds']:.0f} s in all"]
@@ -167,16 +173,17 @@ def _replay_lines(cases: list[dict]) -> list[str]:
 def _tracer_lines(rows: list[dict]) -> list[str]:
     if not rows:
         return ["", "tracer beside its own queries: not measured"]
-    lines = ["", "tracer beside a bare loop over its own queries, packed alike", " triangles  threads   queries   trace s    bare s   share of it"]
-    return lines + [f"{row['triangles']:>10,}{row['threads']:>9}{row['queries']:>10,}{row['trace_s']:10.4f}{row['bare_s']:10.4f}"
-                    f"{row['share']:12.2f}" for row in rows]
+    lines = ["", "tracer beside a bare loop over its own queries, packed alike", 
+             " triangles  threads   queries   trace s    bare s   share of it"]
+    return lines + [f"{row['triangles']:>10,}{row['threads']:>9}{row['queries']:>10,}{row['trace_s']:10.4f}"
+                    f"{row['bare_s']:10.4f}{row['share']:12.2f}" for row in rows]
 
 
 def _street_lines(street: dict) -> list[str]:
     floor = street["floor"]
     queries = "not measured" if floor["queries_s"] is None else f"{floor['queries_s']:.3f} s"
-    return ["", f"street, {street['rays']:,} rays, {street['chirps']} chirps, {street['paths']:,} paths, {street['moving_paths']:,} moving: "
-            f"trace {street['trace_s']:.3f} s, replay alone {street['replay_s']:.3f} s, signal {street['synthesize_s']:.3f} s, "
-            f"both partitions {street['decompose_s']:.3f} s, frame {street['frame_s']:.3f} s",
+    return ["", f"street, {street['rays']:,} rays, {street['chirps']} chirps, {street['paths']:,} paths, "
+            f"{street['moving_paths']:,} moving: trace {street['trace_s']:.3f} s, replay alone {street['replay_s']:.3f} s, "
+            f"signal {street['synthesize_s']:.3f} s, both partitions {street['decompose_s']:.3f} s, frame {street['frame_s']:.3f} s",
             f"  its floor: own Embree queries at the bare rate {queries}; moving path-chirps x {speed_frames.MOVING_NS} ns "
             f"{floor['moving_s']:.3f} s; static paths once {floor['still_s']:.3f} s"]

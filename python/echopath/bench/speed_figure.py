@@ -49,7 +49,8 @@ def draw_frames(results: dict, path) -> None:
         counts = [row["paths"] for row in frames["paths"]]
         paths.loglog(counts, [row["processor_s"] for row in frames["paths"]], "o-", color=OURS, label="measured")
         last = frames["paths"][-1]
-        paths.loglog(counts, [last["processor_s"] * count / last["paths"] for count in counts], ":", color=GREY, label="linear")
+        each = last["processor_s"] / last["paths"]
+        paths.loglog(counts, [each * count for count in counts], ":", color=GREY, label="linear")
         paths.set_xlabel("paths")
         paths.set_ylabel("processor time of a frame [s]")
         paths.set_title("Paths")

@@ -1,4 +1,4 @@
-"""Whole frames: processor time and memory against paths, chirps, channels and parts, and the street scene beside its floor."""
+"""Whole frames: time and memory against paths, chirps, channels and parts, and the street scene beside its floor."""
 from __future__ import annotations
 
 import time
@@ -15,7 +15,7 @@ from .speed_tracer import bare_share, can_ask_again
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
-SEED_RAYS, QUICK_SEED_RAYS = 50_000, 1_000      # whose paths are repeated to any number
+SEED_RAYS, QUICK_SEED_RAYS = 5_500, 1_000       # whose paths are repeated to any number
 FRAME_CHIRPS = 16                               # of the frames that the number of paths is varied of
 SOME_PATHS = 200_000
 CHIRPS = (16, 64, 256)
@@ -41,8 +41,9 @@ def repeated(paths, count: int):
     turn = np.concatenate([np.repeat(np.arange(times), paths.num_paths), np.full(rest, times)])
     columns = {name: np.asarray(getattr(paths, name))[chosen]
                for name in ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
-    return ep.Paths.from_arrays(hits=np.tile(paths.hits, times + (rest > 0)), offsets=paths.offsets[chosen] + turn * len(paths.hits),
-                                scene=paths.scene, radar=paths.radar, frame=paths.frame, **columns)
+    return ep.Paths.from_arrays(hits=np.tile(paths.hits, times + (rest > 0)),
+                                offsets=paths.offsets[chosen] + turn * len(paths.hits), scene=paths.scene, radar=paths.radar,
+                                frame=paths.frame, **columns)
 
 
 def with_frame(radar, num_chirps: int, array=(1, 1)):
@@ -98,7 +99,7 @@ def _parts(scene, count: int) -> dict:
 
 
 def linearity(rows: list[dict]) -> float | None:
-    """Largest over least processor time per path, less 1, from LINEAR_FROM paths on; None where there are not two such rows."""
+    """Largest over least processor time per path, less 1, from LINEAR_FROM paths on; None of fewer than two rows."""
     costs = [row["processor_s"] / row["paths"] for row in rows if row["paths"] >= LINEAR_FROM]
     return max(costs) / min(costs) - 1.0 if len(costs) > 1 else None
 

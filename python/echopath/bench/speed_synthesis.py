@@ -72,7 +72,9 @@ def finufft_version() -> str | None:
 
 
 def tones_at_rest(delays, amplitudes, of_waveform):
-    """Points [P] in [-pi, pi) and strengths [P] of a type-1 transform with the samples of echoes at rest; extended precision.
+    """Points [P] in [-pi, pi) and strengths [P] of the type-1 transform that gives the samples of echoes at rest.
+
+    Phases in extended precision.
 
     delays: [P] s; amplitudes: [P] sqrt(W)
     """
@@ -92,7 +94,7 @@ class Finufft:
     def __init__(self, points, strengths, num_samples: int, tolerance: float):
         self.points, self.strengths, self.num_samples, self.tolerance = points, strengths, num_samples, tolerance
         tried = [{"upsampfac": factor, "spread_sort": sort} for factor in (2.0, 1.25) for sort in (0, 1)]
-        self.settings = min((one for one in tried if self._works(one)), key=lambda one: min(self._seconds(one) for _ in range(5)))
+        self.settings = min(filter(self._works, tried), key=lambda one: min(self._seconds(one) for _ in range(5)))
 
     def seconds(self) -> float:
         """Of the processor, for one chirp: its points set, its samples made."""
@@ -125,7 +127,7 @@ def relative_error(actual, expected) -> float:
 
 
 def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
-    """Times in ns per path and chirp of one thread, processor time, medians of alternated repeats; errors against the direct sum."""
+    """Processor time of one thread in ns per path and chirp, medians of alternated repeats; errors against the direct sum."""
     paths, chirps = (QUICK_PATHS, QUICK_CHIRPS) if quick else (PATHS, CHIRPS)
     threads = ep.num_threads()
     ep.set_num_threads(1)
@@ -134,7 +136,8 @@ def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
                  "sums": [_sum_row(method, chirps) for method in ("recurrence", "direct")]}
     finally:
         ep.set_num_threads(threads)
-    found["rates"] = [_rate(paths, chirps, count, scattered) for scattered in (False, True) for count in sorted({1, threads})]
+    found["rates"] = [_rate(paths, chirps, count, scattered)
+                      for scattered in (False, True) for count in sorted({1, threads})]
     return found
 
 
@@ -152,8 +155,10 @@ def _rows(paths: int, chirps: int, quick: bool, tell) -> list[dict]:
             ours_s.append(bodies.trial(method="nufft", tolerance=tolerance)[1])
             scattered_s.append(scattered.trial(method="nufft", tolerance=tolerance)[1])
             theirs_s += [theirs.seconds() for _ in range(CHIRPS_OF_FINUFFT)] if theirs else []
-        row = {"tolerance": tolerance, "error": relative_error(frame.trial(method="nufft", tolerance=tolerance)[2], moving_truth),
-               "ns": 1e9 * np.median(ours_s) / (paths * chirps), "scattered_ns": 1e9 * np.median(scattered_s) / (paths * chirps)}
+        made = frame.trial(method="nufft", tolerance=tolerance)[2]
+        row = {"tolerance": tolerance, "error": relative_error(made, moving_truth),
+               "ns": 1e9 * np.median(ours_s) / (paths * chirps),
+               "scattered_ns": 1e9 * np.median(scattered_s) / (paths * chirps)}
         if theirs:
             row |= {"finufft_ns": 1e9 * np.median(theirs_s) / paths, "finufft_settings": theirs.settings,
                     "finufft_error": relative_error(theirs.samples(), truth)}

@@ -18,8 +18,9 @@ def rough_spheres(subdivisions: int):
     """Five rough spheres in a row, 100 subdivisions^2 triangles."""
     scene = ep.Scene()
     mesh = shapes.sphere(2.0, subdivisions=subdivisions)
+    rough = ep.Material(reflectivity=0.6, scattering=0.8)
     for i in range(5):
-        scene.add(mesh, name=f"sphere_{i}", position=(15.0, 4.2 * (i - 2), 0.0), material=ep.Material(reflectivity=0.6, scattering=0.8))
+        scene.add(mesh, name=f"sphere_{i}", position=(15.0, 4.2 * (i - 2), 0.0), material=rough)
     return scene
 
 
@@ -29,7 +30,7 @@ def can_ask_again() -> bool:
 
 
 def measure_tracer(*, quick: bool = False) -> list[dict]:
-    """Rows by triangles and threads: medians of processor seconds of the trace and of its queries alone; none without those."""
+    """Rows by triangles and threads: medians of processor seconds of trace and queries alone; none without those."""
     if not can_ask_again():
         return []
     radar = ep.Radar(waveform(1), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
@@ -51,5 +52,6 @@ def bare_share(scene, radar, num_rays: int) -> dict:
     """Queries of a trace, its seconds and those of the queries alone, by the clock and of the processor."""
     found = ep._core.bare_queries(scene, radar, num_rays=num_rays, repetitions=REPETITIONS)
     trace, bare = found["trace_seconds"], found["bare_seconds"]
-    return {"queries": found["num_queries"], "trace_s": float(np.median(trace["elapsed"])), "bare_s": float(np.median(bare["elapsed"])),
+    return {"queries": found["num_queries"], "trace_s": float(np.median(trace["elapsed"])),
+            "bare_s": float(np.median(bare["elapsed"])),
             "share": float(np.median(bare["processor"]) / np.median(trace["processor"]))}

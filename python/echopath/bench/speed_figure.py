@@ -65,10 +65,14 @@ def draw_frames(results: dict, path) -> None:
         memory.loglog(counts, [row["peak_bytes"] / 2 ** 20 for row in frames["paths"]], "o-", color=OURS)
         memory.axhline(4096.0, color=GREY, linestyle=":")
         memory.annotate("4 GiB", (counts[0], 4096.0), (2, 3), textcoords="offset points", fontsize=8, color=GREY)
-        memory.yaxis.set_major_formatter("{x:g}")
         memory.set_xlabel("paths")
         memory.set_ylabel("peak memory [MiB]")
         memory.set_title("Memory, the record of the paths included")
+        for axes in (others, memory):
+            axes.yaxis.set_minor_formatter("")
+            axes.yaxis.set_major_formatter("{x:g}")
+        most = max(row["processor_s"] for kind in ("chirps", "channels", "parts") for row in frames[kind])
+        others.set_ylim(most / 100.0, most * 2.0)
         for axes in (paths, others, memory):
             axes.grid(alpha=0.25, which="both")
         save_png(figure, path)

@@ -49,8 +49,24 @@ def moving_peak(spectrum):
 
 def test_all_files_are_written(demo):
     out, _, _ = demo
-    pictures = ["body.png", "map.png", "overview.png", "route.png", "scene.png"]
-    assert sorted(path.name for path in out.iterdir()) == sorted(["frame.h5", *pictures])
+    pictures = ["body.png", "ghosts.png", "labels_body.png", "labels_route.png", "map.png", "overview.png", "route.png", "scene.png"]
+    assert sorted(path.name for path in out.iterdir()) == sorted(["frame.h5", "label_maps", *pictures])
+    maps = [f"{name}{suffix}" for name in ("ghosts", "objects", "parts_body", "parts_route") for suffix in (".json", ".png")]
+    assert sorted(path.name for path in (out / "label_maps").iterdir()) == maps
+
+
+def test_the_map_shows_the_person_and_its_ghosts_over_both_walls(demo):
+    """By way of a wall an echo comes later than the straight one, both ways later than one way: by the image in the wall."""
+    _, frame, _ = demo
+    labels = frame.labels["route"]
+    person, = labels.objects
+    assert person.name == "pedestrian" and person.status == "seen" and person.visible_share == pytest.approx(1.0)
+    straight = image_distance(torso(frame), 0.0)
+    for wall, side in (("wall_left", 3.0), ("wall_right", -3.0)):
+        ghosts = {ghost.order: ghost for ghost in labels.ghosts if ghost.via == (wall,) and ghost.ghost_type == 2 and ghost.peak}
+        extra = image_distance(torso(frame), side) - straight
+        assert ghosts[2].peak.range - person.peak.range == pytest.approx(0.5 * extra, abs=BODY_RADIUS)
+        assert ghosts[3].peak.range - person.peak.range == pytest.approx(extra, abs=BODY_RADIUS)
 
 
 def test_the_report_tells_what_was_asked_for(demo):

@@ -58,7 +58,8 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
-                      help="also say which paths of a frame it takes, as in \"T .* 'wall' .* R & power > 1e-15\"; may be repeated")
+                      help="also say which paths of a frame it takes, as in \"T .* 'wall' .* R & power > 1e-15\"; may be "
+                           "repeated")
     info.set_defaults(command=_info)
 
     _add_labels(commands)
@@ -77,13 +78,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_labels(commands) -> None:
-    labels = commands.add_parser("labels", help="label the map of a frame file: which part, object or ghost made each cell and detection")
+    labels = commands.add_parser("labels", help="say which part, object or ghost made each cell and detection of a frame")
     labels.add_argument("frame", metavar="FRAME.h5", help="frame file")
-    labels.add_argument("--out", required=True, metavar="DIR", help="folder of labels.h5, detections.csv, label maps and pictures")
+    labels.add_argument("--out", required=True, metavar="DIR", help="folder of labels.h5, detections.csv, maps and pictures")
     _add_part_option(labels)
     labels.add_argument("--object", action="append", default=[], metavar="NAME=GLOB",
-                        help="an object to report on, instead of the children of the scene's root; may be repeated, the first "
-                             "that a path touches owns it")
+                        help="an object to report on, instead of the children of the scene's root; may be repeated, the "
+                             "first that a path touches owns it")
     labels.add_argument("--plane", choices=["range_doppler", "range_azimuth"], default="range_doppler",
                         help="whose cells are labelled (default: %(default)s)")
     labels.add_argument("--dynamic-range", type=float, default=60.0, metavar="DB",
@@ -109,8 +110,8 @@ def _add_trace_options(parser, default_rays) -> None:
 
 def _add_part_option(parser) -> None:
     parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
-                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall' .* R\"; may be repeated, "
-                             "the first that takes a path has it")
+                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall' .* R\"; may be "
+                             "repeated, the first that takes a path has it")
 
 
 def _positive(text: str) -> int:
@@ -169,7 +170,8 @@ def _run(options) -> None:
         written = write_outputs(frame, options.out, partitions=frame.parts)
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.labels(frame.labels), *report.detections(frame.detections), *report.validity(certificate), *report.files(written)]:
+                 *report.labels(frame.labels), *report.detections(frame.detections),
+                 *report.validity(certificate), *report.files(written)]:
         print(text)
 
 

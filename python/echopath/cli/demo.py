@@ -19,7 +19,8 @@ ARMS, LEGS = "pedestrian/arm_*", "pedestrian/leg_*"
 
 
 def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, batches=None, progress=None, say=print) -> Frame:
-    """Simulates data/scenes/street.toml, writes frame.h5 and five pictures to `out` and reports what the rays touched.
+    """Simulates data/scenes/street.toml, writes frame.h5, eight pictures and label maps to `out`, and reports what the rays
+    touched.
 
     num_rays: launched; seed, batches: None, those of the file; progress: callable (stage, fraction) or None
     say: takes each line of the report.
@@ -28,7 +29,7 @@ def run_demo(out="out/demo", *, num_rays=NUM_RAYS, seed=None, batches=None, prog
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = load_scene(path)
     frame = simulate_file(street, num_rays=num_rays, seed=seed, batches=batches,
-                          extra_parts=limb_partitions(street.parts["route"]), progress=progress)
+                          extra_parts=limb_partitions(street.parts["route"]), labels=True, progress=progress)
     certificate = certify(frame, progress=progress)
     written = write_outputs(frame, out, partitions=street.parts)
     residuals = _check_sums(frame, progress)
@@ -64,4 +65,5 @@ def _report(street, frame: Frame, certificate, written, residuals: dict) -> list
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",
             *(report.line(partition, f"{value:.1e}") for partition, value in residuals.items()),
+            *report.labels({partition: frame.labels[partition] for partition in street.parts}),
             *report.validity(certificate), *report.files(written)]

@@ -24,7 +24,8 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
         written.append(folder / f"{name}.png")
 
     for index, (partition, labels) in enumerate(of_partitions.items()):
-        names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"} | ({"objects": "objects", "ghosts": "ghosts"} if index == 0 else {})
+        names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"}
+        names |= {"objects": "objects", "ghosts": "ghosts"} if index == 0 else {}
         written += ep.save_label_images(labels, folder / MAPS_FOLDER, names)
         if index == 0:
             write("ghosts", plots.plot_ghosts(labels))

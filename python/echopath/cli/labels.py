@@ -15,7 +15,8 @@ def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) 
     """Labels the map of a frame file, writes labels.h5, detections.csv, maps and pictures, and says what is in them.
 
     path: of the frame file; folder: of what is written
-    parts: texts NAME=SELECTION of a partition "choice" beside those of the file; progress: callable (stage, fraction) or None
+    parts: texts NAME=SELECTION of a partition "choice" beside those of the file
+    progress: callable (stage, fraction) or None
     cfar: keywords of `cfar` for the detections, of frames with signals; keywords: of `annotate_frame`
     Returns the lines of a report. Raises ValueError for bad input, ep.FileError for bad files.
     """

@@ -144,7 +144,8 @@ def _peak(label) -> str:
     if label.peak is None:
         return ""
     distance, row, _ = label.peak
-    return f"{distance:6.2f} m {row:+6.2f} m/s" if hasattr(label.peak, "velocity") else f"{distance:6.2f} m {np.degrees(row):+6.1f} deg"
+    across = f"{row:+6.2f} m/s" if hasattr(label.peak, "velocity") else f"{np.degrees(row):+6.1f} deg"
+    return f"{distance:6.2f} m {across}"
 
 
 def _table(rows: list, right=()) -> list[str]:

@@ -30,10 +30,10 @@ class Written:
 
 
 def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None,
-                  progress=None) -> Frame:
+                  labels=None, progress=None) -> Frame:
     """The frame that a scene file describes.
 
-    num_rays, seed, batches: instead of those of the file
+    num_rays, seed, batches, labels: instead of those of the file; labels as in `ep.simulate`
     extra_parts: {partition: {part: selection}} beside those of the file.
     """
     settings = scene_file.trace_settings()
@@ -46,8 +46,8 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     parts = scene_file.partitions() | (extra_parts or {})
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
-                    labels=scene_file.label_settings(), detections=scene_file.detection_settings(),
-                    progress=progress)
+                    labels=scene_file.label_settings() if labels is None else labels,
+                    detections=scene_file.detection_settings(), progress=progress)
 
 
 def chosen_partition(texts) -> dict:

@@ -7,11 +7,11 @@ import time
 from pathlib import Path
 
 from ..machine import machine
-from . import faults, geometry, heavy, motions, places, repeat, scenes, signals
+from . import faults, geometry, heavy, motions, oracle, places, repeat, scenes, signals
 from .case import Case
 from .page import page
 
-GROUPS = (signals, geometry, places, motions, repeat, faults, heavy)
+GROUPS = (signals, geometry, places, motions, repeat, faults, heavy, oracle)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,7 +56,8 @@ def run_hard(folder, *, quick: bool = False, progress=None) -> list[Result]:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "hard.md").write_text(page(results, described(machine())), encoding="utf-8")
-    rows = [{"group": one.case.group, "case": one.case.name, "bound": one.case.bound_text, "value": one.value, "holds": one.holds,
+    rows = [{"group": one.case.group, "case": one.case.name, "bound": one.case.bound_text, "value": one.value,
+             "holds": one.holds,
              "seconds": one.seconds, "error": one.error} for one in results]
     (folder / "hard.json").write_text(json.dumps({"machine": machine(), "cases": rows}, indent=1), encoding="utf-8")
     if progress:
@@ -74,4 +75,5 @@ def describe(results: list[Result]) -> list[str]:
     lines = [f"  {one.case.name}: {one.error or f'{one.value:.4g} {one.case.unit}'}, bound {one.case.bound_text}"
              for one in results if not one.holds]
     head = ["bounds that do not hold"] if lines else []
-    return [*head, *lines, f"{sum(one.holds for one in results)} of {len(results)} hard cases hold, in {sum(one.seconds for one in results):.0f} s"]
+    holding, seconds = sum(one.holds for one in results), sum(one.seconds for one in results)
+    return [*head, *lines, f"{holding} of {len(results)} hard cases hold, in {seconds:.0f} s"]

@@ -1,0 +1,47 @@
+"""The whole chain beside the slow reference of the tests; only in a checkout of the sources, where that is."""
+from __future__ import annotations
+
+import functools
+import sys
+from pathlib import Path
+
+from .case import Cases
+
+cases = Cases("A slow reference of the equations")
+TESTS = Path(__file__).resolve().parents[4] / "tests"
+NUM_SCENES = 20
+
+
+@functools.lru_cache
+def _deviations(kind: str) -> tuple:
+    if str(TESTS) not in sys.path:
+        sys.path.append(str(TESTS))
+    from support import reference_scenes
+
+    measure = {"coherent": reference_scenes.coherent_deviation, "diffuse": reference_scenes.diffuse_deviation}[kind]
+    return tuple(measure(seed) for seed in range(NUM_SCENES))
+
+
+def field() -> float:
+    return max(one.field for one in _deviations("coherent"))
+
+
+def samples() -> float:
+    return max(one.cube for one in _deviations("coherent"))
+
+
+def power() -> float:
+    return max(one.power for one in _deviations("diffuse"))
+
+
+if (TESTS / "support" / "reference_scenes.py").exists():
+    cases("fields of 20 random scenes",
+          "up to three moving smooth plates of metal or dielectrics, in each other's shadow, beside a large "
+          "plane: complex field at mid-frame, currents summed over a grid", bound=0.02, unit="of the field",
+          heavy=True)(field)
+    cases("IF samples of 20 random scenes", "the same with the delays of the equations at every sample, three chirps",
+          bound=0.005,
+          unit="of the signal", heavy=True)(samples)
+    cases("diffuse powers of 20 random scenes",
+          "rough plates, all pairs of legs with one phase a point: mean power, beyond 1 %", bound=4.0,
+          unit="standard errors", heavy=True)(power)

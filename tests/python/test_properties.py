@@ -1,0 +1,182 @@
+"""Laws that hold for any input: selections, partitions, motions and scene files, drawn at random (hypothesis)."""
+import math
+from functools import reduce
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import echopath as ep
+from support.scene_text import WAVEFORM
+
+pytestmark = pytest.mark.hard
+
+FEW = settings(max_examples=60, deadline=None, derandomize=True)
+SUM_SHARE = 1e-12    # of the whole signal: sums of doubles in another order
+LENGTH = 1e-9        # m: keys of some metres in double precision, through splines of steep pieces
+ROTATION = 1e-12     # of a unit quaternion
+MESHES = ("ball", "box", "plate")
+
+
+@pytest.fixture(scope="module")
+def paths():
+    scene = ep.Scene()
+    rough = ep.Material(reflectivity=0.6, scattering=0.7)
+    scene.add(ep.actors.sphere(0.4), name="ball", material=rough, position=(5, 0, 0), smooth=True)
+    scene.add(ep.actors.box(0.6), name="box", material=rough, position=(6, 1, 0),
+              motion=ep.LinearMotion(velocity=(-3.0, 0, 0)))
+    scene.add(ep.actors.plate(2.0, 2.0), name="plate", material=rough, position=(8, 0, 0))
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=32, sampling_rate=20e6, num_chirps=4,
+                                chirp_interval=1e-4)
+    return ep.trace(scene, ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.1, 0))]),
+                    num_rays=1500)
+
+
+def touched(paths):
+    """Names of the meshes of each path, as a list of sets."""
+    names = [mesh.name for mesh in paths.scene.meshes]
+    return [{names[paths.mesh_id[k]] for k in range(begin, begin + count)}
+            for begin, count in zip(paths.offsets, paths.num_bounces)]
+
+
+leaves = st.one_of(st.sampled_from(MESHES).map(lambda name: (ep.hits(name), lambda one: name in one["meshes"])),
+                   st.integers(1, 4).map(lambda count: (ep.num_bounces == count, lambda one: one["bounces"] == count)),
+                   st.integers(0, 5).map(lambda count: (ep.num_bounces > count, lambda one: one["bounces"] > count)))
+
+
+def joined(children):
+    both = st.tuples(children, children)
+    return st.one_of(both.map(lambda p: (p[0][0] & p[1][0], lambda one: p[0][1](one) and p[1][1](one))),
+                     both.map(lambda p: (p[0][0] | p[1][0], lambda one: p[0][1](one) or p[1][1](one))),
+                     children.map(lambda p: (~p[0], lambda one: not p[1](one))))
+
+
+selections = st.recursive(leaves, joined, max_leaves=6)
+
+
+@FEW
+@given(pair=selections)
+def test_selections_take_what_their_logic_takes(paths, pair):
+    selection, takes = pair
+    records = [{"meshes": meshes, "bounces": int(count)} for meshes, count in zip(touched(paths), paths.num_bounces)]
+    expected = np.array([takes(one) for one in records])
+    assert np.array_equal(paths.select(selection).weight, np.asarray(paths.weight)[expected])
+
+
+@FEW
+@given(pair=selections)
+def test_selections_are_their_own_text(paths, pair):
+    again = ep.parse_selection(str(pair[0]))
+    assert np.array_equal(paths.select(again).weight, paths.select(pair[0]).weight)
+
+
+@FEW
+@given(chosen=st.lists(selections, min_size=1, max_size=4))
+def test_parts_are_disjoint_complete_and_add_up(paths, chosen):
+    parts = {f"part {k}": pair[0] for k, pair in enumerate(chosen)}
+    split = paths.partition(parts)
+    assert sum(part.num_paths for part in split.values()) == paths.num_paths
+    taken = reduce(lambda a, b: a | b, parts.values())
+    assert split["other"].num_paths == paths.select(~taken).num_paths
+    whole = ep.synthesize(paths)
+    assert np.abs(sum(ep.decompose(paths, parts=parts).values()) - whole).max() <= SUM_SHARE * np.abs(whole).max()
+
+
+steps = st.lists(st.floats(1e-4, 10.0), min_size=1, max_size=6)
+coordinates = st.floats(-100.0, 100.0)
+speeds = st.lists(st.floats(-300.0, 300.0), min_size=3, max_size=3)
+
+
+def moved(corners, motion):
+    """Scene of one triangle."""
+    scene = ep.Scene()
+    scene.add(ep.Mesh(corners, [[0, 1, 2]]), name="triangle", material="metal", motion=motion)
+    return scene
+
+
+def keys_of(gaps, draw_points):
+    times = np.concatenate([[0.0], np.cumsum(gaps)])
+    return times, np.array(draw_points[:3 * len(times)]).reshape(-1, 3)
+
+
+@FEW
+@given(gaps=steps, points=st.lists(coordinates, min_size=21, max_size=21),
+       interpolation=st.sampled_from(["cubic", "linear"]))
+def test_keyframes_pass_through_their_points(gaps, points, interpolation):
+    times, keys = keys_of(gaps, points)
+    motion = ep.KeyframeMotion(times=times, translations=keys, interpolation=interpolation)
+    scene = moved(np.eye(3), motion)
+    for time, point in zip(times, keys):
+        np.testing.assert_allclose(scene.world_vertices(0, time), np.eye(3) + point, rtol=0, atol=LENGTH)
+
+
+@FEW
+@given(gaps=steps, numbers=st.lists(st.floats(-1.0, 1.0), min_size=28, max_size=28), share=st.floats(0.0, 1.0),
+       interpolation=st.sampled_from(["cubic", "linear"]))
+def test_turns_stay_turns(gaps, numbers, share, interpolation):
+    times = np.concatenate([[0.0], np.cumsum(gaps)])
+    quaternions = np.array(numbers[:4 * len(times)]).reshape(-1, 4) + [1.5, 0, 0, 0]
+    quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+    scene = moved(np.eye(3), ep.KeyframeMotion(times=times, rotations=quaternions, interpolation=interpolation))
+    turned = np.asarray(scene.world_vertices(0, share * times[-1]))
+    np.testing.assert_allclose(turned @ turned.T, np.eye(3), rtol=0, atol=10 * ROTATION)
+    assert np.linalg.det(turned) > 0
+
+
+@FEW
+@given(velocity=speeds, spin=speeds, time=st.floats(-10.0, 10.0))
+def test_linear_motion_is_a_shift_and_a_turn(velocity, spin, time):
+    scene = moved([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], ep.LinearMotion(velocity=velocity, angular_velocity=spin))
+    points = np.asarray(scene.world_vertices(0, time))
+    np.testing.assert_allclose(points[0], time * np.array(velocity), rtol=0, atol=LENGTH)
+    np.testing.assert_allclose(np.linalg.norm(points[1:] - points[0], axis=1), 1.0, rtol=0, atol=LENGTH)
+
+
+RADAR = """
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.0, 1.0]
+"""
+OBJECT = """
+[[objects]]
+name = "{name}"
+actor = "plate"
+parameters = {{width = {width!r}, height = {height!r}}}
+material = {{conductor = true}}
+position = {position}
+yaw_deg = {yaw!r}
+motion = {{kind = "linear", velocity = {velocity}}}
+"""
+sizes = st.floats(1e-3, 1e3)
+triples = st.lists(st.floats(-1e6, 1e6), min_size=3, max_size=3)
+
+
+@FEW
+@given(width=sizes, height=sizes, position=triples, yaw=st.floats(-720.0, 720.0), velocity=triples)
+def test_scene_files_place_what_they_say(tmp_path_factory, width, height, position, yaw, velocity):
+    path = tmp_path_factory.mktemp("scene") / "scene.toml"
+    text = OBJECT.format(name="plate", width=width, height=height, position=position, yaw=yaw, velocity=velocity)
+    path.write_text(RADAR + WAVEFORM + text, encoding="utf-8")
+    vertices = np.asarray(ep.load_scene(path).scene.world_vertices(0, 2.0))
+    size = 1.0 + np.abs(position).max() + 2 * np.abs(velocity).max()
+    np.testing.assert_allclose(vertices.mean(axis=0), np.array(position) + 2 * np.array(velocity), rtol=0, atol=1e-12 * size)
+    across = np.hypot(width / 2 * math.sin(math.radians(yaw)), width / 2 * math.cos(math.radians(yaw)))
+    reach = np.abs(vertices - vertices.mean(axis=0))
+    np.testing.assert_allclose(np.hypot(reach[:, 0], reach[:, 1]), across, rtol=0, atol=1e-12 * size + 1e-9 * across)
+    np.testing.assert_allclose(reach[:, 2], height / 2, rtol=0, atol=1e-12 * size + 1e-9 * height)
+
+
+junk = st.text(alphabet="[]={}\"'#\n .,abcdefnorstuvwxyz_0123456789+-e", max_size=200)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(text=junk, behind=st.booleans())
+def test_no_scene_file_is_worse_than_an_error(tmp_path_factory, text, behind):
+    path = tmp_path_factory.mktemp("junk") / "scene.toml"
+    path.write_text((RADAR + WAVEFORM if behind else "") + text, encoding="utf-8")
+    try:
+        ep.load_scene(path)
+    except (ValueError, OSError) as error:
+        assert str(error)

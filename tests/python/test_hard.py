@@ -1,5 +1,7 @@
 """The hard cases keep to their bounds: those of `echopath bench hard` that are quick enough, and the page that it writes."""
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -60,3 +62,19 @@ def test_a_radar_on_a_surface_is_warned_of():
     radar = hard.scenes.make_radar()
     with pytest.warns(RuntimeWarning, match="within 1 mm of the radar"):
         ep.trace(scene, radar, num_rays=2000)
+
+
+RUN_OUT_OF_MEMORY = """
+import resource, sys
+from echopath.cli import main
+from echopath.cli import demo
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (250 << 20), resource.RLIM_INFINITY))
+sys.exit(main(["demo", "--rays", "3e6", "--out", sys.argv[1]]))
+"""
+
+
+def test_a_command_without_enough_memory_ends_in_one_line(tmp_path):
+    done = subprocess.run([sys.executable, "-c", RUN_OUT_OF_MEMORY, str(tmp_path / "out")], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr.strip() == "echopath: not enough memory; fewer rays (--rays) need less"
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())

@@ -29,7 +29,7 @@ class Case:
 
     @property
     def bound_text(self) -> str:
-        return f"{'>=' if self.at_least else '<='} {self.bound:.4g} {self.unit}".rstrip()
+        return f"{'>=' if self.at_least else '<='} {self.bound:.5g} {self.unit}".rstrip()
 
 
 class Cases(list):
@@ -39,7 +39,8 @@ class Cases(list):
         super().__init__()
         self.group = group
 
-    def __call__(self, name: str, expected: str, *, bound: float, unit: str = "", at_least: bool = False, heavy: bool = False):
+    def __call__(self, name: str, expected: str, *, bound: float, unit: str = "", at_least: bool = False,
+                 heavy: bool = False):
         def keep(measure):
             self.append(Case(name, self.group, expected, bound, unit, measure, at_least, heavy))
             return measure

@@ -36,8 +36,8 @@ STUCK = 10.0      # s after which nobody has heard Ctrl-C
 
 def start(code: str, *arguments):
     """A Python process that runs `code` behind BEGIN."""
-    return subprocess.Popen([sys.executable, "-c", BEGIN + code, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            text=True)
+    return subprocess.Popen([sys.executable, "-c", BEGIN + code, *map(str, arguments)], text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def run(code: str, *arguments) -> list[str]:
@@ -94,13 +94,14 @@ print(path.read_bytes() == before, len(list(path.parent.iterdir())), len(os.list
 """
 
 
-@cases("no space left", "a file error that names the file; the old file stays, nothing else is left behind, and the next write works "
-       "(of these five, broken)", bound=0.0, unit="promises")
+@cases("no space left", "a file error that names the file; the old file stays, nothing else is left behind, and the next "
+       "write works (of these five, broken)", bound=0.0, unit="promises")
 def no_space() -> float:
     with tempfile.TemporaryDirectory() as folder:
         error, after, later = run(NO_SPACE, Path(folder) / "paths.h5")
     (same, count, handles), (_, count_later, handles_later) = after.split(), later.split()
-    promises = [error.startswith("FileError: "), "paths.h5" in error, same == "True", count == count_later == "1", handles == handles_later]
+    promises = [error.startswith("FileError: "), "paths.h5" in error, same == "True", count == count_later == "1",
+                handles == handles_later]
     return float(len(promises) - sum(promises))
 
 
@@ -132,8 +133,8 @@ print(traced(1000).num_paths > 0)
 """
 
 
-@cases("memory exceeded", "300 MiB for a record of a gigabyte: MemoryError, what was made is given back and the next trace works "
-       "(of these three, broken)", bound=0.0, unit="promises")
+@cases("memory exceeded", "300 MiB for a record of a gigabyte: MemoryError, what was made is given back and the next trace "
+       "works (of these three, broken)", bound=0.0, unit="promises")
 def no_memory() -> float:
     error, resident, works = run(NO_MEMORY)
     promises = [error.startswith("MemoryError"), int(resident) < 500, works == "True"]
@@ -148,8 +149,9 @@ work = {
 }[sys.argv[2]]
 if sys.argv[2] != "trace":
     paths = traced(30000)
-    wide = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=512,
-                                     chirp_interval=4e-5), transmitters=radar.transmitters, receivers=radar.receivers)
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=512,
+                              chirp_interval=4e-5)
+    wide = ep.Radar(chirps, transmitters=radar.transmitters, receivers=radar.receivers)
 print("ready", flush=True)
 try:
     work()
@@ -160,10 +162,11 @@ except KeyboardInterrupt:
 """
 
 
-@cases("Ctrl-C", "time from Ctrl-C to KeyboardInterrupt in trace, synthesis and, three times, file writing, with no half-written file left",
-       bound=1.5, unit="s")
+@cases("Ctrl-C", "time from Ctrl-C to KeyboardInterrupt in trace, synthesis and, three times, file writing; no half-written "
+       "file is left", bound=1.5, unit="s")
 def ctrl_c() -> float:
-    return max(stopped_after(work, delay) for work, delay in (("trace", 0.3), ("synthesis", 0.3), ("file", 0.3), ("file", 0.4), ("file", 0.5)))
+    moments = (("trace", 0.3), ("synthesis", 0.3), ("file", 0.3), ("file", 0.4), ("file", 0.5))
+    return max(stopped_after(work, delay) for work, delay in moments)
 
 
 def stopped_after(work: str, delay: float) -> float:

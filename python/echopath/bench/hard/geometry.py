@@ -4,7 +4,6 @@ from __future__ import annotations
 import numpy as np
 
 import echopath as ep
-from echopath import _core
 
 from ...actors import shapes
 from .. import closed_forms as exact
@@ -27,7 +26,8 @@ def level_of(mesh, max_bounces: int = 1) -> float:
     return rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=max_bounces), 200.0)
 
 
-@cases("hit positions", "points rebuilt from (u, v) lie in the plane of their facet, at 300 m too", bound=1e-12, unit="m")
+@cases("hit positions", "points rebuilt from (u, v) lie in the plane of their facet, at 300 m too: 1e-12 m and 1e-15 of the "
+       "distance", bound=1.3e-12, unit="m")
 def hit_positions() -> float:
     scene = scene_of(("far", shapes.sphere(2.0, subdivisions=8), ROUGH, {"position": (300.0, 3.0, 1.0)}))
     paths = traced(scene, make_radar(), 20_000, max_bounces=1)
@@ -36,7 +36,7 @@ def hit_positions() -> float:
     normal = np.cross(facet[:, 1] - facet[:, 0], facet[:, 2] - facet[:, 0])
     normal /= np.sqrt((normal ** 2).sum(axis=1, keepdims=True))
     height = np.abs((normal * (paths.points(0.0) - facet[:, 0])).sum(axis=1))
-    return float(height.max() - 1e-15 * 302.0)
+    return float(height.max())
 
 
 def street(offset):
@@ -47,7 +47,8 @@ def street(offset):
     return traced(scene, make_radar(offset, baseline=0.125), 20_000)
 
 
-@cases("world at UTM coordinates", "an offset of 5 400 km leaves the hits as they are (share of paths that differ)", bound=1e-4)
+@cases("world at UTM coordinates", "an offset of 5 400 km leaves the hits as they are (share that differs: corners are "
+       "rounded to another single precision neighbour, which moves edges by half a micrometre)", bound=1e-4)
 def utm_hits() -> float:
     near, far = street(np.zeros(3)), street(UTM)
     if near.num_paths != far.num_paths:
@@ -69,23 +70,26 @@ def ten_kilometres() -> float:
     return level_error(paths, 1e4, broadside_rcs(1.0, 1e4))
 
 
-@cases("phase of a scene 10 km away", "a 1 m plate at broadside: phase of its echo beside that of its distance", bound=0.01, unit="rad")
+@cases("phase of a scene 10 km away", "a 1 m plate at broadside: phase of its echo beside that of its distance", bound=0.01,
+       unit="rad")
 def ten_kilometres_phase() -> float:
     far = traced(scene_of(plate_at(1e4, 1.0)), make_radar(), 2 ** 15, max_bounces=1)
     total = np.sum(field(far)) * np.exp(2j * np.pi * np.mod(2e4 / exact.WAVELENGTH, 1.0))
     curvature = exact.WAVENUMBER * (1.0 / 12.0) / 1e4 * 2.0  # mean of k rho^2 / R over the face: rho^2 = 1/6 m^2
-    return float(abs(np.angle(total / (-1j))) - curvature) if total != 0 else np.inf
+    return float(abs(abs(np.angle(total / -1j)) - curvature)) if total != 0 else np.inf
 
 
 @cases("1 km beside 1 mm", "a plate of 1 mm over a ground of 1 km keeps its level", bound=0.1, unit="dB")
 def kilometre_beside_millimetre() -> float:
-    scene = scene_of(("ground", shapes.ground(1000.0, z=-1.0), ep.Material(reflectivity=0.3, scattering=1.0)), plate_at(3.0, 1e-3))
+    scene = scene_of(("ground", shapes.ground(1000.0, z=-1.0), ep.Material(reflectivity=0.3, scattering=1.0)),
+                     plate_at(3.0, 1e-3))
     paths = traced(scene, make_radar(), 20_000, max_bounces=1)
     on_plate = np.asarray(paths.mesh_id)[paths.offsets] == 1
     return level_error(paths, 3.0, exact.plate_rcs(1e-3, 0.0), on_plate)
 
 
-@cases("self intersection", "a convex metal sphere at 300 m returns single bounces only (share of paths with more)", bound=0.0)
+@cases("self intersection", "a convex metal sphere at 300 m returns single bounces only (share of paths with more)",
+       bound=0.0)
 def self_intersection() -> float:
     scene = scene_of(("sphere", shapes.sphere(0.5, subdivisions=24), METAL, {"position": (300.0, 0.0, 0.0), "smooth": True}))
     paths = traced(scene, make_radar(), 200_000, max_bounces=4)
@@ -93,7 +97,8 @@ def self_intersection() -> float:
     return float(np.mean(np.asarray(paths.num_bounces) > 1))
 
 
-@cases("corner reflector at 300 m", "a trihedral of 0.1 m loses no rays to its own surfaces: level of its triple bounce", bound=0.1,
+@cases("corner reflector at 300 m", "a trihedral of 0.1 m loses no rays to its own surfaces: level of its triple bounce",
+       bound=0.1,
        unit="dB")
 def far_trihedral() -> float:
     scene = scene_of(("corner", shapes.trihedral(0.1), METAL, {"position": (300.0, 0.0, 0.0)}))
@@ -113,7 +118,8 @@ def sphere_edges() -> float:
     return misses(scene_of(("ball", ball, METAL)), np.array([0.3, 0.1, -0.2]), edge_points(ball, 300_000))
 
 
-@cases("vertices", "of rays aimed exactly at vertices Embree may lose a few (its issues 181 and 188)", bound=1e-3, unit="of them")
+@cases("vertices", "of rays aimed exactly at vertices Embree may lose a few (its issues 181 and 188)", bound=1e-3,
+       unit="of them")
 def vertices() -> float:
     scene, lost, shot = scene_of(("ball", shapes.sphere(1.0, subdivisions=12), METAL)), 0, 0
     targets = np.asarray(scene.world_vertices(0, 0.0))
@@ -125,20 +131,23 @@ def vertices() -> float:
 def sliver_wall(width: float, height: float, count: int, distance: float):
     """A wall across the x axis of `count` pairs of slivers as high as the wall."""
     y = np.linspace(-width / 2, width / 2, count + 1)
-    low, high = (np.column_stack([np.full(count + 1, distance), y, np.full(count + 1, z)]) for z in (-height / 2, height / 2))
+    low, high = (np.column_stack([np.full(count + 1, distance), y, np.full(count + 1, z)])
+                 for z in (-height / 2, height / 2))
     k = np.arange(count)
     top = k + count + 1
-    return ep.Mesh(np.vstack([low, high]), np.vstack([np.column_stack([k, k + 1, top]), np.column_stack([k + 1, top + 1, top])]))
+    faces = np.vstack([np.column_stack([k, k + 1, top]), np.column_stack([k + 1, top + 1, top])])
+    return ep.Mesh(np.vstack([low, high]), faces)
 
 
 @cases("slivers", "a plate cut into slivers of 1 : 10 000 has the level of the sound one", bound=0.02, unit="dB")
 def slivers() -> float:
     cut = scene_of(("plate", sliver_wall(0.1, 0.1, 10_000, 200.0), METAL))
-    whole, parts = (rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=1), 200.0) for scene in (scene_of(plate_at(200.0)), cut))
+    whole, parts = (rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=1), 200.0)
+                    for scene in (scene_of(plate_at(200.0)), cut))
     return abs(decibels(parts / whole))
 
 
-@cases("slivers of a wall", "of rays that meet slivers of 100 m by 5 mm few are lost, where single precision misplaces them by 1 mm",
+@cases("slivers of a wall", "of rays that meet slivers of 100 m by 5 mm few are lost where single precision errs by 1 mm",
        bound=1e-2, unit="of them")
 def sliver_walls() -> float:
     random, count = np.random.default_rng(2), 200_000
@@ -147,8 +156,8 @@ def sliver_walls() -> float:
     return misses(scene, np.zeros(3), targets) / count
 
 
-@cases("grazing incidence", "amplitudes stay finite and below that of a mirror that faces the radar (points on a ground of 20 m, 1 cm "
-       "below, are known to 1e-4 of their distance)", bound=1.0003, unit="of it")
+@cases("grazing incidence", "amplitudes stay finite and below that of a mirror that faces the radar (points on a ground of "
+       "20 m, 1 cm below, are known to 1e-4 of their distance)", bound=1.0003, unit="of it")
 def grazing() -> float:
     paths = traced(scene_of(("ground", shapes.ground(20.0, z=-1e-2), METAL)), make_radar(), 100_000, max_bounces=1)
     largest = np.sqrt(POWER) / (4 * np.pi) / paths.frame.strata[-1].ray_density
@@ -172,15 +181,18 @@ def coplanar_meshes() -> float:
     return abs(decibels(rcs_of(traced(both, make_radar(), 2 ** 14, max_bounces=1), 200.0) / one))
 
 
-@cases("triangles without area or with NaN", "they are removed and counted; the record keeps its bits (bytes that differ)", bound=0.0)
+@cases("triangles without area or with NaN", "they are removed and counted; the record keeps its bits (bytes that differ)",
+       bound=0.0)
 def without_area() -> float:
     plate = shapes.plate(0.1, 0.1)
     bad_vertices = [[0, 0, 0], [0, 0.01, 0], [0, 0.02, 0], [np.nan, 0, 0], [np.inf, 1, 1]]
     n = len(plate.vertices)
     bad_triangles = [[0, 0, 1], [n, n + 1, n + 2], [0, 1, n + 3], [0, 1, n + 4]]
-    broken = ep.Mesh(np.vstack([plate.vertices, bad_vertices]), np.vstack([bad_triangles[:2], plate.triangles, bad_triangles[2:]]))
+    broken = ep.Mesh(np.vstack([plate.vertices, bad_vertices]),
+                     np.vstack([bad_triangles[:2], plate.triangles, bad_triangles[2:]]))
     assert broken.num_removed_triangles == 4 and list(broken.original_triangle) == [2, 3]
-    records = [traced(scene_of(("plate", mesh, METAL, {"position": (200.0, 0.0, 0.0)})), make_radar(), 4000) for mesh in (plate, broken)]
+    records = [traced(scene_of(("plate", mesh, METAL, {"position": (200.0, 0.0, 0.0)})), make_radar(), 4000)
+               for mesh in (plate, broken)]
     hits = [np.asarray(paths.hits).tobytes() for paths in records]
     weights = [np.asarray(paths.weight).tobytes() for paths in records]
     return float((hits[0] != hits[1]) + (weights[0] != weights[1]))
@@ -190,12 +202,13 @@ def without_area() -> float:
 def inverted() -> float:
     corner = shapes.trihedral(0.2)
     inside_out = ep.Mesh(corner.vertices, np.asarray(corner.triangles)[:, [0, 2, 1]])
-    one, two = (abs(np.sum(field(traced(scene_of(("corner", mesh, METAL, {"position": (20.0, 0.0, 0.0)})), make_radar(), 2 ** 13,
-                                        footprint="none")))) for mesh in (corner, inside_out))
+    scenes = [scene_of(("corner", mesh, METAL, {"position": (20.0, 0.0, 0.0)})) for mesh in (corner, inside_out)]
+    one, two = (abs(np.sum(field(traced(scene, make_radar(), 2 ** 13, footprint="none")))) for scene in scenes)
     return abs(one - two) / one if one > 0 else np.inf
 
 
-@cases("tiny triangles", "a plate of 180 000 triangles, a twentieth of a wavelength each, has the level of two", bound=0.02, unit="dB")
+@cases("tiny triangles", "a plate of 180 000 triangles, a twentieth of a wavelength each, has the level of two", bound=0.02,
+       unit="dB")
 def tiny_triangles() -> float:
     levels = [level_of(shapes.plate(0.1, 0.1, edge=edge)) for edge in (None, 0.1 / 300)]
     return abs(decibels(levels[1] / levels[0]))
@@ -213,7 +226,7 @@ def defective(mesh):
     return ep.Mesh(np.vstack([vertices, extra]), np.vstack([turned, triangles, fins, bad]))
 
 
-@cases("every defect at once", "a plate with duplicates, fins, inverted, degenerate and NaN facets has the level of the sound one",
+@cases("every defect at once", "a plate with duplicates, fins, inverted, degenerate and NaN facets: level of a sound one",
        bound=0.05, unit="dB")
 def every_defect() -> float:
     sound = shapes.plate(0.1, 0.1, edge=0.02)

@@ -7,7 +7,6 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
-from .. import closed_forms as exact
 from .case import Cases
 from .scenes import METAL, ROUGH, make_radar, scene_of, traced, traced_quietly
 
@@ -23,12 +22,14 @@ def moving_patch(motion, side: float = 1e-3, material=METAL):
 def cube_error(paths, **settings) -> float:
     """Largest difference of a signal from that of the exact replay, relative to the largest sample."""
     exact_cube = ep.synthesize(paths, paths.radar, evaluate="chirps", method="direct")
-    return float(np.abs(ep.synthesize(paths, paths.radar, method="direct", **settings) - exact_cube).max() / np.abs(exact_cube).max())
+    return float(np.abs(ep.synthesize(paths, paths.radar, method="direct",
+                                      **settings) - exact_cube).max() / np.abs(exact_cube).max())
 
 
 @cases("static scene", "all chirps hold the same bits: largest difference between them", bound=0.0, unit="sqrt(W)")
 def static_scene() -> float:
-    scene = scene_of(("ball", shapes.sphere(0.4), ROUGH, {"position": (6.0, 0.5, 0.2)}), ("plate", shapes.plate(1.0, 1.0), METAL,
+    scene = scene_of(("ball", shapes.sphere(0.4), ROUGH, {"position": (6.0, 0.5, 0.2)}),
+                     ("plate", shapes.plate(1.0, 1.0), METAL,
                      {"position": (9.0, 0.0, 0.0)}))
     paths, worst = traced(scene, make_radar(num_chirps=64), 20_000), 0.0
     for method in ("auto", "direct", "recurrence", "nufft"):
@@ -37,7 +38,7 @@ def static_scene() -> float:
     return worst
 
 
-@cases("velocity jumps", "linear keyframes with kinks within chirps: the polynomials are cut there (error beside the exact replay)",
+@cases("velocity jumps", "linear keyframes with kinks in chirps: polynomials are cut there (error beside the exact replay)",
        bound=3e-5, unit="of the signal")
 def velocity_jumps() -> float:
     times = np.array([-1e-3, 0.41e-3, 0.4137e-3, 1.333e-3, 4e-3])
@@ -55,12 +56,16 @@ def lengths_through_jump() -> float:
     return float(np.abs(np.asarray(paths.lengths(at)) - 2 * np.interp(at, times, x)[:, None]).max())
 
 
-@cases("interpenetrating meshes", "two bodies that move through each other: hits are those of a brute-force search at that time (rays)",
+@cases("interpenetrating meshes",
+       "two bodies that move through each other: hits are those of a brute-force search at that time (rays)",
        bound=0.0, unit="rays")
 def interpenetrating() -> float:
-    scene = scene_of(("box", shapes.box(0.6), METAL, {"motion": ep.LinearMotion(velocity=(10.0, 0, 0)), "position": (4.0, 0.0, 0.0)}),
+    scene = scene_of(("box", shapes.box(0.6), METAL, {"motion": ep.LinearMotion(velocity=(10.0, 0, 0)), "position": (4.0,
+                                                                                                                     0.0,
+                                                                                                                     0.0)}),
                      ("ball", shapes.sphere(0.5, subdivisions=4), ROUGH,
-                      {"motion": ep.LinearMotion(velocity=(-10.0, 0, 0), angular_velocity=(0, 0, 9.0)), "position": (4.4, 0.1, 0.0)}))
+                      {"motion": ep.LinearMotion(velocity=(-10.0, 0, 0), angular_velocity=(0, 0, 9.0)),
+                       "position": (4.4, 0.1, 0.0)}))
     random, wrong = np.random.default_rng(5), 0
     for time in (0.0, 0.013, 0.02, 0.031):
         directions = np.array([4.2, 0.0, 0.0]) + random.uniform(-0.6, 0.6, (1500, 3))
@@ -89,7 +94,8 @@ def brute_force(scene, directions, time: float):
     return owner, best
 
 
-@cases("parts of moving bodies in each other", "the parts of two bodies that move through each other add up to the whole", bound=1e-12,
+@cases("parts of moving bodies in each other", "the parts of two bodies that move through each other add up to the whole",
+       bound=1e-12,
        unit="of the signal")
 def interpenetrating_parts() -> float:
     scene = scene_of(("box", shapes.box(0.6), ep.Material(reflectivity=0.5, scattering=0.7),
@@ -102,7 +108,8 @@ def interpenetrating_parts() -> float:
     return float(np.abs(sum(parts.values()) - whole).max() / np.abs(whole).max())
 
 
-@cases("a body that drives through the radar", "samples that are not finite while a plate passes both antennas", bound=0.0, unit="samples")
+@cases("a body that drives through the radar", "samples that are not finite while a plate passes both antennas", bound=0.0,
+       unit="samples")
 def through_the_radar() -> float:
     bad = 0
     for start in (-0.0005, -0.00048, -0.02):
@@ -115,12 +122,14 @@ def through_the_radar() -> float:
     return float(bad)
 
 
-@cases("a plate that turns edge-on", "its echo goes through zero when it shows the radar its edge: beside the exact replay", bound=3e-4,
+@cases("a plate that turns edge-on", "its echo goes through zero when it shows the radar its edge: beside the exact replay",
+       bound=3e-4,
        unit="of the signal")
 def edge_on() -> float:
     motion = ep.LinearMotion(angular_velocity=(0.0, 0.0, 0.3 / 2e-3))
     scene = ep.Scene()
-    scene.add(shapes.plate(0.02, 0.02), name="plate", material=ROUGH, position=(5.0, 0.0, 0.0), yaw=np.pi / 2 - 0.2, motion=motion)
+    scene.add(shapes.plate(0.02, 0.02), name="plate", material=ROUGH, position=(5.0, 0.0, 0.0), yaw=np.pi / 2 - 0.2,
+              motion=motion)
     return cube_error(traced(scene, make_radar(num_chirps=64), 4000))
 
 
@@ -134,14 +143,16 @@ def too_short() -> float:
     return 1.0
 
 
-@cases("a frame at a late start", "the same motion one hour later, around the same place: relative change of the signal", bound=1e-5,
+@cases("a frame at a late start", "the same motion one hour later, around the same place: relative change of the signal",
+       bound=1e-5,
        unit="of the signal")
 def late_start() -> float:
     hour, speed = 3600.0, -8.0
     cubes = []
     for start in (0.0, hour):
         motion = ep.LinearMotion(velocity=(speed, 0.0, 0.0))
-        scene = scene_of(("ball", shapes.sphere(0.3), ROUGH, {"position": (9.0 - speed * start, 0.0, 0.0), "motion": motion}))
+        scene = scene_of(("ball", shapes.sphere(0.3), ROUGH,
+                          {"position": (9.0 - speed * start, 0.0, 0.0), "motion": motion}))
         paths = traced(scene, make_radar(num_chirps=16), 4000, start_time=start)
         cubes.append(ep.synthesize(paths, paths.radar))
     return float(np.linalg.norm(cubes[0] - cubes[1]) / np.linalg.norm(cubes[0]))

@@ -3,10 +3,11 @@ from __future__ import annotations
 
 HEAD = """# Hard cases
 
-What is known to break a ray tracer or a coherent sum, what must hold there, and what `echopath bench hard` measured ({machine}).
+What is known to break a ray tracer or a coherent sum, what must hold there, and what `echopath bench hard` measured
+({machine}).
 {count} cases, {holding} hold.
 """
-COLUMNS = "| case | expected | bound | measured | |\n|---|---|---|---|---|"
+COLUMNS = "| case | expected | bound | measured | verdict |\n|---|---|---|---|---|"
 
 
 def page(results: list, machine: str) -> str:
@@ -21,7 +22,7 @@ def page(results: list, machine: str) -> str:
 def row(result) -> str:
     """One case as a row of the table, no cell empty."""
     case = result.case
-    measured = result.error or f"{result.value:.3g} {case.unit}".rstrip()
+    measured = result.error or f"{result.value:.5g} {case.unit}".rstrip()
     return "| " + " | ".join(_cell(text) for text in (case.name, case.expected, case.bound_text, measured,
                                                       "holds" if result.holds else "**fails**")) + " |"
 

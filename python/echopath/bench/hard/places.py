@@ -20,10 +20,12 @@ def not_finite(paths) -> int:
     return int(sum(np.sum(~np.isfinite(np.asarray(values))) for values in arrays))
 
 
-@cases("radar inside a closed mesh", "every ray meets the wall, and the power is that of an integrating sphere", bound=0.05, unit="dB")
+@cases("radar inside a closed mesh", "every ray meets the wall, and the power is that of an integrating sphere", bound=0.05,
+       unit="dB")
 def inside_closed() -> float:
     radius, reflectivity = 3.0, 0.3
-    scene = scene_of(("sphere", shapes.sphere(radius, subdivisions=40), ep.Material(reflectivity=reflectivity, scattering=1.0)))
+    scene = scene_of(("sphere", shapes.sphere(radius, subdivisions=40),
+                      ep.Material(reflectivity=reflectivity, scattering=1.0)))
     radar = make_radar((0.0, 0.0, 0.0))
     paths = traced(scene, radar, 30_000, max_bounces=12)
     one_bounce = np.asarray(paths.num_bounces) == 1
@@ -41,7 +43,8 @@ def inside_metal() -> float:
     return float(np.sum(np.asarray(paths.mesh_id) == 1))
 
 
-@cases("radar exactly on a surface", "neither before nor behind it: all that meets it is dropped and counted (rays not accounted for)",
+@cases("radar exactly on a surface",
+       "neither before nor behind it: all that meets it is dropped and counted (rays not accounted for)",
        bound=0.0, unit="rays")
 def on_surface() -> float:
     paths = traced_quietly(scene_of(("bumper", shapes.plate(1.0, 1.0), ROUGH), plate_at(20.0)), make_radar(), 2 ** 15)
@@ -50,12 +53,14 @@ def on_surface() -> float:
     return float(counts.num_rays - counts.num_false_hits - counts.num_near_antenna - counts.num_grazing)
 
 
-@cases("radar a hair off a surface", "contributions within 1 mm of an antenna are dropped and counted, all else is finite", bound=0.0,
+@cases("radar a hair off a surface", "contributions within 1 mm of an antenna are dropped and counted, all else is finite",
+       bound=0.0,
        unit="values not finite")
 def beside_surface() -> float:
     bad = 0
     for gap in (1e-9, 1e-6, 5e-4, 1e-3):
-        paths = traced_quietly(scene_of(("bumper", shapes.plate(1.0, 1.0), ROUGH, {"position": (gap, 0.0, 0.0)}), plate_at(20.0)), make_radar(), 20_000)
+        paths = traced_quietly(scene_of(("bumper", shapes.plate(1.0, 1.0), ROUGH, {"position": (gap, 0.0, 0.0)}),
+                                        plate_at(20.0)), make_radar(), 20_000)
         bad += not_finite(paths)
         assert gap > 4e-4 or paths.frame.statistics.num_near_antenna > 0
     return float(bad)
@@ -70,7 +75,18 @@ def under_ground() -> float:
     return float(np.sum(np.asarray(paths.mesh_id) == 1))
 
 
-@cases("antenna on the normal of a hit", "incidence along the normal has no plane of incidence: level in both polarisation models",
+@cases("receiver behind a screen", "paths of a rough plate, in full view of the transmitter, that reach it through metal",
+       bound=0.0, unit="paths")
+def behind_a_screen() -> float:
+    screen = ("screen", shapes.plate(2.0, 2.0), METAL, {"position": (1.0, 3.0, 0.0)})
+    paths = traced(scene_of(("plate", shapes.plate(1.0, 1.0), ROUGH, {"position": (10.0, 3.0, 0.0)}), screen),
+                   make_radar(baseline=3.0), 20_000, max_bounces=1)
+    assert paths.frame.statistics.num_hits > 1000
+    return float(np.sum(np.asarray(paths.mesh_id)[paths.offsets] == 0))
+
+
+@cases("antenna on the normal of a hit",
+       "incidence along the normal has no plane of incidence: level in both polarisation models",
        bound=0.05, unit="dB")
 def on_the_normal() -> float:
     levels = []
@@ -97,13 +113,16 @@ def in_the_plane() -> float:
     return float(amplitude.max()) if len(amplitude) else 0.0
 
 
-@cases("antennas 1 mm apart and far apart", "amplitudes stay finite from a baseline of 0 to one of 1 km", bound=0.0, unit="values not finite")
+@cases("antennas 1 mm apart and far apart", "amplitudes stay finite from a baseline of 0 to one of 1 km", bound=0.0,
+       unit="values not finite")
 def baselines() -> float:
     scene = scene_of(plate_at(20.0, 1.0), ("ground", shapes.ground(200.0, z=-1.0), ROUGH))
-    return float(sum(not_finite(traced(scene, make_radar(baseline=baseline), 10_000)) for baseline in (0.0, 1e-12, 1e-3, 1e3)))
+    return float(sum(not_finite(traced(scene, make_radar(baseline=baseline), 10_000))
+                     for baseline in (0.0, 1e-12, 1e-3, 1e3)))
 
 
-@cases("a null of a plate", "depth below broadside with 2^16 rays of a Fibonacci set, first order or no filter", bound=60.0, unit="dB", at_least=True)
+@cases("a null of a plate", "depth below broadside with 2^16 rays of a Fibonacci set, first order or no filter", bound=60.0,
+       unit="dB", at_least=True)
 def plate_null() -> float:
     angle = np.arcsin(exact.WAVELENGTH / 0.2)  # of the first null
     scene, depths = scene_of(("plate", shapes.plate(0.1, 0.1), METAL)), []
@@ -114,17 +133,20 @@ def plate_null() -> float:
     return min(depths)
 
 
-@cases("a null of the default method", "depth below broadside with 2^16 rays of the lattice", bound=40.0, unit="dB", at_least=True)
+@cases("a null of the default method", "depth below broadside with 2^16 rays of the lattice", bound=40.0, unit="dB",
+       at_least=True)
 def default_null() -> float:
     angle, scene = np.arcsin(exact.WAVELENGTH / 0.2), scene_of(("plate", shapes.plate(0.1, 0.1), METAL))
-    levels = [ep.rcs(scene, frequency=exact.FREQUENCY, incidence=(-np.cos(turn), np.sin(turn), 0.0), num_rays=2 ** 16, max_bounces=1)
+    levels = [ep.rcs(scene, frequency=exact.FREQUENCY, incidence=(-np.cos(turn), np.sin(turn), 0.0), num_rays=2 ** 16,
+                     max_bounces=1)
               for turn in (0.0, angle)]
     return decibels(levels[0] / levels[1])
 
 
 def reflectivity_of(material) -> float:
     """Power reflectivity at normal incidence: the echo of a plate over that of metal."""
-    levels = [rcs_of(traced(scene_of(("plate", shapes.plate(0.1, 0.1), one, {"position": (200.0, 0.0, 0.0)})), make_radar(), 4096,
+    levels = [rcs_of(traced(scene_of(("plate", shapes.plate(0.1, 0.1), one, {"position": (200.0, 0.0, 0.0)})), make_radar(),
+                            4096,
                             max_bounces=1), 200.0) for one in (material, METAL)]
     return levels[0] / levels[1]
 
@@ -134,7 +156,8 @@ def fresnel_power(permittivity: complex) -> float:
     return abs((1 - root) / (1 + root)) ** 2
 
 
-@cases("permittivities from 1e-9 to 1e18", "huge, tiny, lossless, negative: power reflectivity beside Fresnel's at normal incidence",
+@cases("permittivities from 1e-9 to 1e18",
+       "huge, tiny, lossless, negative: power reflectivity beside Fresnel's at normal incidence",
        bound=1e-3, unit="of full reflection")
 def permittivities() -> float:
     values = (1e18 - 1e18j, 1e18, 1e-9, 1e-9 - 1e-12j, 4 - 1e-15j, 4.0, 4 - 4e9j, -4 - 0.1j, -4 - 1e-12j, 2.0)
@@ -146,11 +169,14 @@ def like_air() -> float:
     return reflectivity_of(ep.Material(permittivity=1.0))
 
 
-@cases("a dielectric sphere", "both polarisations meet at its middle: level of pi a^2 times Fresnel's reflectivity", bound=0.1, unit="dB")
+@cases("a dielectric sphere", "both polarisations meet at its middle: level of pi a^2 times Fresnel's reflectivity",
+       bound=0.1, unit="dB")
 def dielectric_sphere() -> float:
-    ball = ("ball", shapes.sphere(0.3, subdivisions=40), ep.Material(permittivity=4 - 0.2j), {"position": (200.0, 0.0, 0.0), "smooth": True})
+    ball = ("ball", shapes.sphere(0.3, subdivisions=40), ep.Material(permittivity=4 - 0.2j),
+            {"position": (200.0, 0.0, 0.0), "smooth": True})
     truth = np.pi * 0.3 ** 2 * fresnel_power(4 - 0.2j)
-    return max(abs(decibels(rcs_of(traced(scene_of(ball), make_radar(), 2 ** 14, max_bounces=1, polarization=model), 200.0) / truth))
+    return max(abs(decibels(rcs_of(traced(scene_of(ball), make_radar(), 2 ** 14, max_bounces=1, polarization=model),
+                                   200.0) / truth))
                for model in ("scalar", "jones"))
 
 
@@ -158,17 +184,20 @@ def corner_of(floor, wall, angle: float) -> ep.Scene:
     """A floor and a wall of 0.1 m that meet at a right angle 200 m ahead, seen `angle` rad above the floor."""
     up, along = np.array([-np.sin(angle), 0.0, np.cos(angle)]), np.array([-np.cos(angle), 0.0, -np.sin(angle)])
     corner, side = np.array([200.0, -0.05, 0.0]), np.array([0.0, 0.1, 0.0])
-    sheets = [ep.Mesh([corner, corner + 0.1 * edge, corner + 0.1 * edge + side, corner + side], [[0, 1, 2], [0, 2, 3]]) for edge in (along, up)]
+    sheets = [ep.Mesh([corner, corner + 0.1 * edge, corner + 0.1 * edge + side, corner + side], [[0, 1, 2], [0, 2, 3]])
+              for edge in (along, up)]
     return scene_of(("floor", sheets[0], floor), ("wall", sheets[1], wall))
 
 
-@cases("a corner of earth and metal", "both orders of the double bounce add up in the scalar model as they do with field vectors",
+@cases("a corner of earth and metal",
+       "both orders of the double bounce add up in the scalar model as they do with field vectors",
        bound=0.1, unit="dB")
 def mixed_corner() -> float:
     earth, worst = ep.Material(permittivity=4 - 0.2j), 0.0
     for angle in np.radians([20.0, 45.0, 60.0]):
         for wall in (METAL, earth):
-            levels = [rcs_of(traced(corner_of(earth, wall, angle), make_radar(), 2 ** 14, max_bounces=2, polarization=model), 200.0)
+            levels = [rcs_of(traced(corner_of(earth, wall, angle), make_radar(), 2 ** 14, max_bounces=2,
+                                    polarization=model), 200.0)
                       for model in ("scalar", "jones")]
             worst = max(worst, abs(decibels(levels[0] / levels[1])))
     return worst
@@ -179,7 +208,8 @@ def bad_materials() -> float:
     wrong = [("permittivity", dict(permittivity=0.0)), ("permittivity", dict(permittivity=complex(np.nan, 0))),
              ("permittivity", dict(permittivity=4 + 1j)), ("permittivity", dict(permittivity=np.inf)),
              ("scattering", dict(reflectivity=0.5, scattering=1.0001)), ("reflectivity", dict(reflectivity=1.0 + 1e-9)),
-             ("roughness_height", dict(reflectivity=0.5, roughness_height=-1e-9)), ("conductivity", dict(permittivity=4.0, conductivity=np.nan))]
+             ("roughness_height", dict(reflectivity=0.5, roughness_height=-1e-9)),
+             ("conductivity", dict(permittivity=4.0, conductivity=np.nan))]
     accepted = 0
     for name, keywords in wrong:
         try:

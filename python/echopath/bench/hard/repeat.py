@@ -11,7 +11,7 @@ import echopath as ep
 
 from ...actors import shapes
 from .case import Cases
-from .scenes import METAL, ROUGH, make_radar, same_bits, scene_of, traced
+from .scenes import METAL, make_radar, same_bits, scene_of, traced
 
 cases = Cases("The same bits")
 THREADS = (1, 2, 3, 7)
@@ -20,9 +20,11 @@ THREADS = (1, 2, 3, 7)
 def small_street(num_chirps: int = 16):
     """A moving rough ball, a metal corner and a mirror, all regimes at once."""
     motion = ep.LinearMotion(velocity=(-3.0, 1.0, 0.0), angular_velocity=(0.0, 0.0, 2.0))
-    scene = scene_of(("ball", shapes.sphere(0.4), ep.Material(permittivity=4 - 0.2j, scattering=0.6), {"position": (6.0, 0.5, 0.2), "motion": motion, "smooth": True}),
+    scene = scene_of(("ball", shapes.sphere(0.4), ep.Material(permittivity=4 - 0.2j, scattering=0.6),
+                      {"position": (6.0, 0.5, 0.2), "motion": motion, "smooth": True}),
                      ("corner", shapes.dihedral(0.5), METAL, {"position": (9.0, -1.0, 0.0)}),
-                     ("wall", shapes.wall(40.0, 6.0), ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True), {"position": (10.0, 3.0, -2.0)}))
+                     ("wall", shapes.wall(40.0, 6.0), ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True),
+                      {"position": (10.0, 3.0, -2.0)}))
     waveform = make_radar(num_chirps=num_chirps).waveform
     receivers = [ep.Antenna((0.0, 0.002 * k, 0.0)) for k in range(3)]
     return scene, ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=receivers)
@@ -38,7 +40,8 @@ def outcome(num_rays: int = 8000):
     report = ep.validity(paths, radar)
     power = ep.received_power(paths)
     angles = ep.range_azimuth(shown, radar)
-    return paths, [cube.tobytes(), *(part.tobytes() for part in parts.values()), shown.values.tobytes(), np.asarray(angles.power).tobytes(),
+    return paths, [cube.tobytes(), *(part.tobytes() for part in parts.values()), shown.values.tobytes(),
+                   np.asarray(angles.power).tobytes(),
                    repr(power).encode(), str(report).encode()]
 
 
@@ -47,8 +50,8 @@ def differences(one, two) -> int:
     return int(not same_bits(paths, again)) + sum(a != b for a, b in zip(made, made_again, strict=True))
 
 
-@cases("threads", "record, signal, parts, maps with noise, validity, power: results whose bits differ between 1, 2, 3 and 7 threads", bound=0.0,
-       unit="results")
+@cases("threads", "record, signal, parts, maps with noise, validity, power: results whose bits differ between 1, 2, 3 and 7 "
+       "threads", bound=0.0, unit="results")
 def threads() -> float:
     before = ep.num_threads()
     try:
@@ -84,7 +87,8 @@ def after_a_file() -> float:
     wrong = int(not same_bits(frame.paths, loaded.paths))
     wrong += ep.synthesize(loaded.paths, loaded.radar).tobytes() != ep.synthesize(frame.paths, radar).tobytes()
     wrong += loaded.spectrum.values.tobytes() != frame.spectrum.values.tobytes()
-    return float(wrong + sum(loaded.parts["parts"][name].tobytes() != cube.tobytes() for name, cube in frame.parts["parts"].items()))
+    return float(wrong + sum(loaded.parts["parts"][name].tobytes() != cube.tobytes() for name,
+                             cube in frame.parts["parts"].items()))
 
 
 @cases("seeds in files", "files of records and frames that do not tell the seeds of rays and noise", bound=0.0, unit="files")

@@ -73,7 +73,8 @@ def broadside_rcs(side: float, distance: float) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(64)
     y, w = 0.5 * side * nodes, 0.5 * side * weights
     r = np.sqrt(distance ** 2 + y[:, None] ** 2 + y[None, :] ** 2)
-    integral = np.sum(w[:, None] * w[None, :] * np.exp(-2j * exact.WAVENUMBER * (r - distance)) * (distance / r) * (distance / r) ** 2)
+    spreading = (distance / r) ** 3  # cosine of incidence, both ways
+    integral = np.sum(w[:, None] * w[None, :] * np.exp(-2j * exact.WAVENUMBER * (r - distance)) * spreading)
     return 4 * np.pi * abs(integral) ** 2 / exact.WAVELENGTH ** 2
 
 
@@ -88,7 +89,8 @@ def edge_points(mesh, count: int, seed: int = 1) -> np.ndarray:
     """[count, 3] random points on edges of a mesh."""
     random = np.random.default_rng(seed)
     vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles, int)
-    face, corner, share = random.integers(len(triangles), size=count), random.integers(3, size=count), random.random((count, 1))
+    face, corner, share = random.integers(len(triangles), size=count), random.integers(3,
+                                                                                       size=count), random.random((count, 1))
     one, two = vertices[triangles[face, corner]], vertices[triangles[face, (corner + 1) % 3]]
     return one + share * (two - one)
 

@@ -35,7 +35,8 @@ def tones(chirps, ranges, amplitudes=None, **settings):
 def exact_samples(chirps, delay: float, samples) -> np.ndarray:
     """Chosen samples of one static echo of amplitude 1 in rational arithmetic: no digit is lost before the sine."""
     f0, slope, tau = Fraction(chirps.start_frequency), Fraction(chirps.slope), Fraction(delay)
-    turns = [f0 * tau + slope * Fraction(int(n)) / Fraction(chirps.sampling_rate) * tau - slope * tau * tau / 2 for n in samples]
+    turns = [f0 * tau + slope * Fraction(int(n)) / Fraction(chirps.sampling_rate) * tau - slope * tau * tau / 2
+             for n in samples]
     return np.exp(2j * np.pi * np.array([float(turn - turn.__floor__()) for turn in turns]))
 
 
@@ -48,7 +49,8 @@ def highest_side_lobe(samples, window_db: float) -> float:
     return float(10 * np.log10(power[np.abs(offset) > pad * half_width].max() / power.max()))
 
 
-@cases("carrier phase at 300 m", "delays stay in double precision and whole cycles go before the sine (single precision: 0.13 rad)",
+@cases("carrier phase at 300 m",
+       "delays stay in double precision and whole cycles go before the sine (single precision: 0.13 rad)",
        bound=1e-8, unit="rad")
 def carrier_phase() -> float:
     chirps, worst = waveform(bandwidth=2.4e8, num_chirps=1), 0.0
@@ -113,7 +115,8 @@ def recurrence_drift() -> float:
     return float(worst)
 
 
-@cases("non-uniform FFT at every tolerance", "rms error over the tolerance asked for, 1e-2 to 1e-12", bound=1.0, unit="of the tolerance")
+@cases("non-uniform FFT at every tolerance", "rms error over the tolerance asked for, 1e-2 to 1e-12", bound=1.0,
+       unit="of the tolerance")
 def nufft_tolerances() -> float:
     chirps, random = waveform(num_chirps=1), np.random.default_rng(4)
     ranges = random.uniform(0.0, chirps.max_range, 300)
@@ -126,7 +129,8 @@ def nufft_tolerances() -> float:
     return float(max(ratios))
 
 
-@cases("non-uniform FFT at the rim of its grid", "tones at both ends of the band, on grid points and half-way wrap round right: the tolerance of 1e-7, by the "
+@cases("non-uniform FFT at the rim of its grid",
+       "tones at both ends of the band, on grid points and half-way wrap round right: the tolerance of 1e-7, by the "
        "kernel's table within a tenth", bound=1.1e-7, unit="of the amplitude")
 def nufft_rim() -> float:
     chirps, worst = waveform(num_chirps=1), 0.0
@@ -160,7 +164,8 @@ def zero_amplitudes() -> float:
     return float(max(np.abs(values).max() for values in [*cubes, *maps]))
 
 
-@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN and nothing larger than their sum", bound=1.0, unit="of the sum")
+@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN and nothing larger than their sum", bound=1.0,
+       unit="of the sum")
 def denormals() -> float:
     ranges, worst = np.linspace(1.0, 70.0, 300), 0.0
     for method in STATIC:
@@ -180,7 +185,8 @@ def levels() -> float:
     return worst
 
 
-@cases("a chirp of one sample, one chirp", "one number: the carrier's phase; its map is that number", bound=1e-7, unit="of the amplitude")
+@cases("a chirp of one sample, one chirp", "one number: the carrier's phase; its map is that number", bound=1e-7,
+       unit="of the amplitude")
 def one_sample() -> float:
     chirps, worst = waveform(num_samples=1, bandwidth=1e6, num_chirps=1), 0.0
     distance = 0.3 * chirps.max_range
@@ -193,7 +199,8 @@ def one_sample() -> float:
     return float(worst)
 
 
-@cases("beyond the Nyquist range", "what lies outside the band is removed, not folded to a near range", bound=0.0, unit="sqrt(W)")
+@cases("beyond the Nyquist range", "what lies outside the band is removed, not folded to a near range", bound=0.0,
+       unit="sqrt(W)")
 def beyond_nyquist_range() -> float:
     chirps = waveform()
     return max(float(np.abs(tones(chirps, [1.0001 * chirps.max_range, 1.7 * chirps.max_range], method=method)).max())
@@ -215,7 +222,9 @@ def across_nyquist_range() -> float:
     return worst
 
 
-@cases("a target that crosses zero range", "the phases of the equations before and behind the antenna, within the error of the model (2 pi slope taudot (Tc/2)^2 = 1.34e-3)",
+@cases("a target that crosses zero range",
+       "the phases of the equations before and behind the antenna, within the error of the model, 2 pi slope taudot "
+       "(Tc/2)^2 = 1.34e-3",
        bound=1.4e-3, unit="of the amplitude")
 def across_zero_range() -> float:
     chirps, start, speed = waveform(num_chirps=64, chirp_interval=1e-3), 0.16, -5.0
@@ -245,7 +254,8 @@ def beyond_nyquist_speed() -> float:
     return float(abs(shown.velocity[row] - folded) / chirps.velocity_resolution())
 
 
-@cases("exactly between two cells", "both cells show the same level, the loss of the Hann window (1.42 dB)", bound=0.005, unit="dB")
+@cases("exactly between two cells", "both cells show the same level, the loss of the Hann window (1.42 dB)", bound=0.005,
+       unit="dB")
 def between_cells() -> float:
     chirps = waveform(num_chirps=1)
     samples = tones(chirps, [100.5 * chirps.range_resolution], method="direct")

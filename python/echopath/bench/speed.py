@@ -1,5 +1,5 @@
-"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, tracer, the street beside its
-floor."""
+"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, tracer, the street frame
+beside its floor."""
 from __future__ import annotations
 
 import csv
@@ -108,9 +108,8 @@ def verdicts(results: dict) -> list[dict]:
                   row["share"])
              for row in results["tracer"]]
     street = results["street"]
-    if street["floor_s"]:
-        rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"],
-                         most=True))
+    over = street["frame_s"] / street["floor_s"]
+    rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, over, most=True))
     return rows
 
 
@@ -171,9 +170,7 @@ def _replay_lines(cases: list[dict]) -> list[str]:
 
 
 def _tracer_lines(rows: list[dict]) -> list[str]:
-    if not rows:
-        return ["", "tracer beside its own queries: not measured"]
-    lines = ["", "tracer beside a bare loop over its own queries, packed alike", 
+    lines = ["", "tracer beside a bare loop over its own queries, packed alike",
              " triangles  threads   queries   trace s    bare s   share of it"]
     return lines + [f"{row['triangles']:>10,}{row['threads']:>9}{row['queries']:>10,}{row['trace_s']:10.4f}"
                     f"{row['bare_s']:10.4f}{row['share']:12.2f}" for row in rows]
@@ -181,9 +178,9 @@ def _tracer_lines(rows: list[dict]) -> list[str]:
 
 def _street_lines(street: dict) -> list[str]:
     floor = street["floor"]
-    queries = "not measured" if floor["queries_s"] is None else f"{floor['queries_s']:.3f} s"
     return ["", f"street, {street['rays']:,} rays, {street['chirps']} chirps, {street['paths']:,} paths, "
             f"{street['moving_paths']:,} moving: trace {street['trace_s']:.3f} s, replay alone {street['replay_s']:.3f} s, "
-            f"signal {street['synthesize_s']:.3f} s, both partitions {street['decompose_s']:.3f} s, frame {street['frame_s']:.3f} s",
-            f"  its floor: own Embree queries at the bare rate {queries}; moving path-chirps x {speed_frames.MOVING_NS} ns "
-            f"{floor['moving_s']:.3f} s; static paths once {floor['still_s']:.3f} s"]
+            f"signal {street['synthesize_s']:.3f} s, both partitions {street['decompose_s']:.3f} s, "
+            f"frame {street['frame_s']:.3f} s",
+            f"  its floor: own Embree queries at the bare rate {floor['queries_s']:.3f} s; moving path-chirps x "
+            f"{speed_frames.MOVING_NS} ns {floor['moving_s']:.3f} s; static paths once {floor['still_s']:.3f} s"]

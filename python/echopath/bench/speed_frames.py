@@ -11,7 +11,7 @@ import echopath as ep
 from ..materials import data_folder
 from ..scene_file import load_scene
 from ..stages import StageClock
-from .speed_tracer import bare_share, can_ask_again
+from .speed_tracer import bare_share
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
@@ -117,12 +117,12 @@ def measure_street(*, quick: bool = False) -> dict:
     parts_s, _ = _wall(lambda: ep.decompose(paths, scene.radar, scene.parts))
     one_chirp = with_frame(scene.radar, 1)
     still_s, _ = _wall(lambda: ep.synthesize(paths, one_chirp))
-    queries_s = bare_share(scene.scene, scene.radar, rays)["bare_s"] if can_ask_again() else None
+    queries_s = bare_share(scene.scene, scene.radar, rays)["bare_s"]
     moving_s = 1e-9 * MOVING_NS * moving * chirps * 2.0 / ep.num_threads()
     terms = {"queries_s": queries_s, "moving_s": moving_s, "still_s": still_s * (1.0 - moving / max(1, paths.num_paths))}
     return {"rays": rays, "paths": paths.num_paths, "moving_paths": moving, "chirps": chirps, "trace_s": trace_s,
             "replay_s": replay_s, "synthesize_s": whole_s, "decompose_s": parts_s, "frame_s": trace_s + parts_s,
-            "floor": terms, "floor_s": sum(terms.values()) if can_ask_again() else None}
+            "floor": terms, "floor_s": sum(terms.values())}
 
 
 def _wall(work):

@@ -24,15 +24,8 @@ def rough_spheres(subdivisions: int):
     return scene
 
 
-def can_ask_again() -> bool:
-    """Whether this core can ask the queries of a trace again in a bare loop."""
-    return hasattr(ep._core, "bare_queries")
-
-
 def measure_tracer(*, quick: bool = False) -> list[dict]:
-    """Rows by triangles and threads: medians of processor seconds of trace and queries alone; none without those."""
-    if not can_ask_again():
-        return []
+    """Rows by triangles and threads: medians of processor seconds of trace and queries alone."""
     radar = ep.Radar(waveform(1), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
     threads = ep.num_threads()
     rows = []

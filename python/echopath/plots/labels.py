@@ -63,11 +63,11 @@ def _draw_map(figure, labels, areas: list, title: str) -> None:
             _draw_area(axes, labels.range, rows, is_inside, colour)
             words = f"{name}: {_cells(np.count_nonzero(is_inside))}"
             axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
+    axes.set_xlim(labels.range[near], labels.range[far - 1])
+    axes.set_ylim(rows[bottom], rows[top - 1])
     for label in labels.objects:
         if label.peak is not None:
             _name_object(axes, labels, label)
-    axes.set_xlim(labels.range[near], labels.range[far - 1])
-    axes.set_ylim(rows[bottom], rows[top - 1])
     figure.suptitle(title, fontsize=10)
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
@@ -114,7 +114,10 @@ def _grey_limits(labels) -> dict:
 def _name_object(axes, labels, label) -> None:
     distance, row = label.peak[0], _in_plot_units(labels, label.peak[1])
     axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
-    axes.annotate(label.name, (distance, row), xytext=(14, -22), textcoords="offset points", color="white", fontsize=8,
+    left, right = axes.get_xlim()
+    is_far = distance > left + 0.7 * (right - left)  # its name then stands on the near side, within the map
+    axes.annotate(label.name, (distance, row), xytext=(-14 if is_far else 14, -22), textcoords="offset points", color="white",
+                  fontsize=8, horizontalalignment="right" if is_far else "left",
                   arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7},
                   bbox={"boxstyle": "round,pad=0.15", "facecolor": "black", "alpha": 0.6, "edgecolor": "none"})
 

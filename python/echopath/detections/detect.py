@@ -20,7 +20,8 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
     window, directions by `estimate_angles`. A detection has the label of the largest power in its cell without noise; it is
-    "noise" where echoes hold less than half of its power.
+    "noise" where echoes hold less than half of its power: those of the parts or labels in all channels, of paths alone by a model
+    of their fields in at most 8 channels, compared with the power in those.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
@@ -50,16 +51,18 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
 def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
     part, share = np.full(len(cells), "", dtype=str), np.full(len(cells), np.nan)
-    families, whole = [None] * len(cells), None
+    families, whole, measured = [None] * len(cells), None, power
     if paths is not None:
+        measured = echoes.measured(cells)
         families, whole = labelling.families_of_cells(paths, ep.families(paths, objects), echoes, cells)
     elif labels is not None:
         families = labelling.families_of_labels(labels, cells)
     if parts is not None or labels is not None:
+        measured = power
         names, powers, whole = (labelling.label_powers(spectrum, labels, cells) if parts is None else
                                 labelling.part_powers(spectrum, radar, parts, cells))
         part, share = labelling.strongest_part(names, powers)
-    is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, power)
+    is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, measured)
     part, share = labelling.with_noise(part, share, is_noise)
     return {"part": part, "share": share} | labelling.as_columns(families, is_noise)
 

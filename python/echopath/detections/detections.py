@@ -62,8 +62,9 @@ class Detections:
     def paths(self, i: int) -> tuple:
         """The paths behind detection i: (indices i64 [N], shares [N] of the power), largest share first.
 
-        Model: the length, its rate and the change of that at mid-frame for the first antennas, and the response of the
-        windows; taken are the strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares are.
+        Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for the
+        first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that hold
+        99.99 % of the sum of the powers of single paths, of which the shares are.
         i: index, 0 to D - 1. Empty for "noise". Raises ValueError where `detect` was given no paths, IndexError.
         """
         if self.echoes is None:

@@ -15,7 +15,10 @@ SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the fr
 MAX_SWEEP = 32.0       # bins
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
 MAX_SEGMENTS = 32
+BYTES_PER_FIELD = 12   # place and field of a path in a channel
 HELD = 0.9999          # of the power of single paths, by the paths that are named
+MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
+MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
 
 
 class Response:
@@ -57,27 +60,44 @@ class Response:
 class EchoFields:
     """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
 
-    Model: delay, its rate and the change of that for the first antennas.
+    Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
+    the rate of the delay and the change of that for the first antennas.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
     def __init__(self, paths, spectrum):
         self._paths, self._spectrum = paths, spectrum
 
+    @cached_property
+    def channels(self) -> np.ndarray:
+        """(transmitter, receiver) indices of the channels, [C, 2]."""
+        num_receivers = len(self._paths.radar.receivers)
+        num_channels = len(self._paths.radar.transmitters) * num_receivers
+        room = MAX_MEMORY // (BYTES_PER_FIELD * max(self._paths.num_paths, 1))
+        count = int(np.clip(room, 1, min(MAX_CHANNELS, num_channels)))
+        taken = np.linspace(0, num_channels - 1, count).astype(int)
+        return np.stack(np.divmod(taken, num_receivers), axis=-1)
+
+    def measured(self, cells) -> np.ndarray:
+        """Power [N] in W of the map in cells [N, 2], mean over the channels: what the sums of the fields compare with."""
+        (tx, rx), (velocity, distance) = self.channels.T[:, :, None], cells.T
+        return np.mean(np.abs(self._spectrum.values[tx, rx, velocity, distance]) ** 2, axis=0)
+
     def fields(self, cell) -> tuple:
-        """(indices i64 [N], fields complex [N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""
+        """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""
         velocity, distance = (int(index) for index in cell)
         echoes, pad = self._echoes, self._spectrum.zero_pad
         near = self._candidates(velocity, distance)
         along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
         onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
-        across = self._range_response((distance - echoes["range"][near]) / pad - onward)[0]
-        return echoes["index"][near], np.sum(along * across, axis=0) * echoes["field"][near]
+        place = (distance - echoes["range"][near]) / pad - onward
+        gains = [np.sum(along * self._range_response(place - shift)[0], axis=0) for shift in echoes["shift"][:, near]]
+        return echoes["index"][near], np.array(gains) * echoes["field"][:, near]
 
     def paths(self, cell) -> tuple:
         """(indices i64 [N], shares [N]) of the strongest paths of a cell (velocity, range), largest first."""
         index, field = self.fields(cell)
-        power = np.abs(field) ** 2
+        power = np.mean(np.abs(field) ** 2, axis=0)
         order = np.argsort(-power, kind="stable")
         held = np.cumsum(power[order])
         if not len(held) or held[-1] == 0.0:
@@ -98,11 +118,25 @@ class EchoFields:
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(len(paths.radar.transmitters)) / waveform.num_chirps
         range_step = ep.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
+        shift, field = self._of_channels(cells.length, index, range_step * pad)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
                 "sweep": _speed_change(paths, cells.length)[index] / bin_width,
                 "travel": cells.velocity[index] * _duration(paths) / (range_step * pad),
-                "field": _start_fields(paths, cells.length)[index]}
+                "shift": shift, "field": field}
+
+    def _of_channels(self, length, index, bin_width: float) -> tuple:
+        """Bins of range by which each channel has the paths farther away than the first antennas, and fields, [C, N].
+
+        length: of the first antennas [P] in m; bin_width: m
+        """
+        shift = np.empty((len(self.channels), len(index)), np.float32)
+        field = np.empty(shift.shape, np.complex64)
+        for channel, (tx, rx) in enumerate(self.channels):
+            of_channel, start = _lengths_and_fields(self._paths, int(tx), int(rx))
+            shift[channel] = 0.5 * (of_channel - length)[index] / bin_width
+            field[channel] = start[index]
+        return shift, field
 
     @cached_property
     def _velocity_response(self) -> Response:
@@ -122,7 +156,7 @@ class EchoFields:
         num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
         pad, number = self._spectrum.zero_pad, self._echoes["number"]
         slow = min(int(self._velocity_response.reach * pad), num_velocities // 2)
-        far = int((self._range_response.reach + 0.5 * self._largest("travel")) * pad)
+        far = int((self._range_response.reach + 0.5 * self._largest("travel") + self._largest("shift")) * pad)
         rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
         first = np.searchsorted(number, rows + max(distance - far, 0))
         last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
@@ -140,9 +174,9 @@ def _reach(samples) -> int:
     return int(np.ceil(np.flatnonzero(response > 10.0 ** (-FLOOR_DB / 20.0))[-1] / 8)) + 1
 
 
-def _chirp_times(paths):
-    """First, middle and last of the frame for the first transmitter, s."""
-    first, last = (paths.radar.chirp_time(0, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
+def _chirp_times(paths, tx=0):
+    """First, middle and last of the frame for a transmitter, s."""
+    first, last = (paths.radar.chirp_time(tx, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
     return paths.frame.start_time + np.array([first, 0.5 * (first + last), last])
 
 
@@ -162,9 +196,10 @@ def _speed_change(paths, length):
     return 2.0 * (before + after - 2.0 * length) / (last - first) * num_chirps / (num_chirps - 1)
 
 
-def _start_fields(paths, length):
-    """The signal of each path in the middle of the frame and of the chirp, complex [P] in sqrt(W)."""
-    waveform = paths.radar.waveform
+def _lengths_and_fields(paths, tx: int, rx: int) -> tuple:
+    """Length [P] in m and signal, complex [P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
+    waveform, middle = paths.radar.waveform, _chirp_times(paths, tx)[1]
+    length = paths.lengths([middle], tx, rx)[0]
     delay = length / ep.speed_of_light
     cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
-    return np.conj(paths.amplitudes([_chirp_times(paths)[1]], 0, 0)[0]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+    return length, np.conj(paths.amplitudes([middle], tx, rx)[0]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))

@@ -52,16 +52,24 @@ def strongest_part(names, powers):
 
 
 def families_of_cells(paths, families, echoes, cells) -> tuple:
-    """The family of the largest power in each of cells [N, 2], None without echoes, and power [N] of all as fields, W."""
+    """The family of the largest power in each of cells [N, 2], None without echoes, and power [N] of all as fields, W.
+
+    Powers are means over the channels of the echoes' fields.
+    """
     found, whole = [], np.zeros(len(cells))
     for i, cell in enumerate(cells):
         index, field = echoes.fields(cell)
-        of_path = families.family_of_path[index]
-        sums = np.bincount(of_path, field.real, len(families)) + 1j * np.bincount(of_path, field.imag, len(families))
-        power = np.abs(sums) ** 2
+        power = np.mean(np.abs(_sums(field, families.family_of_path[index], len(families))) ** 2, axis=0)
         found.append(families.families[int(power.argmax())] if power.any() else None)
-        whole[i] = np.abs(sums.sum()) ** 2
+        whole[i] = np.mean(np.abs(field.sum(axis=1)) ** 2)
     return found, whole
+
+
+def _sums(field, group, num_groups: int):
+    """Sums [C, G] of fields [C, N] over those of each group [N]."""
+    place = (group + num_groups * np.arange(len(field))[:, None]).ravel()
+    real, imaginary = (np.bincount(place, part.ravel(), num_groups * len(field)) for part in (field.real, field.imag))
+    return (real + 1j * imaginary).reshape(len(field), num_groups)
 
 
 def families_of_labels(labels, cells) -> list:

@@ -5,6 +5,7 @@ import argparse
 import os
 import sys
 
+from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 
 EXIT_BAD_INPUT = 2
@@ -22,7 +23,7 @@ def main(arguments=None) -> int:
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (ValueError, OSError, ModuleNotFoundError) as error:
+    except (ValueError, OSError, ModuleNotFoundError, DeviceError) as error:
         print(f"echopath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except MemoryError:

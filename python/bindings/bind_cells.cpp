@@ -26,6 +26,13 @@ std::span<const T> view(const py::array_t<T, py::array::c_style>& array) {
 
 Shape shape_of(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
 
+// What `work` gives, which must not touch Python objects; other Python threads run meanwhile.
+template <class Work>
+auto without_gil(const Work& work) {
+  const py::gil_scoped_release release;
+  return work();
+}
+
 // Without its first axis.
 Shape cells_of(const py::array& array) { return {array.shape() + 1, array.shape() + array.ndim()}; }
 
@@ -51,12 +58,12 @@ double noise_of_a_cell(const Radar& radar, const py::object& window) {
 
 py::array shares_of(const py::object& power) {
   const Powers powers = checked_powers(power);
-  return numpy_take(power_shares(view(powers), powers.shape(0)), shape_of(powers));
+  return numpy_take(without_gil([&] { return power_shares(view(powers), powers.shape(0)); }), shape_of(powers));
 }
 
 py::tuple masks_of(const py::object& power, double noise_floor, double dynamic_range) {
   const Powers powers = checked_array<double>(power, "power", "[V, R]");
-  const CellMask mask = cell_mask(view(powers), noise_floor, dynamic_range);
+  const CellMask mask = without_gil([&] { return cell_mask(view(powers), noise_floor, dynamic_range); });
   return py::make_tuple(as_mask(mask.above_noise, shape_of(powers)), as_mask(mask.labelled, shape_of(powers)));
 }
 
@@ -65,7 +72,7 @@ py::array strongest_of(const py::object& power, const py::object& mask) {
   const auto labelled = checked_array<bool>(mask, "mask", "[V, R]");
   const auto* first = reinterpret_cast<const uint8_t*>(labelled.data());
   const std::span<const uint8_t> cells(first, static_cast<size_t>(labelled.size()));
-  return numpy_take(strongest_part(view(powers), powers.shape(0), cells), cells_of(powers));
+  return numpy_take(without_gil([&] { return strongest_part(view(powers), powers.shape(0), cells); }), cells_of(powers));
 }
 
 py::object region(const LabelRegion& made) {
@@ -83,7 +90,8 @@ py::list regions_of(const py::object& label, const py::object& power, bool rows_
   const Powers powers = checked_powers(power);
   const MapShape shape{labels.shape(0), labels.shape(1), rows_wrap};
   py::list out;
-  for (const LabelRegion& made : label_regions(view(labels), view(powers), powers.shape(0), shape)) out.append(region(made));
+  const auto regions = without_gil([&] { return label_regions(view(labels), view(powers), powers.shape(0), shape); });
+  for (const LabelRegion& made : regions) out.append(region(made));
   return out;
 }
 
@@ -105,8 +113,8 @@ py::tuple errors_of(const py::object& cross, const py::object& coherent, const p
   for (size_t k = 0; k < static_cast<size_t>(crosses.shape(0)); ++k) {
     parts.push_back({by_part(crosses)[k], by_part(coherents).at(k), by_part(diffuses).at(k)});
   }
-  ShareErrors made = run_job("errors", py::none(), [&](Job&) {
-    return share_errors(parts, static_cast<int>(crosses.shape(1)), view(labels));
+  ShareErrors made = run_job("errors", py::none(), [&](Job& job) {
+    return share_errors(parts, static_cast<int>(crosses.shape(1)), view(labels), &job);
   });
   const Shape shape{crosses.shape(0), labels.shape(0), labels.shape(1)};
   return py::make_tuple(numpy_take(std::move(made.power), shape), numpy_take(std::move(made.power_error), shape),

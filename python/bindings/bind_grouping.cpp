@@ -31,7 +31,7 @@ KeyedGrouping families_grouping(SurfaceMap surfaces) {
   auto known = std::make_shared<std::map<std::string, Family>>();
   Grouping rule = [surfaces = std::move(surfaces), known](const Paths& paths, Job* job) {
     const Families found = find_families(paths, surfaces, job);
-    for (const Family& family : found.families) known->try_emplace(family.name(), family);
+    for (const Family& family : found.families) known->try_emplace(family.key(), family);
     return found.partition();
   };
   return {std::move(rule), [known](const std::string& name) { return py::cast(known->at(name)); }};
@@ -83,22 +83,38 @@ std::vector<ObjectVisibility> visibility_of(const Scene& scene, const Radar& rad
   });
 }
 
+// At the time of the trace and of the objects that families_of finds, whatever the radar.
+std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
+                                                  const std::optional<Objects>& objects, const py::object& progress) {
+  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  VisibilitySettings settings;
+  settings.time = paths.frame.trace_time;
+  return run_job("visibility", progress, [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job); });
+}
+
+py::tuple sight_tuple(const Sight& sight) {
+  py::dict occluders;
+  for (const auto& [name, share] : sight.occluders) occluders[py::str(name)] = share;
+  return py::make_tuple(sight.visible_share, occluders, sight.in_view, sight.distance, sight.solid_angle);
+}
+
+py::list sight_list(const std::vector<ObjectVisibility>& seen) {
+  py::list out;
+  for (const ObjectVisibility& object : seen) {
+    out.append(py::make_tuple(object.name, sight_tuple(object.transmitter), sight_tuple(object.receiver)));
+  }
+  return out;
+}
+
 void bind_visibility(py::module_& m) {
-  const auto occluders = [](const Sight& sight) {
-    py::dict out;
-    for (const auto& [name, share] : sight.occluders) out[py::str(name)] = share;
-    return out;
-  };
-  const auto as_tuple = [occluders](const Sight& sight) {
-    return py::make_tuple(sight.visible_share, occluders(sight), sight.in_view, sight.distance, sight.solid_angle);
-  };
-  m.def("visibility", [as_tuple](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
-                              std::optional<double> time, int num_directions, const py::object& progress) {
-    py::list out;
-    for (const ObjectVisibility& object : visibility_of(scene, radar, objects, time, num_directions, progress)) {
-      out.append(py::make_tuple(object.name, as_tuple(object.transmitter), as_tuple(object.receiver)));
-    }
-    return out;
+  m.def("visibility_in_trace", [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
+                                  const py::object& progress) {
+    return sight_list(visibility_in_trace(paths, radar, objects, progress));
+  }, py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("progress"),
+        "As visibility, at the time of a trace and of the objects that find_families has for it.");
+  m.def("visibility", [](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
+                         std::optional<double> time, int num_directions, const py::object& progress) {
+    return sight_list(visibility_of(scene, radar, objects, time, num_directions, progress));
   }, py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"), py::arg("progress"),
         "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.");
 }

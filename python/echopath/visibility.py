@@ -14,7 +14,7 @@ class Sight:
     visible_share: of the solid angle that the object would fill alone, 0 to 1; an object does not hide itself
     occluders: {name: share of that solid angle where this one is nearest}, largest first; with visible_share they add up
         to 1. Names are those of objects, and of other surfaces as in `Family.via`
-    in_view: an antenna has gain toward a part of it, hidden or not
+    in_view: an antenna has gain toward a part of it, hidden or not; toward a vertex of it where it is seen edge-on
     distance: m, to the nearest point of its triangles
     solid_angle: sr that it would fill alone; 0: seen edge-on, and then the shares are 0
     """
@@ -86,5 +86,16 @@ def visibility(scene, radar, objects=None, *, time=None, num_directions=4096, pr
     Returns a list of ObjectVisibility, in the order of the objects; the same for any number of threads. Raises ValueError
     for bad names, globs that take no mesh and motions that do not cover the time.
     """
-    found = _core.visibility(scene, radar, named_globs(objects), time, num_directions, progress)
+    return _as_objects(_core.visibility(scene, radar, named_globs(objects), time, num_directions, progress))
+
+
+def visibility_in_trace(paths, radar, objects=None, *, progress=None) -> list:
+    """The same at the time of a trace, of the very objects that `families(paths, objects)` has, in their order.
+
+    paths: of `trace`; radar: whose antennas look, not necessarily that of the trace; progress: as in `visibility`
+    """
+    return _as_objects(_core.visibility_in_trace(paths, radar, named_globs(objects), progress))
+
+
+def _as_objects(found) -> list:
     return [ObjectVisibility(name, Sight(*transmitter), Sight(*receiver)) for name, transmitter, receiver in found]

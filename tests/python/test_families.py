@@ -207,6 +207,24 @@ def test_families_of_all_records_of_a_frame_are_told(traced):
     assert np.abs(real - views["route"]["ball"]).max() <= ADDITIVITY * np.abs(real).max()
 
 
+@pytest.mark.parametrize("settings", [{}, {"retrace": "always", "keyframes": 2}])
+def test_an_object_called_background_keeps_its_own_echoes(traced, settings):
+    """And one that is called as a ghost of it: names are for people, parts add up whatever they are."""
+    scene = ep.Scene()
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)
+    wall = ep.Mesh([[-20, 3, -10], [40, 3, -10], [40, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(wall, name="wall", material=ep.Material(reflectivity=0.6, scattering=0.2, mirror=True))
+    scene.add(ep.actors.sphere(0.4), name="background", material=rough, position=(10, 0, 0))
+    scene.add(ep.actors.plate(2.0, 2.0), name="background: type 1, order 2 via wall", material=rough, position=(14, -2, 0))
+    paths = ep.trace(scene, traced.radar, num_rays=2000, max_bounces=2)
+    families = ep.families(paths)
+    names = [str(family) for family in families]
+    assert names.count("background") == 2 and names.count("background: type 1, order 2 via wall") == 2
+    cubes = ep.decompose(paths, parts=families, **settings)
+    assert list(cubes) == list(families) and cubes[families.families[-1]].any()
+    assert_adds_up(cubes, ep.synthesize(paths, **settings))
+
+
 def test_mixed_views_are_an_error(traced):
     with pytest.raises(ValueError, match="parts: must be all selections or all dicts"):
         ep.decompose(traced, parts={"a": "T . R", "ghosts": ep.families(traced)})

@@ -129,7 +129,8 @@ class Cell {
 
 }  // namespace
 
-ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches, std::span<const int16_t> dominant) {
+ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches, std::span<const int16_t> dominant,
+                         Job* job) {
   const size_t num_cells = dominant.size(), size = parts.size() * num_cells;
   check(parts, num_batches, num_cells);
   ShareErrors errors{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size),
@@ -148,7 +149,7 @@ ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches,
   const auto count = static_cast<int64_t>(num_cells);
   parallel_for((count + kCellsPerTask - 1) / kCellsPerTask, [&](int64_t task) {
     for (int64_t i = task * kCellsPerTask; i < std::min((task + 1) * kCellsPerTask, count); ++i) label(static_cast<size_t>(i));
-  });
+  }, job);
   return errors;
 }
 

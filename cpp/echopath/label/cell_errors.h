@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "echopath/base/job.h"
+
 namespace echopath {
 
 // Sums over the channels of a map, of B batches of one part. Field C_b [channels]: B times the coherent field of the paths of
@@ -33,7 +35,8 @@ struct ShareErrors {
 // s^4 takes the channels as copies of each other, which for the elements of one array seen from one cell they are to a phase;
 // channels that differ get too large an error.
 // dominant [N]: the part that a label names, -1: none. Raises invalid_argument without parts, for less than two batches or
-// when sizes differ.
-ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches, std::span<const int16_t> dominant);
+// when sizes differ; Cancelled when the job is.
+ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches, std::span<const int16_t> dominant,
+                         Job* job = nullptr);
 
 }  // namespace echopath

@@ -96,9 +96,19 @@ std::string Family::name() const {
   return text;
 }
 
+std::string Family::key() const {
+  if (object.empty()) return {};
+  std::string text = object;
+  const auto add = [&text](const std::string& field) { (text += kBetweenFields) += field; };
+  add(std::to_string(ghost_type));
+  add(std::to_string(order));
+  for (const std::string& surface : via) add(surface);
+  return text;
+}
+
 Partition Families::partition() const {
   Partition partition;
-  for (const Family& family : families) partition.names.push_back(family.name());
+  for (const Family& family : families) partition.names.push_back(family.key());
   partition.group = family_of_path;
   return partition;
 }

@@ -31,16 +31,21 @@ struct Family {
   // 122: type 2 of order 2; 124: type 2 of order 3 (orders are bits there). The dataset leaves every other ghost
   // undecided: 100. Background has 0 and no class.
   int class_code() const;
-  std::string name() const;  // "walker: type 2, order 3 via wall_left"; "walker"; "background"
+  // For people, "walker: type 2, order 3 via wall_left"; "walker"; "background". Objects may be called so too.
+  std::string name() const;
+  // Differs where families do: the fields, each after the first behind kBetweenFields; empty for the background.
+  std::string key() const;
   auto operator<=>(const Family&) const = default;
 };
+
+inline constexpr char kBetweenFields = '\x1e';  // grouping.h: kBetweenNames is another
 
 struct Families {
   // Those that occur, by object in the order of the list, order, type and surfaces; last the background, always.
   std::vector<Family> families;
   std::vector<uint32_t> family_of_path;  // [P] index into families
 
-  Partition partition() const;  // names as of Family::name
+  Partition partition() const;  // names are those of Family::key
 };
 
 // `surfaces`: of the scene of the paths. The same for any number of threads. Raises Cancelled.

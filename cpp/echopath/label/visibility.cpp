@@ -143,7 +143,7 @@ class Onlooker {
 
   Sight sight_of(const Tally& tally, double solid_angle_each, const End& end) const {
     Sight sight;
-    sight.in_view = tally.in_view;
+    sight.in_view = tally.num_found > 0 ? tally.in_view : looks_at_a_vertex(end);
     sight.distance = distance_from(end.position);
     if (tally.num_found == 0) return sight;
     const auto found = static_cast<double>(tally.num_found);
@@ -156,6 +156,15 @@ class Onlooker {
     std::stable_sort(sight.occluders.begin(), sight.occluders.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
     return sight;
+  }
+
+  bool looks_at_a_vertex(const End& end) const {
+    return std::any_of(mesh_ids_.begin(), mesh_ids_.end(), [&](uint32_t mesh) {
+      const std::vector<Vec3>& vertices = whole_.vertices(mesh);
+      return std::any_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
+        return vertex != end.position && end.looks_toward((vertex - end.position).normalized());
+      });
+    });
   }
 
   double distance_from(const Vec3& point) const {

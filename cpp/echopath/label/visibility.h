@@ -17,7 +17,8 @@ struct Sight {
   // What is nearest elsewhere, by name, and its share of the solid angle; largest first. With visible_share they add to 1.
   std::vector<std::pair<std::string, double>> occluders;
   double distance = 0.0;       // m, to the nearest point of its triangles
-  bool in_view = false;        // an antenna has gain toward a part of it, hidden or not
+  // An antenna has gain toward a part of it, hidden or not; toward a vertex of it where no direction found it.
+  bool in_view = false;
 };
 
 struct ObjectVisibility {

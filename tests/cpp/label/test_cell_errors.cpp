@@ -157,6 +157,13 @@ TEST(CellErrors, CellsWithoutLabelOrPowerAreNotCertain) {
   EXPECT_EQ(errors.share, (std::vector<double>{1.0, 0.0, 0.0, 0.0}));
 }
 
+TEST(CellErrors, CancelledJobStops) {
+  const std::vector<double> values(2 * 3, 1.0);
+  Job job;
+  job.cancel();
+  EXPECT_THROW(share_errors({{values, values, values}}, 2, std::vector<int16_t>(3, 0), &job), Cancelled);
+}
+
 TEST(CellErrors, OneBatchTellsNothing) {
   const std::vector<double> values(3, 1.0);
   EXPECT_THROW(share_errors({{values, values, values}}, 1, std::vector<int16_t>(3, 0)), std::invalid_argument);

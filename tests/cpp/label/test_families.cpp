@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -82,6 +83,17 @@ TEST(Families, AreSortedWithTheBackgroundLast) {
   EXPECT_EQ(names, expected);
 }
 
+TEST(Families, PartsDifferWhateverObjectsAreCalled) {
+  std::vector<HandMadePath> paths;
+  for (const Known& known : kKnown) paths.push_back(path_over(known.meshes));
+  const std::vector<NamedGlobs> objects{{"background", {"pedestrian"}}, {"background: type 1, order 2 via wall", {"street/floor"}}};
+  const Families found = find_families(make_paths(paths), map_surfaces(*make_street(), objects));
+  const std::vector<std::string> names = found.partition().names;
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), found.families.size());
+  EXPECT_EQ(names.back(), "");
+  EXPECT_NE(Family({"a", 1, 2, {"b, c"}}).key(), Family({"a", 1, 2, {"b", "c"}}).key());
+}
+
 TEST(Families, WithoutPathsThereIsTheBackground) {
   const Families none = find_families(make_paths({}), walker_first());
   ASSERT_EQ(none.families.size(), 1u);
@@ -122,8 +134,8 @@ TEST(Grouping, ByAllIsTheCombinationsThatOccur) {
   const Grouping bounces = by_selections({{"one", Selection::num_bounces(1, 1)}});
   const Grouping objects = by_families(map_surfaces(*make_street(), {{"walker", {"pedestrian"}}}));
   const Partition partition = by_all({bounces, objects})(paths, nullptr);
-  const std::vector<std::string> names{"one\x1fwalker", "one\x1f" "background",
-                                       "other\x1fwalker: type 1, order 2 via street"};
+  const std::vector<std::string> names{"one\x1fwalker\x1e" "0\x1e" "1", "one\x1f",
+                                       "other\x1fwalker\x1e" "1\x1e" "2\x1estreet"};
   EXPECT_EQ(partition.names, names);
   EXPECT_EQ(partition.group, (std::vector<uint32_t>{1, 0, 2}));
   EXPECT_THROW(by_all({}), std::invalid_argument);

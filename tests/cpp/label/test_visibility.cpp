@@ -170,6 +170,18 @@ TEST(Visibility, EdgeOnNothingIsSeen) {
   EXPECT_NEAR(sight.distance, 5.0, kRounding);
 }
 
+TEST(Visibility, EdgeOnObjectsAreInViewWhereAntennasLook) {
+  Scene scene;
+  add_rectangle(scene, "ahead", {5, -1, 0}, {1, 0, 0}, {0, 2, 0}, share(Material::metal()));
+  add_rectangle(scene, "behind", {-5, -1, 0}, {-1, 0, 0}, {0, 2, 0}, share(Material::metal()));
+  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  radar.transmitters.front().pattern = AntennaPattern::cosine_power(4);
+  const std::vector<ObjectVisibility> seen = seen_in(scene, {"ahead", "behind"}, radar);
+  EXPECT_EQ(seen[0].transmitter.solid_angle, 0.0);
+  EXPECT_TRUE(seen[0].in_view());
+  EXPECT_FALSE(seen[1].transmitter.in_view);
+}
+
 TEST(Visibility, FarFromTheWorldOriginNothingChanges) {
   const Vec3 far(4.5e5, 5.4e6, 100);
   Scene scene;

@@ -45,6 +45,13 @@ CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::strin
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
 }
 
+void check_cfar(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
+                std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
+                std::optional<int> training_range, double rank) {
+  cfar_design(map, radar, {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
+                           training_range, rank});
+}
+
 py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
   py::array_t<int64_t> cells({static_cast<py::ssize_t>(values.size()), py::ssize_t{2}});
   for (size_t i = 0; i < values.size(); ++i) {
@@ -118,6 +125,11 @@ void bind_cfar(py::module_& m) {
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
         py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(), kCfarDoc);
+  m.def("check_cfar", &check_cfar, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
+        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
+        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank,
+        "Raises what cfar would for these settings, at no cost.");
   m.def("find_peaks", &peaks_of, py::arg("spectrum"), py::arg("radar"), py::arg("found"), py::arg("progress") = py::none(),
         R"(Local maxima among the cells found, and where between the cells they lie.
 

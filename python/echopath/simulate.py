@@ -7,6 +7,7 @@ from functools import cached_property
 import echopath as ep
 
 from .azimuth_map import checked_settings, sees_azimuth
+from .detections.checks import check_keywords
 from .effects import of_paths
 from .labels.annotate import label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
@@ -115,15 +116,17 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
     labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors): the
-        frame carries the labels of its map, from the same pass, with the cubes of all families in memory; None: none, and nothing
-        is spent on them
-    detections: True, or keywords of `detect_frame`: the frame carries the detections in its map; None: none
+        frame carries the labels of its map, from the same pass, with the cubes of all families in memory; {}: as True; None or
+        False: none, and nothing is spent on them
+    detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its labels unless
+        told otherwise; {}: as True; None or False: none
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
     request = _label_request(radar, labels, _num_batches(batches, target_error_db), window, zero_pad, angle_settings)
+    detect_keywords = _detect_keywords(scene, radar, detections, request, {"window": window, "zero_pad": zero_pad})
     clock = StageClock()
     with clock("trace"):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
@@ -151,10 +154,9 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         with clock("annotation"):
             parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
             frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
-    if detections:
+    if detect_keywords is not None:
         with clock("detections"):
-            keywords = {} if detections is True else detections
-            frame.detections = ep.detect_frame(frame, progress=progress, **keywords)
+            frame.detections = ep.detect_frame(frame, progress=progress, **detect_keywords)
     return frame
 
 
@@ -193,7 +195,7 @@ def _cubes(paths, radar, partitions: dict, families, settings: dict):
 
 def _label_request(radar, labels, num_batches: int, window, zero_pad, angles: dict):
     """How to label, None: not at all."""
-    if not labels:
+    if labels is None or labels is False:
         return None
     keywords = {} if labels is True else dict(labels)
     unknown = [word for word in keywords if word not in _LABEL_KEYWORDS]
@@ -202,6 +204,16 @@ def _label_request(radar, labels, num_batches: int, window, zero_pad, angles: di
     if keywords.get("plane") == "range_azimuth":
         keywords["angles"] = angles
     return make_request(radar, num_batches, window=window, zero_pad=zero_pad, **keywords)
+
+
+def _detect_keywords(scene, radar, detections, request, spectrum_settings: dict):
+    """Keywords of `detect_frame`, checked before the long work; None: no detections."""
+    if detections is None or detections is False:
+        return None
+    keywords = {} if detections is True else dict(detections)
+    keywords = ({"objects": request.objects} if request else {}) | keywords
+    check_keywords(scene, radar, spectrum_settings, keywords)
+    return keywords
 
 
 def _num_batches(batches, target_error_db) -> int:

@@ -1,4 +1,7 @@
 """Labels of cells, objects and ghosts against closed forms of where echoes appear, and against NumPy."""
+import sys
+import threading
+
 import numpy as np
 import pytest
 
@@ -193,7 +196,7 @@ def test_a_person_behind_a_car_is_occluded_by_it_and_has_no_cells():
     car, person = found.objects
     assert (person.status, person.cells, person.peak, person.box) == ("occluded", 0, None, None)
     assert person.visible_share == 0.0 and person.occluders == {"car": 1.0}
-    assert car.status == "seen" and car.visible_share == 1.0
+    assert car.status == "seen" and car.visible_share == 1.0 and person.is_occluded and not car.is_occluded
     assert not np.any(found.object_map == 1) and not np.any(found.ghost_map >= 0)
 
 
@@ -201,7 +204,7 @@ def test_only_cells_that_multipath_lights_are_ghosts_of_a_hidden_person():
     paths = ep.trace(person_behind_car(with_wall=True), make_radar(), num_rays=40_000)
     found = ep.annotate(paths, {"person": ep.hits("person")})
     (person,) = [label for label in found.objects if label.name == "person"]
-    assert person.status == "ghosts only" and person.cells == 0 and person.occluders == {"car": 1.0}
+    assert person.status == "ghosts only" and person.cells == 0 and person.occluders == {"car": 1.0} and person.is_occluded
     assert not np.any(found.object_map == found.objects.index(person))
     ghosts = [ghost for ghost in found.ghosts if ghost.object == "person" and ghost.cells]
     two_way = max(ghosts, key=lambda ghost: ghost.peak.power)
@@ -217,6 +220,7 @@ def test_why_an_object_is_not_in_the_map():
     add_plate(scene, "behind", (-6, 0, 1))
     add_plate(scene, "faint", (30, 3, 1), size=0.002)
     add_plate(scene, "unlit", (12, -4, 1))
+    scene.add(ep.actors.plate(1.0, 1.0), name="edge on", material=ROUGH, position=(8, 0, 1), yaw=np.pi / 2)  # in the plane y = 0
     radar = make_radar(pattern=ep.CosinePower(2.0), transmit_power=1e-3)
     assert radar.waveform.max_range < 60
     paths = ep.trace(scene, radar, num_rays=20_000)
@@ -224,7 +228,7 @@ def test_why_an_object_is_not_in_the_map():
     found = {label.name: label for label in ep.annotate(paths, {"near": "T 'near' R"}).objects}
     assert {name: label.status for name, label in found.items()} == {
         "near": "seen", "beyond": "outside the map", "behind": "outside the map", "faint": "hidden in noise",
-        "unlit": "not seen"}
+        "unlit": "not seen", "edge on": "not seen"}
     assert found["near"].power > found["faint"].power > 0 and found["unlit"].power == 0
     assert all(label.cells == 0 and label.box is None for name, label in found.items() if name != "near")
 
@@ -322,6 +326,8 @@ def test_words_name_objects_and_ghosts(labels):
     ({"objects": ["bicycle"]}, "bicycle"),
     ({"parts": {"one": {"a": "T . R"}}}, "parts: must be one partition"),
     ({"parts": {"one": np.zeros((1, 1, 2, 2))}}, "parts: cubes must have shape"),
+    ({"parts": ep.parts.Parts({"other": np.zeros((1, 1, 64, 256))}, {}, make_radar(height=1.1)), "radar": make_radar()},
+     "parts: must be of the radar, got those of another transmitters"),
 ])
 def test_bad_settings_are_named(plates_and_wall, keywords, message):
     with pytest.raises(ValueError, match=message):
@@ -335,10 +341,95 @@ def test_unknown_keywords_name_the_nearest(plates_and_wall):
         ep.simulate(ep.Scene(), make_radar(), labels={"noise_margin": 3})
 
 
-def test_retraced_frames_have_labels_too():
-    paths = ep.trace(person_behind_car(with_wall=True), make_radar(), num_rays=3000)
-    once, renewed = (ep.annotate(paths, {}, **settings) for settings in ({}, {"retrace": "invalid", "keyframes": 2}))
-    assert np.array_equal(once.object_map, renewed.object_map) and np.array_equal(once.ghost_map, renewed.ghost_map)
+def test_retraced_frames_label_what_comes_out_of_hiding():
+    """A plate behind a screen that leaves: hidden in the middle of the frame, when it is traced, and bare at the end of it."""
+    scene, radar = ep.Scene(), make_radar()
+    add_plate(scene, "plate", (9, 0, 1))
+    leaving = ep.LinearMotion(velocity=(0, 2.0 / radar.frame_duration, 0))  # half its width until the middle, 1 m by then
+    scene.add(ep.actors.plate(1.5, 1.5), name="screen", material=ROUGH, position=(5, -0.8, 1), yaw=np.pi, motion=leaving)
+    paths = ep.trace(scene, radar, num_rays=5000)
+    once, renewed = ({label.name: label for label in ep.annotate(paths, {}, objects=["plate", "screen"], **settings).objects}
+                     for settings in ({}, {"retrace": "always", "keyframes": 4}))
+    assert (once["plate"].status, once["plate"].power) == ("occluded", 0.0)
+    assert renewed["plate"].status == "seen" and renewed["plate"].visible_share == 0.0  # that is of the middle
+    assert renewed["plate"].peak.range == pytest.approx(9.0, abs=radar.waveform.range_resolution)
+    assert once["screen"].status == renewed["screen"].status == "seen"
+
+
+def test_parts_by_families_are_labelled_too(plates_and_wall):
+    paths, _, _ = plates_and_wall
+    families = ep.families(paths)
+    found = ep.annotate(paths, ep.decompose(paths, parts=families))
+    assert found.part_names == [str(family) for family in families]
+    assert all(np.count_nonzero(found.dominant == families.families.index(ep.Family(label.name, 0, 1, ()))) == label.cells > 0
+               for label in found.objects)
+    batched = ep.trace(paths.scene, paths.radar, num_rays=500, batches=2)
+    with pytest.raises(ValueError, match="errors: need the selections of the parts"):
+        ep.annotate(batched, ep.decompose(batched, parts=ep.families(batched)), errors=True)
+
+
+def test_what_is_in_view_is_a_matter_of_the_radar_of_the_map():
+    scene = ep.Scene()
+    add_plate(scene, "ahead", (8, 0, 1))
+    scene.add(ep.actors.box((4.0, 4.0, 0.2)), name="roof", material=ROUGH, position=(3, 0, 4))
+    paths = ep.trace(scene, make_radar(), num_rays=2000)
+    turned = ep.Antenna((0, 0, 1), orientation=(0, 0, 0, 1), pattern=ep.CosinePower(2.0))  # half a turn about z
+    backward, stages = ep.Radar(make_radar().waveform, transmitters=[turned], receivers=[turned]), set()
+    found = ep.annotate(paths, {}, backward, progress=lambda stage, fraction: stages.add(stage))
+    assert found.objects[0].status == "outside the map" and "visibility" in stages
+    within = [ep.Antenna((3, 0, 2))]  # the sphere about the roof
+    under_the_roof = ep.Radar(make_radar().waveform, transmitters=within, receivers=within)
+    assert [label.name for label in ep.annotate(paths, {}, under_the_roof).objects] == ["ahead", "roof"]
+
+
+def test_no_keywords_are_all_defaults(plates_and_wall):
+    paths, _, _ = plates_and_wall
+    frame = ep.simulate(paths.scene, make_radar(), num_rays=1000, labels={}, detections={})
+    assert list(frame.labels) == ["parts"] and len(frame.detections) > 0
+    none = ep.simulate(paths.scene, make_radar(), num_rays=1000, labels=False, detections=False)
+    assert none.labels == {} and none.detections is None
+
+
+def test_detections_have_the_objects_of_the_labels(plates_and_wall):
+    paths, _, _ = plates_and_wall
+    frame = ep.simulate(paths.scene, make_radar(), num_rays=5000, labels={"objects": {"target": ["a", "b"]}}, detections=True)
+    assert {"target"} <= set(frame.detections.object) <= {"target", ""}
+
+
+@pytest.mark.parametrize("keywords, error, message", [
+    ({"false_alarm": 1e-3}, TypeError, "detections: unknown keyword 'false_alarm'"),
+    ({"false_alarm_rate": 2.0}, ValueError, "false_alarm_rate: must be in"),
+    ({"objects": ["bicycle"]}, ValueError, "bicycle"),
+])
+def test_bad_keywords_of_detections_are_told_before_the_trace(plates_and_wall, monkeypatch, keywords, error, message):
+    monkeypatch.setattr(ep, "trace", None)
+    with pytest.raises(error, match=message):
+        ep.simulate(plates_and_wall[0].scene, make_radar(), detections=keywords)
+
+
+GIL_CALLS = {
+    "power_shares": lambda power, mask: _core.power_shares(power),
+    "cell_masks": lambda power, mask: _core.cell_masks(power[0], 0.5, 0.0),
+    "strongest_part": lambda power, mask: _core.strongest_part(power, mask)}
+
+
+@pytest.mark.parametrize("name", GIL_CALLS)
+def test_other_threads_run_beside_labels(name):
+    power = np.ones((4, 2000, 1000))
+    arrays = power, np.ones((2000, 1000), bool)
+    go, ran, interval = threading.Lock(), threading.Event(), sys.getswitchinterval()
+    go.acquire()
+    other = threading.Thread(target=lambda: (go.acquire(), ran.set()))
+    other.start()
+    sys.setswitchinterval(1000.0)  # s: another thread runs only where this one lets it
+    try:
+        go.release()
+        GIL_CALLS[name](*arrays)
+        was_run = ran.is_set()
+    finally:
+        sys.setswitchinterval(interval)
+        other.join()
+    assert was_run
 
 
 def test_capon_beams_are_refused():

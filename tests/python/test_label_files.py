@@ -230,6 +230,9 @@ def test_pixels_are_labels_and_the_palette_names_them(labels, tmp_path):
         assert palette["image"] == path.name and len(palette["axes"]["columns"]["values"]) == labels.shape[1]
     assert [row["name"] for row in json.loads((tmp_path / "parts of cells.json").read_text())["labels"]] == [
         "none", *labels.part_names]
+    hidden = next(index for index, label in enumerate(labels.objects) if label.occluders)
+    entry, label = json.loads((tmp_path / "objects.json").read_text())["labels"][1 + hidden], labels.objects[hidden]
+    assert all(entry[key] == getattr(label, key) for key in ("status", "visible_share", "occluders", "is_occluded"))
     ghost = json.loads((tmp_path / "ghosts.json").read_text())["labels"][1]
     assert (ghost["object"], ghost["class_code"], tuple(ghost["via"])) == (
         labels.ghosts[0].object, labels.ghosts[0].class_code, labels.ghosts[0].via)

@@ -8,7 +8,8 @@ import numpy as np
 
 import echopath as ep
 
-from .. import _core
+from .. import _core, same_radar
+from ..visibility import visibility_in_trace
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects
 from .planes import make_plane
@@ -30,7 +31,7 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     that the map of `synthesize` has. A cell of the mask belongs to whatever has the largest power in it. Where parts
     interfere, their powers do not add up to that of the whole.
     paths: of `trace`, all of them
-    parts: Parts of `decompose`, or selections as `decompose` takes them, {name: selection}: then no cube outlives its use.
+    parts: Parts of `decompose` of the same radar, or selections as `decompose` takes them, {name: selection}: then no cube outlives its use.
         None: all paths are "other"
     radar: that of the signals, None: of the parts or of the trace
     objects: as in `families`, what to report on
@@ -53,7 +54,7 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     request = make_request(radar, paths.frame.num_batches, objects=objects, plane=plane, window=window, zero_pad=zero_pad,
                            angles=angles, noise=noise, noise_margin_db=noise_margin_db, dynamic_range_db=dynamic_range_db,
                            errors=errors)
-    selections, cubes = _selections_and_cubes(parts, radar, errors)
+    selections, cubes = _selections_and_cubes(parts, radar, paths.frame.start_time, errors)
     settings = settings | {"progress": progress}
     families = ep.families(paths, objects)
     views = {_FAMILIES: families} if cubes else {_FAMILIES: families, _PARTS: selections}
@@ -61,7 +62,7 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, settings), request.plane)
     if cubes:
         powers |= add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[_PARTS].whole)
+    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[_PARTS].whole, progress)
     return label_parts(request, paths, powers[_PARTS], selections, scene_labels, settings)
 
 
@@ -106,13 +107,13 @@ def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler"
     return Request(radar, objects, made, bool(noise), float(noise_margin_db), dynamic_range_db, bool(errors))
 
 
-def label_scene(request: Request, paths, families, powers, whole) -> dict:
+def label_scene(request: Request, paths, families, powers, whole, progress=None) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
-    powers: ViewPowers of the families; whole: power [V, R] in W
+    powers: ViewPowers of the families; whole: power [V, R] in W; progress: callable (stage, fraction) or None
     """
     found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane)
-    seen = ep.visibility(paths.scene, paths.radar, request.objects, time=paths.frame.trace_time)
+    seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
     objects, object_map = label_objects(families.objects, found, visibility, request.plane)
     ghosts, ghost_map = label_ghosts(found, request.plane)
@@ -139,7 +140,8 @@ def label_frame(request: Request, paths, families, cubes: dict, family_cubes: di
     """
     views = cubes | {_FAMILIES: family_cubes}
     powers = {view: add_powers([CubeSet(request.radar, 1.0, {view: views[view]})], request.plane)[view] for view in views}
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(cubes))].whole)
+    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(cubes))].whole,
+                               settings.get("progress"))
     return {view: label_parts(request, paths, powers[view], selections.get(view, {}), scene_labels, settings)
             for view in cubes}
 
@@ -163,7 +165,7 @@ def _radar_of(paths, parts, radar):
     return paths.radar if radar is None else radar
 
 
-def _selections_and_cubes(parts, radar, errors: bool):
+def _selections_and_cubes(parts, radar, start_time: float, errors: bool):
     """({name: selection}, {name: cube} or {}) of what the caller gave as parts."""
     parts = {} if parts is None else parts
     if not isinstance(parts, dict):
@@ -172,14 +174,17 @@ def _selections_and_cubes(parts, radar, errors: bool):
         raise ValueError(f"parts: must be one partition, got several: {', '.join(map(str, parts))}; give one of them")
     if not any(isinstance(value, np.ndarray) for value in parts.values()):
         return dict(parts), {}
-    _check_cubes(parts, radar)
-    selections = getattr(parts, "selections", {})
+    _check_cubes(parts, radar, start_time)
+    selections = getattr(parts, "selections", None) or {}  # None: of families
     if errors and [*selections, "other"] != list(parts):
         raise ValueError("errors: need the selections of the parts, got cubes alone; give {name: selection} or Parts of them")
     return dict(selections), dict(parts)
 
 
-def _check_cubes(parts: dict, radar) -> None:
+def _check_cubes(parts: dict, radar, start_time: float) -> None:
+    own = getattr(parts, "radar", None)
+    if own is not None and (field := same_radar.difference(own, radar, start_time)):
+        raise ValueError(f"parts: must be of the radar, got those of another {field}")
     waveform = radar.waveform
     shape = (len(radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples)
     for name, cube in parts.items():

@@ -40,8 +40,10 @@ def label_images(labels) -> dict:
     """
     ghosts = [{"name": ghost_name(ghost), "object": ghost.object, "ghost_type": ghost.ghost_type, "order": ghost.order,
                "via": list(ghost.via), "class_code": ghost.class_code} for ghost in labels.ghosts]
+    objects = [{"name": label.name, "status": label.status, "is_occluded": label.is_occluded,
+                "visible_share": label.visible_share, "occluders": label.occluders} for label in labels.objects]
     return {"parts": (labels.dominant, [{"name": name} for name in labels.part_names]),
-            "objects": (labels.object_map, [{"name": label.name, "status": label.status} for label in labels.objects]),
+            "objects": (labels.object_map, objects),
             "ghosts": (labels.ghost_map, ghosts)}
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from .report import text_of
 
 NONE = -1  # in a map of indices: no label
+OCCLUDED_SHARE = 0.05  # an object of which no more than this is in sight counts as occluded
 
 
 class Peak(NamedTuple):
@@ -48,6 +49,11 @@ class AzimuthBox(NamedTuple):
     azimuth_max: float
 
 
+def is_occluded(seen) -> bool:
+    """Whether others hide an object. seen: ObjectVisibility or ObjectLabel"""
+    return seen.visible_share <= OCCLUDED_SHARE and bool(seen.occluders)
+
+
 @dataclasses.dataclass(frozen=True)
 class ObjectLabel:
     """What a map shows of one object of the scene, by echoes that take no mirror.
@@ -55,7 +61,7 @@ class ObjectLabel:
     name: full name in the scene
     status: the first of these that holds
         "seen": it has cells
-        "ghosts only": it has none, but a ghost of it has
+        "ghosts only": it has none, but a ghost of it has; `is_occluded` tells of objects that only multipath lights
         "outside the map": an end of the radar has no antenna that looks at it, or all of it lies beyond the range axis
         "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
         "masked": some of its cells are above the noise, but stronger echoes have them or they are below the dynamic range
@@ -78,11 +84,23 @@ class ObjectLabel:
     visible_share: float
     occluders: dict
 
+    @property
+    def is_occluded(self) -> bool:
+        """Whether others hide it from the radar (visible_share is at most 5 %), also where its status is another.
+
+        An object that only multipath lights has the status "ghosts only", and is occluded all the same.
+        """
+        return is_occluded(self)
+
 
 @dataclasses.dataclass(frozen=True)
 class GhostLabel:
     """What a map shows of one ghost: an object's echoes over the same mirrors, of the same type and order.
 
+    The echoes of types 1 and 2 of order 2 over one mirror are the same way there and back: where transmitter and receiver stand
+    side by side they share delay, speed and power, and which of the two has a cell is decided by small differences, down to
+    rounding. Take the cells of both as those of one ghost. Each competes with its own power, by itself: where both add in phase, the pair can
+    be up to 6 dB above that.
     object: full name of the object; via: names of the children of the scene root that mirrored it, tuple of str
     ghost_type: 1 (last bounce on the object) or 2 (last bounce on a mirror); order: number of bounces
     class_code: of the Radar Ghost Dataset (Kraus et al.)

@@ -6,9 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from .labels import NONE, GhostLabel, ObjectLabel
-
-OCCLUDED_SHARE = 0.05  # an object of which no more than this is in sight counts as occluded
+from .labels import NONE, GhostLabel, ObjectLabel, is_occluded
 
 
 class FamilyCells(NamedTuple):
@@ -75,7 +73,7 @@ def _status(real, mine, found: FamilyCells, seen, plane) -> str:
                "ghosts only": any(found.regions[f] is not None for f in mine if f != real),
                "outside the map": not seen.in_view or seen.distance > plane.range[-1],
                "masked": is_above_noise,
-               "occluded": seen.visible_share <= OCCLUDED_SHARE and bool(seen.occluders),
+               "occluded": is_occluded(seen),
                "hidden in noise": real is not None and found.received[real] > 0.0}
     return next((status for status, holds in reasons.items() if holds), "not seen")
 

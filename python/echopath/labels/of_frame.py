@@ -33,7 +33,8 @@ def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
     powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, settings), request.plane)
     powers |= add_powers([CubeSet(frame.radar, 1.0, frame.parts)], request.plane)
     selections = frame.selections | chosen
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(selections))].whole)
+    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(selections))].whole,
+                               progress)
     return {partition: label_parts(request, paths, powers[partition], group, scene_labels, settings)
             for partition, group in selections.items()}
 

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
 
 from . import _core
+from .keywords import known_keywords
 
 NO_OBJECT = -1  # index of the object of a path that touches none
 
@@ -69,6 +71,7 @@ class Families:
         return f"Families({len(self)} of {len(self.objects)} objects, paths={len(self.family_of_path)})"
 
 
+@known_keywords
 def families(paths, objects=None) -> Families:
     """Which object each path belongs to, and which ghost it makes, after the Radar Ghost Dataset (Kraus et al. 2021).
 
@@ -95,5 +98,14 @@ def named_globs(objects):
         return None
     if isinstance(objects, str):
         raise TypeError(f"objects: must be a dict or a list of globs, got the text {objects!r}")
-    table = objects if isinstance(objects, dict) else {glob: glob for glob in objects}
-    return [(name, [globs] if isinstance(globs, str) else list(globs)) for name, globs in table.items()]
+    if not isinstance(objects, Iterable):
+        raise TypeError(f"objects: must be a dict or a list of globs, got {objects!r}")
+    pairs = objects.items() if isinstance(objects, dict) else [(glob, glob) for glob in objects]
+    return list(dict([(name, _globs_of(name, globs)) for name, globs in pairs]).items())
+
+
+def _globs_of(name, globs) -> list:
+    found = [globs] if isinstance(globs, str) else list(globs) if isinstance(globs, Iterable) else [globs]
+    if not isinstance(name, str) or not all(isinstance(glob, str) for glob in found):
+        raise TypeError(f"objects: names and globs must be texts, got {globs!r} for {name!r}")
+    return found

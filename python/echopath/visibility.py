@@ -5,6 +5,7 @@ import dataclasses
 
 from . import _core
 from .families import named_globs
+from .keywords import known_keywords
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,6 +73,7 @@ class ObjectVisibility:
         return f"<ObjectVisibility {self.name}: {repr(self.worse)[7:]}"
 
 
+@known_keywords
 def visibility(scene, radar, objects=None, *, time=None, num_directions=4096, progress=None) -> list:
     """How much of each object the radar can see, and what hides the rest, by shadow rays.
 

@@ -5,16 +5,24 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.false_alarms import measure_false_alarms
+from echopath.bench.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
 
 RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %
 
 
-@pytest.mark.parametrize("window, zero_pad, receivers", [("rect", 1, 1), ("hann", 1, 1), (("chebyshev", 60), 1, 1), ("hann", 1, 3)])
-def test_false_alarms_come_at_the_rate_asked_for(window, zero_pad, receivers):
-    """A million cells of noise; ten times as many in the benchmark."""
-    for row in measure_false_alarms(1_000_000, windows=[(window, zero_pad, receivers)], rates=[1e-3]):
-        assert row["ratio"] == pytest.approx(1.0, abs=RATE_TOLERANCE), row
+@pytest.mark.parametrize("of_map", [
+    NoiseMap("rect"), NoiseMap("hann"), NoiseMap(("chebyshev", 60)), NoiseMap("hann", receivers=3),
+    NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True)], ids=str)
+def test_false_alarms_come_at_the_rate_asked_for(of_map):
+    """A million cells of noise; ten times as many in the benchmark. Also of real samples, and of antennas that take turns."""
+    for row in measure_false_alarms(1_000_000, maps=[of_map], rates=[1e-3]):
+        assert row["ratio"] == pytest.approx(1.0, abs=RATE_TOLERANCE) and row["holds"], row
+
+
+def test_each_row_of_the_benchmark_has_its_verdict():
+    row = {"map": "hann", "method": "ca", "rate": 1e-3, "cells": 1000, "false_alarms": 1, "ratio": 1.0, "standard_error": 0.0}
+    lines = describe_false_alarms([row | {"holds": True}, row | {"holds": False}])
+    assert lines[1].endswith("holds") and lines[2].endswith("MISSES 10%")
 
 
 def radar_with(num_chirps=64, num_samples=128, receivers=1):

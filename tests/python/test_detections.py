@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.cli import report
 from echopath.detections.echo_fields import Response
 
 C = ep.speed_of_light
@@ -17,6 +18,7 @@ RADIUS = 0.05  # m, of spheres that stand for points: their echo comes from the 
 # Cells; what remains of tones in closed form is 1e-6, a sphere's footprint and the noise at 30 dB add the rest.
 PLACE = 0.05
 TABLE = 0.006  # of the peak: straight lines between the steps of the table
+NEAREST_SWEEP = 0.04  # of the peak: 0.1 rad at the ends of the frame, where it is most, averaged over the frame
 MODEL = 0.1    # of fields: the third derivative of a length, and the first antennas' states for all chirps
 HELD = 0.95    # of a cell's power, by the paths named
 
@@ -124,11 +126,24 @@ def test_a_false_alarm_is_called_noise(spheres):
     radar, paths, spectrum = spheres
     parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
     found = ep.detect(spectrum, radar, false_alarm_rate=0.01, paths=paths, parts=parts)
-    is_noise = found.part == "noise"
+    is_noise = found.is_noise
+    assert np.array_equal(is_noise, found.part == "noise") and f"{is_noise.sum()} of noise alone" in repr(found)
     assert is_noise.sum() > 30 and (~is_noise).sum() >= len(TARGETS)
     i = int(np.flatnonzero(is_noise)[0])
     assert found.object[i] == "" and found.order[i] == 0 and np.isnan(found.share[i]) and len(found.paths(i)[0]) == 0
     assert not is_noise[[nearest(found, name) for name in TARGETS]].any()
+
+
+def test_a_part_may_be_called_noise(spheres, tmp_path):
+    """It is told from noise by is_noise: in the paths behind it, the table and the report."""
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, paths=paths, parts=ep.decompose(paths, radar, {"noise": "T 'near' R"}))
+    i = nearest(found, "near")
+    assert found.part[i] == "noise" and not found.is_noise.any() and len(found.paths(i)[0]) and "1 noise" in repr(found)
+    found.to_csv(tmp_path / "points.csv")
+    with open(tmp_path / "points.csv", encoding="utf-8", newline="") as stream:
+        assert [row["is_noise"] for row in csv.DictReader(stream)] == ["0"] * len(found)
+    assert report.detections(found)[-1].split()[-1] == "0"
 
 
 def test_objects_and_ghosts_are_those_of_the_paths():
@@ -229,12 +244,26 @@ def test_strong_echoes_are_not_noise_where_they_fade_in_single_antennas(seed):
 @pytest.mark.parametrize("n", [16, 15])
 def test_the_response_of_a_swept_tone_is_its_slow_sum(n):
     """Also whole turns of the axis away, and in segments."""
-    y, sweep = np.array([0.0, -0.37, 2.81, n + 1.3, -2 * n - 0.6]), np.array([0.0, 0.5, -0.25, 1.0, -1.0])
+    y, sweep = np.array([0.0, -0.37, 2.81, n + 1.3, -2 * n - 0.6]), np.array([0.0, 2.25, -2.25, 2.25, -2.25])
     place = (np.arange(n) - 0.5 * (n - 1)) / n
     terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * np.outer(sweep, place ** 2)) / n
-    parts = Response("rect", n, largest_sweep=2.0, segments=3)(y, sweep)
+    parts = Response("rect", n, largest_sweep=2.25, segments=3)(y, sweep)  # its step
     np.testing.assert_allclose(parts.sum(axis=0), terms.sum(axis=1), rtol=0, atol=TABLE)
-    np.testing.assert_allclose(parts[1], terms[:, np.array_split(np.arange(n), 3)[1]].sum(axis=1), rtol=0, atol=TABLE)
+    for part, samples in zip(parts, np.array_split(np.arange(n), 3)):
+        np.testing.assert_allclose(part, terms[:, samples].sum(axis=1), rtol=0, atol=TABLE)
+
+
+@pytest.mark.parametrize("segments", [1, 2, 5, 32])
+def test_responses_of_any_sweep_come_from_a_small_table(segments):
+    """The error is that of the nearest sweep in the table, whatever the number of segments."""
+    n, rng = 512, np.random.default_rng(3)
+    sweep, y = rng.uniform(-32.0, 32.0, 300), rng.uniform(-20.0, 20.0, 300)
+    place = (np.arange(n) - 0.5 * (n - 1)) / n
+    terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * sweep[:, None] * place ** 2) / n
+    response = Response("rect", n, largest_sweep=32.0, segments=segments)
+    assert response.table_bytes < 20 * 2 ** 20
+    error = np.abs(response(y, sweep).sum(axis=0) - terms.sum(axis=1))
+    assert error.max() < NEAREST_SWEEP + TABLE
 
 
 def test_several_targets_of_a_cell_have_directions_of_their_own():
@@ -313,6 +342,25 @@ def test_nothing_found_is_a_well_shaped_result(spheres, tmp_path):
 def test_the_text_counts_the_parts(spheres):
     radar, paths, spectrum = spheres
     assert "1 near" in repr(ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"})))
+
+
+def test_unknown_keywords_name_the_nearest_right_one(spheres):
+    radar, paths, spectrum = spheres
+    for call, word, nearest_right in (
+            (lambda **words: ep.detect(spectrum, radar, **words), "false_alarm", "false_alarm_rate"),
+            (lambda **words: ep.detect(spectrum, radar, **words), "path", "paths"),
+            (lambda **words: ep.detect_frame(None, **words), "max_peak", "max_peaks"),
+            (lambda **words: ep.detect_frame(None, **words), "guard_ranges", "guard_range"),
+            (lambda **words: ep.families(paths, **words), "object", "objects"),
+            (lambda **words: ep.visibility(None, radar, **words), "num_direction", "num_directions")):
+        with pytest.raises(TypeError, match=f"unknown keyword '{word}', the nearest right one is '{nearest_right}'"):
+            call(**{word: 1})
+
+
+@pytest.mark.parametrize("objects", [{"a": 3}, {3: "near"}, [3], 5, "near", {"a": ["near", None]}, [["near"]]])
+def test_objects_that_are_no_globs_are_named(spheres, objects):
+    with pytest.raises(TypeError, match="objects: .*got"):
+        ep.families(spheres[1], objects)
 
 
 def test_bad_arguments_are_named(spheres):

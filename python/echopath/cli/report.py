@@ -5,7 +5,6 @@ import textwrap
 
 import numpy as np
 
-from ..detections.detections import NOISE
 from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
@@ -107,10 +106,9 @@ def detections(found) -> list[str]:
     if found is None:
         return []
     owners = {"": "the surroundings", **{name: name for name in found.object if name}}
-    is_noise = found.part == NOISE
-    counts = {words: int(np.sum((found.object == name) & ~is_noise)) for name, words in sorted(owners.items())}
+    counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
     return [f"{len(found):,} detections, detections.csv", *(line(name, f"{count:8,}") for name, count in counts.items()),
-            line("noise alone", f"{int(is_noise.sum()):8,}")]
+            line("noise alone", f"{int(found.is_noise.sum()):8,}")]
 
 
 def _objects(of_cells) -> list[str]:

@@ -6,6 +6,7 @@ import numpy as np
 import echopath as ep
 
 from .. import _core
+from ..keywords import known_keywords
 from ..same_radar import difference
 from . import labelling
 from .detections import Detections, centre_of
@@ -13,6 +14,7 @@ from .directions import directions_of
 from .echo_fields import EchoFields
 
 
+@known_keywords
 def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocity=None, guard_range=None,
            training_velocity=None, training_range=None, rank=0.75, angles=None, paths=None, parts=None, labels=None,
            objects=None, progress=None) -> Detections:
@@ -64,7 +66,7 @@ def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, ech
         part, share = labelling.strongest_part(names, powers)
     is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, measured)
     part, share = labelling.with_noise(part, share, is_noise)
-    return {"part": part, "share": share} | labelling.as_columns(families, is_noise)
+    return {"part": part, "share": share, "is_noise": is_noise} | labelling.as_columns(families, is_noise)
 
 
 def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) -> Detections:

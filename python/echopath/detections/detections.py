@@ -12,7 +12,7 @@ from .echo_fields import EchoFields
 
 NOISE = "noise"  # part of a detection that no echo made
 COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
-           "class_code", "share", "velocity_index", "range_index")
+           "class_code", "share", "is_noise", "velocity_index", "range_index")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -24,7 +24,8 @@ class Detections:
     velocity: [D] m/s, receding positive, folded as in the map unless `folds` were tried
     azimuth, elevation: [D] rad, left and up positive, in the radar's frame; NaN where the antennas cannot tell
     power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell
-    part: [D] text, of the largest power in the cell; "noise": no echo made it; "" where nobody asked
+    part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked
+    is_noise: bool [D], no echo made it
     share: [D] of that part in the sum of the powers of all parts, NaN without one
     object: [D] text, whose echo it is, "" for the surroundings and noise; ghost_type, order, class_code: i32 [D], as of
         `families`, 0 without an object
@@ -41,6 +42,7 @@ class Detections:
     noise: np.ndarray
     part: np.ndarray
     share: np.ndarray
+    is_noise: np.ndarray
     object: np.ndarray
     ghost_type: np.ndarray
     order: np.ndarray
@@ -65,13 +67,13 @@ class Detections:
         Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for the
         first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that hold
         99.99 % of the sum of the powers of single paths, of which the shares are.
-        i: index, 0 to D - 1. Empty for "noise". Raises ValueError where `detect` was given no paths, IndexError.
+        i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, IndexError.
         """
         if self.echoes is None:
             raise ValueError("paths: detect(..., paths=) was not given any")
         if not -len(self) <= i < len(self):
             raise IndexError(f"i: must be in [0, {len(self)}), got {i}")
-        if self.part[i] == NOISE:
+        if self.is_noise[i]:
             return np.zeros(0, np.int64), np.zeros(0)
         return self.echoes.paths(self.cells[i])
 
@@ -81,7 +83,7 @@ class Detections:
         path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell; unknown numbers are
         left empty. Raises ep.FileError.
         """
-        columns = [getattr(self, name) for name in COLUMNS[:-2]] + [self.cells[:, 0], self.cells[:, 1]]
+        columns = [getattr(self, name) for name in COLUMNS[:-3]] + [self.is_noise.astype(int)] + [self.cells[:, 0], self.cells[:, 1]]
         with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
             writer = csv.writer(stream, lineterminator="\n")
             writer.writerow(COLUMNS)
@@ -93,8 +95,9 @@ class Detections:
     def __repr__(self) -> str:
         if not len(self):
             return "Detections(0)"
-        names, counts = np.unique(self.part[self.part != ""], return_counts=True)
+        names, counts = np.unique(self.part[(self.part != "") & ~self.is_noise], return_counts=True)
         of_parts = "".join(f", {count} {name}" for name, count in zip(names, counts))
+        of_parts += f", {self.is_noise.sum()} of noise alone" if self.is_noise.any() else ""
         return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():.2f} to "
                 f"{self.velocity.max():.2f} m/s{of_parts})")
 

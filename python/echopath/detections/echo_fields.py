@@ -11,7 +11,7 @@ from ..path_cells import OUTSIDE
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
-SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame
+SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; within segments, of each of them
 MAX_SWEEP = 32.0       # bins
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
 MAX_SEGMENTS = 32
@@ -25,36 +25,54 @@ class Response:
     """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
 
     In parts, one for each segment of the samples. reach: bins, within which it is known
+    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep bends
+    it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
+    Memory: the table has 8 bytes for each segment, sweep (257 / S^2 at most) and sixteenth of a bin: 33 kB a sample at most.
     """
 
     def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
         samples = _window_samples(window, n)
         self._n = n
-        self._middle = int(np.ceil(min(largest_sweep, MAX_SWEEP) / SWEEP_STEP))
-        self._sweeps = SWEEP_STEP * np.arange(-self._middle, self._middle + 1)
-        self.reach = min(_reach(samples) + 0.5 * self._sweeps[-1], 0.5 * n)
-        self._half = int((self.reach + 1.0) * STEPS_PER_BIN)
+        self._step = SWEEP_STEP * segments ** 2
+        self._largest = min(largest_sweep, MAX_SWEEP)
+        self._middle = int(np.ceil(self._largest / self._step - 0.5))
+        self.reach = min(_reach(samples) + 0.5 * self._largest, 0.5 * n)
+        self._half = int((min(self.reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
         place = (np.arange(n) - 0.5 * (n - 1)) / n
-        bent = samples / samples.sum() * np.exp(1j * np.pi * np.outer(self._sweeps, place ** 2))
         parts = np.array_split(np.arange(n), segments)
         self.centres = np.array([place[part].mean() for part in parts])  # [segments], -1/2 to 1/2
-        self._table = np.stack([self._transform(bent * np.isin(np.arange(n), part)) for part in parts])
+        self._table = np.stack([self._transform(samples / samples.sum(), place - centre, part)
+                                for centre, part in zip(self.centres, parts)])
+
+    @property
+    def table_bytes(self) -> int:
+        return self._table.nbytes
 
     def __call__(self, y, sweep=0.0):
-        """y: bins [N] or [segments, N], folded into the axis; sweep: bins [N] or one. Returns complex [segments, N]."""
+        """y: bins [N], folded into the axis, or [rows, N] for one segment; sweep: bins [N] or one.
+
+        Returns complex [segments or rows, N].
+        """
+        sweep, centre = np.clip(sweep, -self._largest, self._largest), self.centres[:, None]
+        y = y - centre * sweep
         turns = np.rint(y / self._n)
         sign = 1.0 - 2.0 * np.mod(turns * (self._n - 1), 2)  # phases are those of the samples' middle
-        row = np.clip(np.rint(np.asarray(sweep) / SWEEP_STEP).astype(int) + self._middle, 0, len(self._sweeps) - 1)
+        row = np.clip(np.rint(sweep / self._step).astype(int) + self._middle, 0, 2 * self._middle)
         step = (y - turns * self._n) * STEPS_PER_BIN + self._half
         low = np.clip(step.astype(int), 0, 2 * self._half - 1)
         part = np.clip(step - low, 0.0, 1.0)
-        return sign * ((1.0 - part) * self._table[:, row, low] + part * self._table[:, row, low + 1])
+        segment = np.arange(len(self.centres))[:, None]
+        between = (1.0 - part) * self._table[segment, row, low] + part * self._table[segment, row, low + 1]
+        return sign * np.exp(-1j * np.pi * sweep * centre ** 2) * between
 
-    def _transform(self, rows):
-        """Of rows [sweeps, n] at the steps of the table."""
+    def _transform(self, samples, place, part):
+        """Of the samples of a segment, places counted from its centre, at the steps of the table, [sweeps, steps]."""
+        sweeps = self._step * np.arange(-self._middle, self._middle + 1)
+        rows = np.zeros((len(sweeps), self._n), complex)
+        rows[:, part] = samples[part] * np.exp(1j * np.pi * np.outer(sweeps, place[part] ** 2))
         steps = np.arange(-self._half, self._half + 1)
         values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
-        return values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)
+        return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)
 
 
 class EchoFields:
@@ -91,7 +109,7 @@ class EchoFields:
         along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
         onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
         place = (distance - echoes["range"][near]) / pad - onward
-        gains = [np.sum(along * self._range_response(place - shift)[0], axis=0) for shift in echoes["shift"][:, near]]
+        gains = [np.sum(along * self._range_response(place - shift), axis=0) for shift in echoes["shift"][:, near]]
         return echoes["index"][near], np.array(gains) * echoes["field"][:, near]
 
     def paths(self, cell) -> tuple:

@@ -3,10 +3,15 @@ from __future__ import annotations
 
 import echopath as ep
 
+from ..keywords import known_keywords
 from .detect import detect
 from .detections import Detections
 
 
+CFAR_KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range", "rank")
+
+
+@known_keywords(also=CFAR_KEYWORDS)
 def detect_frame(frame, *, objects=None, max_peaks=1, progress=None, **keywords) -> Detections:
     """Detections in a frame's map with noise, labelled by its first partition, its objects and the paths behind them.
 

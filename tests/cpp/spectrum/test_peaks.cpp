@@ -94,11 +94,9 @@ TEST(Peaks, RealSamplesHaveNoNeighboursBeyondTheirRanges) {
   auto cube = tone(radar, 1, 3.2, 0.0, 1e-12);
   for (Complex& value : cube) value = std::sqrt(2.0) * value.real();
   const Peaks peaks = peaks_of(cube, radar, {WindowKind::kHann}, 1);
-  for (size_t i = 0; i < peaks.cells.size(); ++i) {
-    if (peaks.cells[i][1] == 0) {
-      EXPECT_EQ(peaks.range_offset[i], 0.0);
-    }
-  }
+  const auto at_the_end = std::find_if(peaks.cells.begin(), peaks.cells.end(), [](const auto& cell) { return cell[1] == 0; });
+  ASSERT_NE(at_the_end, peaks.cells.end());
+  EXPECT_EQ(peaks.range_offset[at_the_end - peaks.cells.begin()], 0.0);
   cube = tone(radar, 1, 3.2, 12.3, 1e-12);
   for (Complex& value : cube) value = std::sqrt(2.0) * value.real();
   const Peaks inside = peaks_of(cube, radar, {WindowKind::kHann}, 1);

@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from echopath.labels import powers
+from echopath.labels import objects, powers
 
 MIRROR = ep.Material.metal(mirror=True)
 ROUGH = ep.Material(reflectivity=0.9, scattering=1.0)
@@ -354,6 +354,32 @@ def test_retraced_frames_label_what_comes_out_of_hiding():
     assert renewed["plate"].status == "seen" and renewed["plate"].visible_share == 0.0  # that is of the middle
     assert renewed["plate"].peak.range == pytest.approx(9.0, abs=radar.waveform.range_resolution)
     assert once["screen"].status == renewed["screen"].status == "seen"
+
+
+class OneCell:
+    """A map of one cell with the power of a cube of one sample."""
+
+    def power(self, cube, radar):
+        return np.abs(cube[0, 0]) ** 2
+
+
+@pytest.mark.parametrize("there, back, wins", [(1.0, 1.0, 1), (1.0, -1.0, 0), (0.7, 0.7, 0), (1.0, 1.02, 2)])
+def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
+    """Against a direct echo of amplitude 1.5. Equal powers are of type 1, whatever rounding says."""
+    families = [ep.Family("a", 0, 1, ()), *(ep.Family("a", kind, 2, ("wall",)) for kind in (1, 2)), ep.Family("", 0, 0, ())]
+    fields = 1.5, there, back * (1 + 1e-9), 0.0
+    cubes = {family: np.full((1, 1, 1, 1), field) for family, field in zip(families, fields)}
+    found = powers.ViewPowers(OneCell())
+    for _ in range(2):
+        found.add(cubes, powers.CubeSet(None, 0.5, {}))
+    cells = np.stack([found.cells[family] for family in families])
+    assert objects._strongest_family(found, families, cells, np.ones((1, 1), bool)).item() == wins
+    assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=1e-8)
+
+
+def test_pairs_of_ghosts_have_their_cells_together(labels):
+    kinds = {(ghost.object, ghost.ghost_type): ghost.cells for ghost in labels.ghosts if ghost.order == 2}
+    assert all(kinds[name, 1] > 0 and kinds[name, 2] == 0 for name in TARGETS)
 
 
 def test_parts_by_families_are_labelled_too(plates_and_wall):

@@ -7,6 +7,9 @@ import numpy as np
 
 from .. import _core
 from .labels import NONE, GhostLabel, ObjectLabel, is_occluded
+from .powers import parts_by_rival
+
+ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
 
 
 class FamilyCells(NamedTuple):
@@ -27,10 +30,22 @@ def family_cells(powers, mask, noise_floor: float, plane) -> FamilyCells:
     """powers: ViewPowers of the families; mask: bool [V, R]; noise_floor in W."""
     families = list(powers.cells)
     cells = np.stack([powers.cells[family] for family in families])
-    strongest = _core.strongest_part(cells, mask)
+    strongest = _strongest_family(powers, families, cells, mask)
     return FamilyCells(families=families, received=[powers.received[family] for family in families],
                        regions=_core.label_regions(strongest, cells, plane.rows_wrap), strongest=strongest,
                        is_above_noise=[bool(np.any(power > noise_floor)) for power in cells])
+
+
+def _strongest_family(powers, families: list, cells, mask):
+    """i16 [V, R]: of the rival of the largest power the strongest family by itself, the first of those that are alike."""
+    winner = _core.strongest_part(np.stack(list(powers.rivals.values())), mask)
+    index = {family: number for number, family in enumerate(families)}
+    strongest = np.full(winner.shape, NONE, np.int16)
+    for rival, members in enumerate(parts_by_rival(families).values()):
+        numbers, at = np.array([index[family] for family in members], np.int16), winner == rival
+        own = cells[numbers][:, at]
+        strongest[at] = numbers[np.argmax(own >= ALIKE * own.max(axis=0), axis=0)]
+    return strongest
 
 
 def label_objects(names, found: FamilyCells, visibility: dict, plane):

@@ -25,23 +25,45 @@ class CubeSet(NamedTuple):
     views: dict
 
 
+def rival_of(part):
+    """What a part competes for cells as: itself, or of ghosts (Family) all that go over the same mirrors as often.
+
+    Among them are the same ways there and back, which no map tells apart: their fields add up.
+    """
+    is_ghost = isinstance(part, ep.Family) and part.is_ghost
+    return (part.object, part.order, frozenset(part.via)) if is_ghost else part
+
+
+def parts_by_rival(parts) -> dict:
+    """{rival: [part, ...]} of parts."""
+    found = {}
+    for part in parts:
+        found.setdefault(rival_of(part), []).append(part)
+    return found
+
+
 class ViewPowers:
     """Powers of the parts of one view, added up over sets of receivers.
 
     cells: {part: [V, R] W}; whole: [V, R] W, of the sum of the parts as fields
+    rivals: {rival_of(part): [V, R] W, of the sum of their fields}, in the order of their first parts
     received: {part: W}, mean over channels, chirps and samples
     """
 
     def __init__(self, plane):
         self._plane = plane
-        self.cells, self.received, self.whole = {}, {}, 0.0
+        self.cells, self.rivals, self.received, self.whole = {}, {}, {}, 0.0
 
     def add(self, cubes: dict, cube_set: CubeSet) -> None:
         """cubes: {part: [tx, rx, chirp, sample]} of the set's receivers."""
         radar, weight = cube_set.radar, cube_set.weight
+        powers = {part: self._plane.power(cube, radar) for part, cube in cubes.items()}
         for part, cube in cubes.items():
-            self.cells[part] = self.cells.get(part, 0.0) + weight * self._plane.power(cube, radar)
+            self.cells[part] = self.cells.get(part, 0.0) + weight * powers[part]
             self.received[part] = self.received.get(part, 0.0) + weight * _mean_square(cube)
+        for rival, parts in parts_by_rival(cubes).items():
+            joint = powers[parts[0]] if len(parts) == 1 else self._plane.power(sum(cubes[part] for part in parts), radar)
+            self.rivals[rival] = self.rivals.get(rival, 0.0) + weight * joint
         self.whole = self.whole + weight * self._plane.power(sum(cubes.values()), radar)
 
 

@@ -100,7 +100,7 @@ class GhostLabel:
     The echoes of types 1 and 2 of order 2 over one mirror are the same way there and back: where transmitter and receiver stand
     side by side, no map tells them apart. Ghosts of an object over the same mirrors, of the same order, therefore compete for
     cells by the power of their common field; a cell that they win has the strongest of them by itself, the first of those
-    within 0.1 dB: of such a pair as a rule type 1 has all cells and type 2 none.
+    within 0.1 dB: of a pair from one place type 1 has all cells and type 2 none.
     object: full name of the object; via: names of the children of the scene root that mirrored it, tuple of str
     ghost_type: 1 (last bounce on the object) or 2 (last bounce on a mirror); order: number of bounces
     class_code: of the Radar Ghost Dataset (Kraus et al.)

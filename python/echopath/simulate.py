@@ -9,13 +9,13 @@ import echopath as ep
 from .azimuth_map import checked_settings, sees_azimuth
 from .detections.checks import check_keywords
 from .effects import of_paths
-from .labels.annotate import label_frame, make_request
+from .keywords import refuse_unknown
+from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
 from .stages import Stage, StageClock
 
 _FAMILIES = object()  # a view that has the name of no partition
-_LABEL_KEYWORDS = ("plane", "objects", "noise", "noise_margin_db", "dynamic_range_db", "errors")
 
 
 @dataclasses.dataclass
@@ -118,8 +118,8 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors): the
         frame carries the labels of its map, from the same pass, with the cubes of all families in memory; {}: as True; None or
         False: none, and nothing is spent on them
-    detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its labels unless
-        told otherwise; {}: as True; None or False: none
+    detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
+        labels unless told otherwise; {}: as True; None or False: none
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
@@ -198,9 +198,7 @@ def _label_request(radar, labels, num_batches: int, window, zero_pad, angles: di
     if labels is None or labels is False:
         return None
     keywords = {} if labels is True else dict(labels)
-    unknown = [word for word in keywords if word not in _LABEL_KEYWORDS]
-    if unknown:
-        raise TypeError(f"labels: unknown keyword '{unknown[0]}', known are {', '.join(_LABEL_KEYWORDS)}")
+    refuse_unknown("labels", keywords, MAP_KEYWORDS)
     if keywords.get("plane") == "range_azimuth":
         keywords["angles"] = angles
     return make_request(radar, num_batches, window=window, zero_pad=zero_pad, **keywords)

@@ -337,7 +337,9 @@ def test_bad_settings_are_named(plates_and_wall, keywords, message):
 def test_unknown_keywords_name_the_nearest(plates_and_wall):
     with pytest.raises(TypeError, match="annotate: unknown keyword 'tolerence', the nearest right one is 'tolerance'"):
         ep.annotate(plates_and_wall[0], tolerence=1e-6)
-    with pytest.raises(TypeError, match="labels: unknown keyword 'noise_margin'"):
+    with pytest.raises(TypeError, match="annotate_frame: unknown keyword 'object', the nearest right one is 'objects'"):
+        ep.annotate_frame(None, object=["a"])
+    with pytest.raises(TypeError, match="labels: unknown keyword 'noise_margin', the nearest right one is 'noise_margin_db'"):
         ep.simulate(ep.Scene(), make_radar(), labels={"noise_margin": 3})
 
 
@@ -423,7 +425,7 @@ def test_detections_have_the_objects_of_the_labels(plates_and_wall):
 
 
 @pytest.mark.parametrize("keywords, error, message", [
-    ({"false_alarm": 1e-3}, TypeError, "detections: unknown keyword 'false_alarm'"),
+    ({"false_alarm": 1e-3}, TypeError, "detections: unknown keyword 'false_alarm', the nearest right one is 'false_alarm_rate'"),
     ({"false_alarm_rate": 2.0}, ValueError, "false_alarm_rate: must be in"),
     ({"objects": ["bicycle"]}, ValueError, "bicycle"),
 ])

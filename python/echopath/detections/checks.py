@@ -7,21 +7,20 @@ import echopath as ep
 
 from .. import _core
 from ..families import named_globs
+from ..keywords import refuse_unknown
 from ..labels.planes import with_receivers
 
-KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range", "rank",
-            "objects", "max_peaks")
+CFAR_KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range", "rank")
+KEYWORDS = (*CFAR_KEYWORDS, "objects", "max_peaks")
 
 
 def check_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> None:
     """Raises what `detect_frame` would for keywords, from an empty map of one receiver: to know before a long trace."""
-    unknown = [word for word in keywords if word not in KEYWORDS]
-    if unknown:
-        raise TypeError(f"detections: unknown keyword '{unknown[0]}', known are {', '.join(KEYWORDS)}")
+    refuse_unknown("detections", keywords, KEYWORDS)
     for _, globs in named_globs(keywords.get("objects")) or []:
         for glob in globs:
             ep.hits(glob).check(scene)
     one, waveform = with_receivers(radar, slice(0, 1)), radar.waveform
     nothing = np.zeros((len(one.transmitters), 1, waveform.num_chirps, waveform.num_samples))
     _core.check_cfar(ep.range_doppler(nothing, one, **spectrum_settings), one,
-                     **{word: value for word, value in keywords.items() if word not in ("objects", "max_peaks")})
+                     **{word: value for word, value in keywords.items() if word in CFAR_KEYWORDS})

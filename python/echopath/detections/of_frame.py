@@ -4,11 +4,9 @@ from __future__ import annotations
 import echopath as ep
 
 from ..keywords import known_keywords
+from .checks import CFAR_KEYWORDS
 from .detect import detect
 from .detections import Detections
-
-
-CFAR_KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range", "rank")
 
 
 @known_keywords(also=CFAR_KEYWORDS)

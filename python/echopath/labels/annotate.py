@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
-import inspect
 
 import numpy as np
 
 import echopath as ep
 
 from .. import _core, same_radar
+from ..keywords import known_keywords
 from ..visibility import visibility_in_trace
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects
@@ -19,9 +19,11 @@ from .standard_errors import require_batches, share_errors
 NOISE_MARGIN_DB = 10.0
 DYNAMIC_RANGE_DB = 60.0
 SIGNAL_SETTINGS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
+MAP_KEYWORDS = ("plane", "objects", "noise", "noise_margin_db", "dynamic_range_db", "errors")  # that no frame sets
 _PARTS, _FAMILIES = "parts", "families"
 
 
+@known_keywords(also=SIGNAL_SETTINGS)
 def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_doppler", window="hann", zero_pad=1, angles=None,
              noise=True, noise_margin_db=NOISE_MARGIN_DB, dynamic_range_db=DYNAMIC_RANGE_DB, errors=False, progress=None,
              **settings) -> Labels:
@@ -31,8 +33,8 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     that the map of `synthesize` has. A cell of the mask belongs to whatever has the largest power in it. Where parts
     interfere, their powers do not add up to that of the whole.
     paths: of `trace`, all of them
-    parts: Parts of `decompose` of the same radar, or selections as `decompose` takes them, {name: selection}: then no cube outlives its use.
-        None: all paths are "other"
+    parts: Parts of `decompose` of the same radar, or selections as `decompose` takes them, {name: selection}: then no cube
+        outlives its use. None: all paths are "other"
     radar: that of the signals, None: of the parts or of the trace
     objects: as in `families`, what to report on
     plane: "range_doppler" or "range_azimuth" (beams of each part); window, zero_pad: as in `range_doppler`
@@ -49,7 +51,6 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     range_azimuth; and 8 bytes per cell for each part and family, with errors for each part and batch three times.
     Raises ValueError for bad input, for errors without batches, KeyboardInterrupt on Ctrl-C.
     """
-    _refuse_unknown(settings)
     radar = _radar_of(paths, parts, radar)
     request = make_request(radar, paths.frame.num_batches, objects=objects, plane=plane, window=window, zero_pad=zero_pad,
                            angles=angles, noise=noise, noise_margin_db=noise_margin_db, dynamic_range_db=dynamic_range_db,
@@ -150,13 +151,6 @@ def _with_errors(labels: Labels, request: Request, paths, selections: dict, sett
     found = share_errors(paths, request.radar, selections, labels.part_names, labels.dominant, request.plane, settings)
     names = ("mean_power", "power_error", "mean_share", "share_error", "certain")
     return dataclasses.replace(labels, **dict(zip(names, found)))
-
-
-def _refuse_unknown(settings: dict) -> None:
-    for word in settings:
-        if word not in SIGNAL_SETTINGS:
-            nearest = _core.nearest_names(word, [*SIGNAL_SETTINGS, *inspect.signature(annotate).parameters], 1)[0]
-            raise TypeError(f"annotate: unknown keyword '{word}', the nearest right one is '{nearest}'")
 
 
 def _radar_of(paths, parts, radar):

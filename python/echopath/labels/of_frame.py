@@ -3,14 +3,16 @@ from __future__ import annotations
 
 import echopath as ep
 
+from ..keywords import known_keywords
 from ..parts import ONLY_PARTITION, check_partitions
-from .annotate import label_parts, label_scene, make_request
+from .annotate import MAP_KEYWORDS, label_parts, label_scene, make_request
 from .powers import CubeSet, add_powers, decomposed
 
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
 _FAMILIES = object()  # a view that has the name of no partition
 
 
+@known_keywords(also=MAP_KEYWORDS)
 def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
     """Labels of the cells of a frame's map, from its record and the cubes of its partitions alone.
 

@@ -49,7 +49,8 @@ def moving_peak(spectrum):
 
 def test_all_files_are_written(demo):
     out, _, _ = demo
-    pictures = ["body.png", "ghosts.png", "labels_body.png", "labels_route.png", "map.png", "overview.png", "route.png", "scene.png"]
+    pictures = ["body.png", "labels_body.png", "labels_route.png", "map.png", "objects_and_ghosts.png", "overview.png",
+                "route.png", "scene.png"]
     assert sorted(path.name for path in out.iterdir()) == sorted(["frame.h5", "label_maps", *pictures])
     maps = [f"{name}{suffix}" for name in ("ghosts", "objects", "parts_body", "parts_route") for suffix in (".json", ".png")]
     assert sorted(path.name for path in (out / "label_maps").iterdir()) == maps

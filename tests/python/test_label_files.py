@@ -313,21 +313,22 @@ def test_faults_of_labels_name_the_key(tmp_path, table, message):
 
 
 def test_commands_write_labels(scene_path, tmp_path, capsys):
-    assert main(["run", str(scene_path), "--out", str(tmp_path / "run")]) == 0
+    assert main(["run", str(scene_path), "--out", str(tmp_path / "run"), "--part", "one=T . R"]) == 0
     told = capsys.readouterr().out
     assert "cells labelled, by" in told and "label_maps/parts_by.png" in told and "ghosts " in told
     assert "detections, detections.csv" in told and (tmp_path / "run" / "detections.csv").read_text().startswith("range,")
-    assert (tmp_path / "run" / "ghosts.png").exists() and (tmp_path / "run" / "label_maps" / "parts_power.json").exists()
+    assert (tmp_path / "run" / "objects_and_ghosts.png").exists()
+    assert (tmp_path / "run" / "label_maps" / "parts_power.json").exists()
     arguments = ["labels", str(tmp_path / "run" / "frame.h5"), "--out", str(tmp_path / "more"), "--part", "near=T . R",
                  "--object", "person = pers*", "--dynamic-range", "30"]
     assert main([*arguments, "--cfar", "os", "--false-alarm-rate", "1e-3"]) == 0
     told = capsys.readouterr().out
     assert "detections, detections.csv" in told and len((tmp_path / "more" / "detections.csv").read_text().splitlines()) > 1
-    assert "cells labelled, choice" in told and "hidden by" in told and "van 100%" in told
+    assert "cells labelled, choice 2" in told and "hidden by" in told and "van 100%" in told
     made = ep.load_labels(tmp_path / "more" / "labels.h5")
-    assert list(made) == ["by", "power", "choice"] and made["choice"].dynamic_range_db == 30.0
+    assert list(made) == ["by", "power", "choice", "choice 2"] and made["choice 2"].dynamic_range_db == 30.0
     assert [label.name for label in made["by"].objects] == ["person"]
-    assert (tmp_path / "more" / "labels_choice.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "more" / "labels_choice 2.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -163,7 +163,7 @@ def _run(options) -> None:
     from ..scene_file import load_scene
 
     scene_file = load_scene(options.scene)
-    chosen = chosen_partition(options.part)
+    chosen = chosen_partition(options.part, scene_file.partitions())
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, progress=progress)

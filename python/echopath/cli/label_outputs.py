@@ -24,15 +24,19 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
         written.append(folder / f"{name}.png")
 
     for index, (partition, labels) in enumerate(of_partitions.items()):
-        names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"}
-        names |= {"objects": "objects", "ghosts": "ghosts"} if index == 0 else {}
-        written += ep.save_label_images(labels, folder / MAPS_FOLDER, names)
+        written += ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, index == 0))
         if index == 0:
-            write("ghosts", plots.plot_ghosts(labels))
+            write("objects_and_ghosts", plots.plot_ghosts(labels))
         powers = _powers(frame, partition, selections.get(partition, {}))
         title = "Which part made each cell" + (f", by {partition}" if partition != ONLY_PARTITION else "")
         write(f"labels_{partition}", plots.plot_labels(labels, title=title, powers=powers))
     return written
+
+
+def _map_names(partition: str, is_first: bool) -> dict:
+    """File names of label maps; those of objects and ghosts are the same for all partitions."""
+    names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"}
+    return names | ({"objects": "objects", "ghosts": "ghosts"} if is_first else {})
 
 
 def _powers(frame, partition: str, selections: dict) -> dict:

@@ -22,7 +22,7 @@ def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) 
     """
     path, folder = Path(path), Path(folder)
     missing, frame = left_out(path), load_frame(path)
-    chosen = chosen_partition(parts)
+    chosen = chosen_partition(parts, frame.parts)
     frame.labels = annotate_frame(frame, chosen, progress=progress, **keywords)
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=keywords.get("objects"), progress=progress, **cfar or {})

@@ -1,6 +1,7 @@
 """Simulates a scene file and writes the frame and its pictures."""
 from __future__ import annotations
 
+import itertools
 import dataclasses
 from pathlib import Path
 
@@ -50,9 +51,15 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
                     detections=scene_file.detection_settings(), progress=progress)
 
 
-def chosen_partition(texts) -> dict:
-    """{"choice": {name: Selection}} of texts NAME=SELECTION from the command line; {} of none."""
-    return {"choice": parts_of_options(texts)} if texts else {}
+def chosen_partition(texts, taken) -> dict:
+    """{"choice": {name: Selection}} of texts NAME=SELECTION from the command line; {} of none.
+
+    taken: names of other partitions, beside which it is called "choice 2", "choice 3" and so on
+    """
+    if not texts:
+        return {}
+    names = itertools.chain(["choice"], (f"choice {number}" for number in itertools.count(2)))
+    return {next(name for name in names if name not in taken): parts_of_options(texts)}
 
 
 def certify(frame: Frame, *, progress=None):
@@ -69,7 +76,7 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
 
     The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
     the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above); with labels also
-    ghosts.png, labels_NAME.png for each partition and label_maps/ for programs.
+    objects_and_ghosts.png, labels_NAME.png for each partition and label_maps/ for programs.
     """
     folder = Path(folder)
     clock = StageClock()

@@ -80,7 +80,8 @@ seed: the same seed gives the same bits
 start_time: s, first sample of the frame
 polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised) or
 "jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more)
-footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"
+footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a flatter
+second order, for curved surfaces whose edges make the echo (a dish along its axis)
 sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
 batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
 fine as its share of the rays; 1 unless given

@@ -80,7 +80,7 @@ void bind_trace_frame(py::module_& m) {
           "polarization", [](const TraceFrame& self) { return kPolarization.name_of(self.polarization); },
           "\"scalar\" or \"jones\"")
       .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
-                             "\"second_order\", \"first_order\" or \"none\"")
+                             "\"second_order\", \"edges\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
                     "dB, error of the received power that was asked for; 0: none")

@@ -42,7 +42,7 @@ constexpr Choice<Enum, sizeof...(Names)> choice(const char* argument, Names... n
   return {argument, {names...}};
 }
 
-inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first_order", "second_order");
+inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first_order", "second_order", "edges");
 inline constexpr auto kMethod = choice<Method>("method", "auto", "direct", "recurrence", "nufft");
 inline constexpr auto kPolarization = choice<PolarizationModel>("polarization", "scalar", "jones");
 inline constexpr auto kSpecularPoints = choice<SpecularPoints>("replay", "material", "fermat");

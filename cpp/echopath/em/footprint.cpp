@@ -28,6 +28,11 @@ std::complex<double> second_order_footprint(const FootprintPhase& phase, double 
   return {root_real * c + root_imag * s, root_real * s - root_imag * c};
 }
 
+std::complex<double> edges_footprint(const FootprintPhase& phase, double spread) {
+  const auto widened = [&](double times) { return second_order_footprint(phase, spread * std::sqrt(times)); };
+  return 3.0 * (widened(1.0) - widened(2.0)) + widened(3.0);
+}
+
 double flat_top_footprint(const FootprintPhase& phase) {
   const auto axis = [](double g) {
     const double loss = 1.0 - std::exp(-g * g / 8.0);  // its fourth power needs no more digits

@@ -8,6 +8,7 @@ enum class Footprint {
   kNone,         // every ray is a point: sums alias where phases turn faster than rays are spaced
   kFirstOrder,   // linear phase across the cell
   kSecondOrder,  // quadratic phase: few rays suffice on curved surfaces
+  kEdges,        // the same, flatter: far fewer rays where the edges of a curved surface make the echo
 };
 
 // Phase of the path across the footprint, g.x + x.h.x / 2, with x in units of launch cells along the two footprint axes.
@@ -23,6 +24,10 @@ double first_order_footprint(const FootprintPhase& phase);
 // Second order: the exact mean of e^{-j(g.x + x.h.x/2)} over a Gaussian of covariance spread^2 (cells^2). |F| <= 1, F -> 1
 // for small cells. spread: 0.6 for spherical Fibonacci points.
 std::complex<double> second_order_footprint(const FootprintPhase& phase, double spread);
+
+// 3 F(s^2) - 3 F(2 s^2) + F(3 s^2) of the second order: the mean over a spread of cells that is flat near its middle, so that
+// phases that turn by a tenth of a cycle between rays lose less than 1e-3 where the Gaussian loses 8 %. |F| <= 7.
+std::complex<double> edges_footprint(const FootprintPhase& phase, double spread);
 
 // Flat surface on a flat chain: product over both axes of 1 - (1 - exp(-g^2/8))^4, flatter near g = 0 than the Gaussian,
 // so that plates lose nothing while phases turn less than a quarter between rays. In [0, 1]. Higher powers are flatter

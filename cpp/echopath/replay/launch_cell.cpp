@@ -75,18 +75,19 @@ std::complex<double> second_order(const LaunchCell& cell, const HitGeometry& at,
   const Eigen::Matrix2d surface = filter.wavenumber * surface_phase(at, tangents);
   const Eigen::Matrix2d h = front + surface;
   const FootprintPhase whole{g[0], g[1], h(0, 0), h(0, 1), h(1, 1)};
+  const auto quadratic = filter.order == Footprint::kEdges ? edges_footprint : second_order_footprint;
   const Flatness flatness = flatness_of(at.hit);
-  if (cell.is_curved || flatness == Flatness::kCurved) return second_order_footprint(whole, filter.spread);
+  if (cell.is_curved || flatness == Flatness::kCurved) return quadratic(whole, filter.spread);
   if (flatness == Flatness::kFlat) {
     const bool is_flat = h.cwiseAbs().maxCoeff() * filter.spread * filter.spread < kFlatPhase;
-    return is_flat ? flat_top_footprint(whole) : second_order_footprint(whole, filter.spread);
+    return is_flat ? flat_top_footprint(whole) : quadratic(whole, filter.spread);
   }
   // Along the axis of a cylinder the facets are as long as the cylinder: flat-top there, second order across.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(surface);
   const int flat = std::abs(axes.eigenvalues()[0]) < std::abs(axes.eigenvalues()[1]) ? 0 : 1;
   const Eigen::Vector2d along = axes.eigenvectors().col(flat), across = axes.eigenvectors().col(1 - flat);
   return flat_top_footprint({along.dot(g), 0.0, 0.0, 0.0, 0.0}) *
-         second_order_footprint({across.dot(g), 0.0, across.dot(h * across), 0.0, 0.0}, filter.spread);
+         quadratic({across.dot(g), 0.0, across.dot(h * across), 0.0, 0.0}, filter.spread);
 }
 
 }  // namespace

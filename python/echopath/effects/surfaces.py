@@ -20,6 +20,7 @@ def _footprint(case: Case):
     if not case.coherent:
         return False, "no coherent echoes to filter"
     kind = {"first_order": "phases linear across a ray's footprint",
+            "edges": "quadratic phases on curved surfaces, kept at their edges, flat-top on flat ones",
             "second_order": "quadratic phases on curved surfaces, flat-top on flat ones"}[order]
     return True, f"{order.replace('_', ' ')}, for the coherent echoes: {kind}"
 

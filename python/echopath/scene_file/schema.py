@@ -214,7 +214,7 @@ class TraceTable(Table):
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
     polarization: Literal["scalar", "jones"] = Field("scalar", description="field vectors, or one coefficient a hit")
-    footprint: Literal["second_order", "first_order", "none"] = Field(
+    footprint: Literal["second_order", "edges", "first_order", "none"] = Field(
         "second_order", description="filter of a ray's footprint")
     sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(
         "lattice", description="how rays are spread over the cone of an object")

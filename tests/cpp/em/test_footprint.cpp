@@ -46,6 +46,14 @@ TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
   }
 }
 
+TEST(Footprint, EdgesCombineThreeGaussians) {
+  const FootprintPhase phase{0.7, -0.4, 0.5, 0.2, -0.3};
+  const auto mean = [&](double times) { return gaussian_mean(phase, 0.6 * std::sqrt(times)); };
+  EXPECT_LT(std::abs(edges_footprint(phase, 0.6) - (3.0 * mean(1.0) - 3.0 * mean(2.0) + mean(3.0))), 1e-11);
+  EXPECT_LT(std::abs(edges_footprint({0.2 * kPi, 0, 0, 0, 0}, 0.65) - 1.0), 1e-3);
+  EXPECT_LT(std::abs(edges_footprint({12.0, 0, 0, 0, 0}, 0.65)), 1e-6);
+}
+
 TEST(Footprint, AllTendToOneForSmallCells) {
   const FootprintPhase small{1e-5, -2e-5, 1e-5, 3e-6, -1e-5};
   EXPECT_NEAR(first_order_footprint(small), 1.0, 1e-9);

@@ -15,7 +15,7 @@ namespace {
 constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
 constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
-constexpr int64_t kLargestBlock = 8192;
+constexpr int64_t kLargestBlock = 8000;  // no power of two: rows of nodes would share the sets of the first-level cache
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);

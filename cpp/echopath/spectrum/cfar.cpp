@@ -29,7 +29,7 @@ HalfWidths half_widths(std::optional<int> guard, std::optional<int> training, in
   return widths;
 }
 
-// Factors cost a tenth of a second or more; the frames of a data set share them.
+// Factors cost a tenth of a second, of large windows several seconds; the frames of a data set share them.
 CfarFactors kept_factors(const CfarDesign& design, Job* job) {
   static std::mutex mutex;
   static std::deque<std::pair<CfarDesign, CfarFactors>> kept;

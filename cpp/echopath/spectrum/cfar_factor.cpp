@@ -15,6 +15,8 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxChannels = 4096;
+constexpr Eigen::Index kFewDegrees = 400;  // of freedom, in windows whose factors are computed for every column
+constexpr int kMaxCells = 2000;            // of a window, counted without padding: beyond, a step takes too long to cancel
 constexpr int kManyDraws = 8192, kFewDraws = 512;
 
 // log of the probability that a sum of n unit exponential powers exceeds x: e^-x sum_{k < n} x^k / k!
@@ -89,10 +91,28 @@ struct TridiagonalForm {
   }
 };
 
+// What training cells and a cell under test are together, for a cell at `column`.
+struct ColumnForm {
+  TridiagonalForm even;
+  std::vector<double> odd;  // eigenvalues of what the cell does not touch
+
+  // Raises Cancelled between the steps, each some tenths of a second for the largest windows.
+  ColumnForm(const TrainingNoise& noise, int column, Job* job)
+      : even(noise.quadratic_form(column, TrainingNoise::Rows::kEven), noise.cell(column)) {
+    if (job) job->throw_if_cancelled();
+    const Eigen::MatrixXd form = noise.quadratic_form(column, TrainingNoise::Rows::kOdd);
+    if (form.rows() == 0) return;
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form, Eigen::EigenvaluesOnly).eigenvalues();
+    for (const double value : values) odd.push_back(std::max(value, 0.0));
+    if (job) job->throw_if_cancelled();
+  }
+};
+
 // Eigenvalues of the covariance of the training cells.
-std::vector<double> covariance_eigenvalues(const TridiagonalForm& form) {
-  std::vector<double> values = form.eigenvalues(0.0, 1.0);
+std::vector<double> covariance_eigenvalues(const ColumnForm& form) {
+  std::vector<double> values = form.even.eigenvalues(0.0, 1.0);
   for (double& value : values) value = std::max(-value, 0.0);
+  values.insert(values.end(), form.odd.begin(), form.odd.end());
   return values;
 }
 
@@ -105,26 +125,49 @@ double alone_multiplier(const std::vector<double>& eigenvalues, const CfarDesign
 
 // The same for a cell that is correlated with them: the probability that an indefinite form of Gaussian numbers is positive,
 // by its eigenvalues, of which one is positive (Turin 1960).
-double coupled_multiplier(const TridiagonalForm& form, const CfarDesign& design) {
+double coupled_multiplier(const ColumnForm& form, const CfarDesign& design, Job* job) {
   return solve_decreasing([&](double alpha) {
-    std::vector<double> values = form.eigenvalues(1.0, alpha);
+    if (job) job->throw_if_cancelled();
+    std::vector<double> values = form.even.eigenvalues(1.0, alpha);
     const double positive = values.back();
     values.pop_back();
     for (double& value : values) value = std::max(-value, 0.0);
+    for (const double value : form.odd) values.push_back(alpha * value);
     return false_alarm_probability(1.0 / positive, values, design.noise.num_channels);
   }, design.false_alarm_rate);
 }
 
+// Columns whose factors are computed, ascending, 0 and the middle among them: all of a small window. Of a large one those
+// within twice the guard cells of the end, where training cells change sides, then twice as far each time.
+std::vector<int> computed_columns(const CfarWindow& cells, Eigen::Index num_degrees) {
+  const int last = cells.reach_range(), dense = num_degrees <= kFewDegrees ? last : 2 * cells.guard_range;
+  std::vector<int> columns;
+  for (int column = 0; column < last; column = column < dense ? column + 1 : std::max(2 * column, 1)) columns.push_back(column);
+  columns.push_back(last);
+  return columns;
+}
+
+// [last column + 1], straight lines between the columns.
+std::vector<double> interpolated(const std::vector<int>& columns, const std::vector<double>& values) {
+  std::vector<double> all = {values.front()};
+  for (size_t k = 1; k < columns.size(); ++k) {
+    const int first = columns[k - 1], count = columns[k] - first;
+    for (int i = 1; i <= count; ++i) all.push_back(std::lerp(values[k - 1], values[k], static_cast<double>(i) / count));
+  }
+  return all;
+}
+
 // Factors of cell averaging, [reach_range + 1].
 std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNoise& noise, Job* job) {
-  std::vector<double> factors(design.cells.reach_range() + 1);
-  parallel_for(static_cast<int64_t>(factors.size()), [&](int64_t i) {
+  const std::vector<int> columns =
+      computed_columns(design.cells, noise.velocity_factor().cols() * noise.range_factor().cols());
+  std::vector<double> factors(columns.size());
+  parallel_for(static_cast<int64_t>(columns.size()), [&](int64_t i) {
     if (job) job->throw_if_cancelled();
-    const int column = static_cast<int>(i);
-    const TridiagonalForm form(noise.quadratic_form(column), noise.cell(column));
-    factors[i] = static_cast<double>(design.cells.num_training()) * coupled_multiplier(form, design);
+    const double multiplier = coupled_multiplier(ColumnForm(noise, columns[i], job), design, job);
+    factors[i] = static_cast<double>(design.cells.num_training()) * multiplier;
   });
-  return factors;
+  return interpolated(columns, factors);
 }
 
 // Of the ordered statistic, and of the mean, for a cell in the middle that is independent of the training cells.
@@ -136,7 +179,7 @@ Multipliers independent_multipliers(const CfarDesign& design, const TrainingNois
   const int channels = design.noise.num_channels, middle = design.cells.reach_range();
   const double number = static_cast<double>(design.cells.num_training());
   const Eigen::MatrixXd form = noise.quadratic_form(middle);
-  const std::vector<double> eigenvalues = covariance_eigenvalues({form, noise.cell(middle)});
+  const std::vector<double> eigenvalues = covariance_eigenvalues(ColumnForm(noise, middle, job));
   const double of_sum = alone_multiplier(eigenvalues, design);
   const TrainingDraws source(design, noise, form, eigenvalues, hazard(channels, of_sum * number * channels) * of_sum);
   const int count = std::max(kFewDraws, kManyDraws / channels);
@@ -178,6 +221,10 @@ void CfarDesign::validate() const {
           noise.num_channels);
   const int zero_pad = noise.zero_pad;
   cells.validate(int64_t{noise.num_chirps} * zero_pad, int64_t{noise.num_samples} * zero_pad);
+  const int64_t num_cells = int64_t{cells.num_rows()} * cells.num_columns() / (zero_pad * zero_pad);
+  require(num_cells <= kMaxCells, "training_range",
+          "guard and training cells about one under test must be at most 2000 of an unpadded map, with training_velocity",
+          num_cells);
   require_guard(cells.guard_velocity, cells.training_velocity, main_lobe_cells(noise.window, noise.num_chirps, zero_pad),
                 "guard_velocity");
   require_guard(cells.guard_range, cells.training_range, main_lobe_cells(noise.window, noise.num_samples, zero_pad),

@@ -29,7 +29,8 @@ struct CfarDesign {
   MapNoise noise;
 
   int64_t order() const;  // of the ordered statistic: rank times the number of training cells, rounded, at least 1
-  // Raises invalid_argument naming the field; also where guard cells are fewer than the main lobe of the window, with
+  // Raises invalid_argument naming the field; also where the window has more than 2000 cells, counted without padding, and
+  // where guard cells are fewer than the main lobe of the window, with
   // training cells beyond them.
   void validate() const;
   bool operator==(const CfarDesign&) const = default;
@@ -47,11 +48,14 @@ struct CfarFactors {
 // (1 + alpha)^-N.
 double false_alarm_probability(double alpha, const std::vector<double>& eigenvalues, int num_channels);
 
-// CA: exact, from the eigenvalues of the training cells' covariance and their correlation with the cell under test. OS: mean
-// over 8192 / num_channels (at least 512) draws of the training cells, conditional on which the probability is closed;
-// drawn from the tilted distribution in which false alarms happen: the standard error is about 1 % of the false-alarm
-// rate. Near the ends of the range axis, and in what correlation with the cell under test is left beyond the guard cells,
-// OS follows CA.
+// CA: exact, from the eigenvalues of the training cells' covariance and their correlation with the cell under test. Windows
+// of more than 400 degrees of freedom (about their cells without padding): for cells within twice the guard cells of the end
+// of the range axis, in the middle, and at twice the distance each time between; on straight lines elsewhere, where the rate
+// is right to 0.2 % (without taper, padded: 1 %).
+// OS: mean over 8192 / num_channels (at least 512) draws of the training cells, conditional on which the probability is
+// closed; drawn from the tilted distribution in which false alarms happen: the standard error is about 1 % of a false-alarm
+// rate of 1e-3, 2 % of 1e-6. Near the ends of the range axis, and in what correlation with the cell under test is left beyond
+// the guard cells, OS follows CA.
 // Independent of threads. Raises as CfarDesign::validate.
 CfarFactors cfar_factors(const CfarDesign& design, Job* job = nullptr);
 

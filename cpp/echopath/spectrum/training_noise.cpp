@@ -13,19 +13,37 @@ using Eigen::MatrixXd;
 
 constexpr double kNegligible = 1e-6;  // of the largest eigenvalue: power of a degree of freedom that changes nothing
 
-// F with F F^T = correlation matrix of `num_cells` neighbours.
-MatrixXd factor_of(const std::vector<double>& samples, int zero_pad, int num_cells) {
+// Correlation matrix of `num_cells` neighbours.
+MatrixXd correlation_of(const std::vector<double>& samples, int zero_pad, int num_cells) {
   const std::vector<double> correlation = noise_correlation(samples, zero_pad, num_cells);
   MatrixXd matrix(num_cells, num_cells);
   for (int i = 0; i < num_cells; ++i) {
     for (int j = 0; j < num_cells; ++j) matrix(i, j) = correlation[std::abs(i - j)];
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
+  return matrix;
+}
+
+// F with F F^T = a correlation matrix within the space that orthonormal columns span.
+MatrixXd factor_of(const MatrixXd& correlation, const MatrixXd& columns) {
+  if (columns.cols() == 0) return columns;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(columns.transpose() * correlation * columns);
   const Eigen::VectorXd& values = solver.eigenvalues();
   Eigen::Index first = 0;
-  while (values[first] <= kNegligible * values[num_cells - 1]) ++first;
-  const Eigen::Index rank = num_cells - first;
-  return solver.eigenvectors().rightCols(rank) * values.tail(rank).cwiseSqrt().asDiagonal();
+  while (first < values.size() && values[first] <= kNegligible * correlation.cwiseAbs().rowwise().sum().maxCoeff()) ++first;
+  const Eigen::Index rank = values.size() - first;
+  return columns * solver.eigenvectors().rightCols(rank) * values.tail(rank).cwiseSqrt().asDiagonal();
+}
+
+// Orthonormal columns of an odd number of cells that are even (sign 1) or odd (-1) about the middle.
+MatrixXd symmetric_columns(int num_cells, double sign) {
+  const int middle = num_cells / 2;
+  MatrixXd columns = MatrixXd::Zero(num_cells, sign > 0.0 ? middle + 1 : middle);
+  for (int k = 1; k <= middle; ++k) {
+    columns(middle + k, k - 1) = std::sqrt(0.5);
+    columns(middle - k, k - 1) = sign * std::sqrt(0.5);
+  }
+  if (sign > 0.0) columns(middle, middle) = 1.0;
+  return columns;
 }
 
 // sum of f f^T over rows [first, first + count) of a factor
@@ -64,20 +82,33 @@ std::vector<double> noise_correlation(const std::vector<double>& samples, int ze
 TrainingNoise::TrainingNoise(const CfarDesign& design) : cells_(design.cells) {
   const MapNoise& noise = design.noise;
   const int rows = cells_.num_rows(), columns = cells_.num_columns();
-  velocity_factor_ = factor_of(window_samples(noise.window, noise.num_chirps), noise.zero_pad, rows);
-  range_factor_ = factor_of(window_samples(noise.window, noise.num_samples), noise.zero_pad, columns);
+  const MatrixXd along_velocity = correlation_of(window_samples(noise.window, noise.num_chirps), noise.zero_pad, rows);
+  const MatrixXd even = factor_of(along_velocity, symmetric_columns(rows, 1.0));
+  const MatrixXd odd = factor_of(along_velocity, symmetric_columns(rows, -1.0));
+  num_even_ = even.cols();
+  velocity_factor_.resize(rows, even.cols() + odd.cols());
+  velocity_factor_ << even, odd;
+  range_factor_ = factor_of(correlation_of(window_samples(noise.window, noise.num_samples), noise.zero_pad, columns),
+                            MatrixXd::Identity(columns, columns));
   inner_rows_ = form_of(velocity_factor_, {cells_.training_velocity, 2 * cells_.guard_velocity + 1});
   outer_rows_ = form_of(velocity_factor_, {0, rows}) - inner_rows_;
 }
 
-MatrixXd TrainingNoise::quadratic_form(int column) const {
+MatrixXd TrainingNoise::of(const MatrixXd& form, Rows rows) const {
+  if (rows == Rows::kAll) return form;
+  return rows == Rows::kEven ? form.topLeftCorner(num_even_, num_even_)
+                             : form.bottomRightCorner(form.rows() - num_even_, form.cols() - num_even_);
+}
+
+MatrixXd TrainingNoise::quadratic_form(int column, Rows rows) const {
   const auto [left, right] = inner_spans(cells_, column, cells_.num_columns());
   const MatrixXd inner = form_of(range_factor_, left) + form_of(range_factor_, right);
-  return kronecker(inner_rows_, inner) + kronecker(outer_rows_, form_of(range_factor_, {0, cells_.num_columns()}));
+  const MatrixXd whole = form_of(range_factor_, {0, cells_.num_columns()});
+  return kronecker(of(inner_rows_, rows), inner) + kronecker(of(outer_rows_, rows), whole);
 }
 
 Eigen::VectorXd TrainingNoise::cell(int column) const {
-  return kronecker(velocity_factor_.row(cells_.reach_velocity()), range_factor_.row(column)).transpose();
+  return kronecker(velocity_factor_.row(cells_.reach_velocity()).head(num_even_), range_factor_.row(column)).transpose();
 }
 
 }  // namespace echopath

@@ -11,18 +11,25 @@ namespace echopath {
 // Gaussian numbers of unit power: as many as the windowed transforms have degrees of freedom there, however fine the cells.
 class TrainingNoise {
  public:
+  enum class Rows { kAll, kEven, kOdd };
+
   explicit TrainingNoise(const CfarDesign& design);
 
   // For a cell `column` cells from the rectangle's left end (reach_range: in its middle):
-  // B with sum of training powers = g^H B g, g the entries of G row by row.
-  Eigen::MatrixXd quadratic_form(int column) const;
-  Eigen::VectorXd cell(int column) const;  // f of unit length: the cell under test is f^T g
+  // B with sum of training powers = g^H B g, g the entries of G row by row. The window is symmetric in velocity: numbers of
+  // even and of odd patterns of its rows are not mixed by B, and the cell under test has only the even ones.
+  Eigen::MatrixXd quadratic_form(int column, Rows rows = Rows::kAll) const;
+  Eigen::VectorXd cell(int column) const;  // f of unit length, of the even ones: the cell under test is f^T g
 
-  const Eigen::MatrixXd& velocity_factor() const { return velocity_factor_; }  // [rows, degrees of freedom]
+  // [rows, degrees of freedom], even ones first
+  const Eigen::MatrixXd& velocity_factor() const { return velocity_factor_; }
   const Eigen::MatrixXd& range_factor() const { return range_factor_; }        // [columns, degrees of freedom]
 
  private:
+  Eigen::MatrixXd of(const Eigen::MatrixXd& form, Rows rows) const;
+
   CfarWindow cells_;
+  Eigen::Index num_even_ = 0;
   Eigen::MatrixXd velocity_factor_, range_factor_;
   Eigen::MatrixXd inner_rows_, outer_rows_;  // sum of f f^T over rows within guard_velocity, and beyond
 };

@@ -239,20 +239,25 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
 }
 
 std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
-  std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()));
+  std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()), 1);
+  narrow(automaton, paths, taken, job);
+  return taken;
+}
+
+void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job) {
   const Hit* hits = paths.hits ? paths.hits->data() : nullptr;
   const int64_t num_tasks = (paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask;
   parallel_for(num_tasks, [&](int64_t task) {
     const auto end = static_cast<size_t>(std::min((task + 1) * kPathsPerTask, paths.num_paths()));
     for (auto path = static_cast<size_t>(task * kPathsPerTask); path < end; ++path) {
+      if (!candidates[path]) continue;
       const int64_t first = paths.offsets[path];
       const int num_hits = paths.num_bounces[path];
-      taken[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()
-                        ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
-                        : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
+      candidates[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()
+                             ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
+                             : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
     }
   }, job);
-  return taken;
 }
 
 }  // namespace echopath

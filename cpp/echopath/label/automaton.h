@@ -38,6 +38,7 @@ class Automaton {
   // the exact number would be mispredicted so often that it costs more than the steps.
   static constexpr int kOverread = 4;
   bool takes_in_fours(const Hit* hits, int num_hits, uint64_t diffuse) const {
+    if (num_hits == 1) return takes(hits, 1, diffuse);  // where paths of one hit are many or few, the branch is foreseen
     uint32_t row = 0;
     int left = num_hits;
     do {
@@ -64,5 +65,7 @@ class Automaton {
 
 // [P] 1 where the automaton takes the path, else 0. Runs on all threads; raises Cancelled when the job is.
 std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job = nullptr);
+// The same among the paths that are 1 in `candidates` [P]: clears those that the automaton does not take.
+void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job = nullptr);
 
 }  // namespace echopath

@@ -56,10 +56,13 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
   const auto other = static_cast<uint32_t>(parts.size());
   partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
   PathPowers with_power(paths);
+  std::vector<uint8_t> left(partition.group.size(), 1);  // to no part yet
   for (uint32_t part = 0; part < other; ++part) {
-    const std::vector<uint8_t> taken = parts[part].selection.matches(with_power, job);
+    std::vector<uint8_t> taken = left;
+    parts[part].selection.narrow(with_power, taken, job);
     for (size_t path = 0; path < taken.size(); ++path) {
-      if (taken[path] && partition.group[path] == other) partition.group[path] = part;
+      left[path] ^= taken[path];
+      partition.group[path] = taken[path] ? part : partition.group[path];
     }
   }
   return partition;

@@ -84,39 +84,38 @@ Selection operator~(const Selection& a) {
 
 namespace {
 
-std::vector<uint8_t> matches_num_bounces(const Paths& paths, int min, int max) {
-  std::vector<uint8_t> taken(paths.num_bounces.size());
-  for (size_t path = 0; path < taken.size(); ++path) {
-    const int count = paths.num_bounces[path];
-    taken[path] = count >= min && (max == kNoLimit || count <= max);
-  }
-  return taken;
+using Bits = std::vector<uint8_t>;  // [P] 1 or 0
+
+template <class Value, class Holds>
+void narrow_by(const std::vector<Value>& values, Bits& candidates, Holds holds) {
+  for (size_t path = 0; path < candidates.size(); ++path) candidates[path] &= static_cast<uint8_t>(holds(values[path]));
 }
 
-std::vector<uint8_t> matches_expression(const Paths& paths, const PathExpression& expression, Job* job) {
+void narrow_by_expression(const Paths& paths, const PathExpression& expression, Bits& candidates, Job* job) {
   require(paths.scene != nullptr, "paths", "must carry a scene to match mesh names", "none");
-  return matches(Automaton(expression, paths.scene->mesh_names()), paths, job);
+  narrow(Automaton(expression, paths.scene->mesh_names()), paths, candidates, job);
 }
 
-template <class Holds>
-std::vector<uint8_t> bits_of(const std::vector<double>& power, Holds holds) {
-  std::vector<uint8_t> taken(power.size());
-  for (size_t path = 0; path < taken.size(); ++path) taken[path] = holds(power[path]);
-  return taken;
+void narrow_by_num_bounces(const Paths& paths, int min, int max, Bits& candidates) {
+  const int last = max == kNoLimit ? kMaxRepeatCount : max;
+  narrow_by(paths.num_bounces, candidates, [=](int count) { return count >= min && count <= last; });
 }
 
-std::vector<uint8_t> matches_power(const std::vector<double>& power, Selection::Comparison comparison, double watts) {
+void narrow_by_power(const std::vector<double>& power, Selection::Comparison comparison, double watts, Bits& candidates) {
   switch (comparison) {
     case Selection::Comparison::kBelow:
-      return bits_of(power, [=](double value) { return value < watts; });
+      return narrow_by(power, candidates, [=](double value) { return value < watts; });
     case Selection::Comparison::kAtMost:
-      return bits_of(power, [=](double value) { return value <= watts; });
+      return narrow_by(power, candidates, [=](double value) { return value <= watts; });
     case Selection::Comparison::kAbove:
-      return bits_of(power, [=](double value) { return value > watts; });
+      return narrow_by(power, candidates, [=](double value) { return value > watts; });
     case Selection::Comparison::kAtLeast:
-      return bits_of(power, [=](double value) { return value >= watts; });
+      return narrow_by(power, candidates, [=](double value) { return value >= watts; });
   }
-  return {};
+}
+
+void clear(Bits& bits, const Bits& cleared) {
+  for (size_t path = 0; path < bits.size(); ++path) bits[path] &= static_cast<uint8_t>(~cleared[path]);
 }
 
 // With the fewest digits that read back as the same number.
@@ -143,27 +142,44 @@ const std::vector<double>& PathPowers::power(Job* job) {
 
 std::vector<uint8_t> Selection::matches(const Paths& paths, Job* job) const {
   PathPowers with_power(paths);
-  return matches(with_power, job);
+  Bits taken(static_cast<size_t>(paths.num_paths()), 1);
+  narrow(with_power, taken, job);
+  return taken;
 }
 
-std::vector<uint8_t> Selection::matches(PathPowers& paths, Job* job) const {
+void Selection::narrow(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const {
   const Term& term = *term_;
   if (job) job->throw_if_cancelled();
-  if (term.kind == Term::Kind::kExpression) return matches_expression(paths.paths(), term.expression, job);
-  if (term.kind == Term::Kind::kNumBounces) return matches_num_bounces(paths.paths(), term.min, term.max);
-  if (term.kind == Term::Kind::kPower) return matches_power(paths.power(job), term.comparison, term.watts);
+  switch (term.kind) {
+    case Term::Kind::kExpression:
+      return narrow_by_expression(paths.paths(), term.expression, candidates, job);
+    case Term::Kind::kNumBounces:
+      return narrow_by_num_bounces(paths.paths(), term.min, term.max, candidates);
+    case Term::Kind::kPower:
+      return narrow_by_power(paths.power(job), term.comparison, term.watts, candidates);
+    default:
+      return narrow_by_children(paths, candidates, job);
+  }
+}
 
-  std::vector<uint8_t> taken = term.children.front().matches(paths, job);
-  for (size_t child = 1; child < term.children.size(); ++child) {
-    const std::vector<uint8_t> other = term.children[child].matches(paths, job);
-    for (size_t path = 0; path < taken.size(); ++path) {
-      taken[path] = term.kind == Term::Kind::kAnd ? taken[path] & other[path] : taken[path] | other[path];
+void Selection::narrow_by_children(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const {
+  if (term_->kind == Term::Kind::kAnd) {  // what is quick to tell spares expressions the rest
+    const auto is_quick = [](const Selection& child) { return child.term_->kind == Term::Kind::kNumBounces; };
+    for (const bool quick : {true, false}) {
+      for (const Selection& child : term_->children) {
+        if (is_quick(child) == quick) child.narrow(paths, candidates, job);
+      }
     }
+    return;
   }
-  if (term.kind == Term::Kind::kNot) {
-    for (uint8_t& bit : taken) bit ^= 1u;
+  Bits left = candidates;  // that no child takes; of one child it is the complement
+  for (const Selection& child : term_->children) {
+    Bits taken = left;
+    child.narrow(paths, taken, job);
+    clear(left, taken);
   }
-  return taken;
+  if (term_->kind == Term::Kind::kNot) candidates = std::move(left);
+  else clear(candidates, left);
 }
 
 void Selection::check_globs(const std::vector<std::string>& mesh_names) const {

@@ -56,8 +56,9 @@ class Selection {
   // [P] 1 where the path is selected, else 0. Raises invalid_argument when a glob takes no mesh of the paths' scene,
   // Cancelled when the job is.
   std::vector<uint8_t> matches(const Paths& paths, Job* job = nullptr) const;
-  // The same for several selections of the same paths, whose power is then computed once.
-  std::vector<uint8_t> matches(PathPowers& paths, Job* job = nullptr) const;
+  // The same among the paths that are 1 in `candidates` [P]: clears those that are not selected. What several selections of
+  // the same paths share, their power, is computed once.
+  void narrow(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job = nullptr) const;
   // Raises invalid_argument when a glob takes none of these meshes (full names), as `matches` would.
   void check_globs(const std::vector<std::string>& mesh_names) const;
   // As written; combined ones as (T . R) & ~(T .* 'wall' .* R).
@@ -65,6 +66,7 @@ class Selection {
 
  private:
   struct Term;
+  void narrow_by_children(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const;
   explicit Selection(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
   std::shared_ptr<const Term> term_;
 };

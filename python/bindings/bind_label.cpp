@@ -99,12 +99,6 @@ selection: instead, another one to copy. Text stands wherever a Selection is ask
 the fault; matching raises one when a glob takes no mesh of the scene.)");
   selection.def(py::init<const std::string&>(), py::arg("text"))
       .def(py::init<const Selection&>(), py::arg("selection"))
-      .def_static("path_expression", [](const std::string& text) { return Selection(text); }, py::arg("text"),
-                  "The paths that `text`, a path expression and nothing else, takes.")
-      .def_static("touches", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
-                  "Paths with at least one hit on a mesh that the glob takes.")
-      .def_static("num_bounces", &Selection::num_bounces, py::arg("min"), py::arg("max") = py::none(),
-                  "Paths of min to max hits, both included; max None: any number from min on.")
       .def("matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.")
       .def("check", &check_globs, py::arg("scene"),
            "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.")
@@ -124,11 +118,6 @@ the fault; matching raises one when a glob takes no mesh of the scene.)");
         "Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.");
   m.def("last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"),
         "Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.");
-  m.def("parse_selection", [](const std::string& text) { return Selection(text); }, py::arg("text"),
-        R"(The selection that a text describes, as ep.Selection(text).
-
-text: as `Selection` takes it and `Selection.text` writes it: T 'walker' R | ~(T . R) & T .* 'wall' .* R & power > 1e-15
-Returns a Selection. Raises ValueError with a caret under the fault.)");
 }
 
 void bind_num_bounces(py::module_& m) {

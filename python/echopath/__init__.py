@@ -17,7 +17,7 @@ from ._core import (
     Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
     Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
     cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
-    parse_selection, power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
+    power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
     synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
@@ -74,7 +74,7 @@ __all__ = [
     "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar",
     "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "hits",
     "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_scene", "materials",
-    "mie_rcs", "num_bounces", "num_threads", "parse_selection", "path_cells", "plot_rays", "power", "power_by_chirp",
+    "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "power", "power_by_chirp",
     "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "save_label_images",
     "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "validity",
     "view", "virtual_array", "visibility",

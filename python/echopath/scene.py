@@ -6,9 +6,9 @@ import math
 import numpy as np
 
 from . import _core
+from .keywords import known_keywords
 from .materials import materials
 
-_ADD_KEYWORDS = ["name", "material", "motion", "position", "yaw", "transform", "parent", "smooth"]
 _ORIGIN = (0.0, 0.0, 0.0)
 
 
@@ -19,8 +19,9 @@ class Scene(_core.Scene):
     world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s
     """
 
+    @known_keywords
     def add(self, mesh_or_actor=None, *, name, material=None, motion=None, position=_ORIGIN, yaw=0.0, transform=None,
-            parent=None, smooth=False, **unknown) -> str:
+            parent=None, smooth=False) -> str:
         """Adds an object and returns its full name, "street/pedestrian".
 
         mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part
@@ -38,7 +39,6 @@ class Scene(_core.Scene):
             across creases of more than 30 degrees
         Raises ValueError or TypeError naming the argument; then nothing has been added.
         """
-        _refuse_unknown(unknown)
         if not isinstance(smooth, bool):
             raise TypeError(f"smooth: must be True or False, got {smooth!r}")
         batch = _Batch(self, self._index_of(parent), smooth)
@@ -158,9 +158,3 @@ def _placement(position, yaw, transform):
     cos, sin = math.cos(yaw), math.sin(yaw)
     x, y, z = position
     return np.array([[cos, -sin, 0.0, x], [sin, cos, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]])
-
-
-def _refuse_unknown(unknown: dict) -> None:
-    for word in unknown:
-        nearest = _core.nearest_names(word, _ADD_KEYWORDS, 1)[0]
-        raise TypeError(f"add: unknown keyword '{word}', the nearest right one is '{nearest}'")

@@ -67,7 +67,7 @@ def test_selections_take_what_their_logic_takes(paths, pair):
 @FEW
 @given(pair=selections)
 def test_selections_are_their_own_text(paths, pair):
-    again = ep.parse_selection(str(pair[0]))
+    again = ep.Selection(str(pair[0]))
     assert np.array_equal(paths.select(again).weight, paths.select(pair[0]).weight)
 
 

@@ -30,7 +30,7 @@ ONE, TWO, REAR = ep.Selection("T . R"), ep.Selection("T . . R"), ep.hits("Rear")
     ep.hits("left") & (ep.num_bounces >= 2),
 ])
 def test_the_text_of_a_selection_stands_for_it(paths, selection):
-    read = ep.parse_selection(str(selection))
+    read = ep.Selection(str(selection))
     assert np.array_equal(read.matches(paths), selection.matches(paths))
 
 
@@ -40,7 +40,7 @@ def test_the_text_of_a_selection_stands_for_it(paths, selection):
     ("T 'Rear' | 'left' R", ep.Selection("T ('Rear' | 'left') R")),  # the | of the expression, and an R in quotes
 ])
 def test_operators_bind_as_documented(paths, text, meant):
-    mask = ep.parse_selection(text).matches(paths)
+    mask = ep.Selection(text).matches(paths)
     assert np.array_equal(mask, meant.matches(paths)) and mask.any() and not mask.all()
 
 
@@ -51,7 +51,7 @@ def test_operators_bind_as_documented(paths, text, meant):
 ])
 def test_faults_are_marked_where_they_are(text, fault_at):
     with pytest.raises(ValueError, match="path expression: expected") as caught:
-        ep.parse_selection(text)
+        ep.Selection(text)
     _, line, caret = str(caught.value).splitlines()
     begin = text.rfind("\n", 0, fault_at) + 1  # the line with the fault is shown
     assert line == "  " + text[begin:] and caret == " " * (2 + fault_at - begin) + "^"
@@ -76,7 +76,7 @@ def test_random_selections_are_read_back(paths):
     for _ in range(200):
         selection = random_selection(draw, thresholds)
         mask = selection.matches(paths)
-        assert np.array_equal(ep.parse_selection(selection.text).matches(paths), mask), selection
+        assert np.array_equal(ep.Selection(selection.text).matches(paths), mask), selection
         shares.append(mask.mean())
     assert np.mean((np.array(shares) > 0.02) & (np.array(shares) < 0.98)) > 0.3  # neither all nor none, else it proves little
 
@@ -95,7 +95,7 @@ def test_power_compares_like_the_powers_of_the_paths(paths):
 def test_the_text_of_a_power_keeps_every_bit(paths):
     for watts in (1e-15, 0.1 + 0.2, 5e-324, -3.0, float(paths.power[0])):
         text = (ep.power >= watts).text
-        assert float(text.removeprefix("power >= ")) == watts and ep.parse_selection(text).text == text
+        assert float(text.removeprefix("power >= ")) == watts and ep.Selection(text).text == text
     assert str((ep.power > 1e-15) & ~ONE) == "(power > 1e-15) & ~(T . R)"
 
 

@@ -25,7 +25,7 @@ class Filters:
     min_bounces, max_bounces: number of hits, both included
     min_power_dbm: dB re 1 mW at the channel shown, None: any
     mesh: glob of meshes of which the path must hit one, "": any
-    expression: path expression or text of a selection (`ep.parse_selection`), "": any
+    expression: path expression or text of a selection (`ep.Selection`), "": any
     """
 
     min_bounces: int = 0
@@ -39,7 +39,7 @@ class Filters:
         mask = (columns.num_bounces >= self.min_bounces) & (columns.num_bounces <= self.max_bounces)
         if self.min_power_dbm is not None:
             mask &= columns.power_dbm >= self.min_power_dbm
-        for field, parse in (("mesh", _touching), ("expression", ep.parse_selection)):
+        for field, parse in (("mesh", _touching), ("expression", ep.Selection)):
             text = getattr(self, field).strip()
             if text:
                 mask &= _checked(field, lambda text=text, parse=parse: matches(parse(text)))
@@ -49,8 +49,8 @@ class Filters:
         """The same in words, a Selection; None for a filter by power, which has none. The texts are good ones."""
         if self.min_power_dbm is not None:
             return None
-        selection = ep.Selection.num_bounces(self.min_bounces, self.max_bounces if self.max_bounces < MAX_BOUNCES else None)
-        for field, parse in (("mesh", _touching), ("expression", ep.parse_selection)):
+        selection = (ep.num_bounces >= self.min_bounces) & (ep.num_bounces <= self.max_bounces)
+        for field, parse in (("mesh", _touching), ("expression", ep.Selection)):
             text = getattr(self, field).strip()
             if text:
                 selection = selection & parse(text)

@@ -71,4 +71,4 @@ def all_paths():
 
 
 def _selection(words):
-    return ep.parse_selection(words) if isinstance(words, str) else words
+    return ep.Selection(words) if isinstance(words, str) else words

@@ -138,7 +138,8 @@ def _aperture(aperture: float, distance: float) -> dict:
     aperture: m, width of the array; distance: m, of the target
     """
     scene = ep.Scene()
-    scene.add(shapes.wall(4.0 * distance, 2.0 * distance), name="wall", position=(distance, WALL, -distance), material=ep.Material.metal())
+    scene.add(shapes.wall(4.0 * distance, 2.0 * distance), name="wall", position=(distance, WALL, -distance),
+              material=ep.Material.metal())
     width, height = 0.15 * distance, 0.4 * distance
     target = ep.Mesh([[0, -width, -height], [0, width, -height], [0, width, height], [0, -width, height]], [[0, 1, 2], [0, 2, 3]])
     scene.add(target, name="target", position=(distance, min(0.0, 0.8 * WALL - width), 0.0), material=_diffuse())

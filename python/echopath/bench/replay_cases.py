@@ -56,7 +56,8 @@ def _person() -> Case:
 
 def _car() -> Case:
     scene = ep.Scene()
-    scene.add(None, name="car", position=(18.0, 2.0, 0.8), motion=ep.LinearMotion(velocity=(-8, 1, 0), angular_velocity=(0, 0, 0.8)))
+    scene.add(None, name="car", position=(18.0, 2.0, 0.8),
+              motion=ep.LinearMotion(velocity=(-8, 1, 0), angular_velocity=(0, 0, 0.8)))
     scene.add(shapes.box((4.4, 1.8, 1.0)), name="body", parent="car", material=_rough())
     scene.add(shapes.box((2.2, 1.6, 0.6)), name="cabin", parent="car", position=(-0.3, 0.0, 0.8), material=_rough())
     return Case("car", "turning car", scene, radar())
@@ -78,7 +79,8 @@ def _rotor() -> Case:
 
 def _guard_rail() -> Case:
     scene = ep.Scene()
-    scene.add(shapes.box((60.0, 0.06, 0.3)), name="rail", position=(30.0, 3.0, 0.7), material=ep.Material(conductor=True, scattering=0.5))
+    scene.add(shapes.box((60.0, 0.06, 0.3)), name="rail", position=(30.0, 3.0, 0.7),
+              material=ep.Material(conductor=True, scattering=0.5))
     scene.add(shapes.box((4.4, 1.8, 1.2)), name="car", position=(25.0, -0.5, 0.8), material=_rough(),
               motion=ep.LinearMotion(velocity=(25, 0, 0)))
     return Case("guard_rail", "guard rail, ego 30 m/s", scene, radar(motion=ep.LinearMotion(velocity=(30, 0, 0))))

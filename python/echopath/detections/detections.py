@@ -83,7 +83,7 @@ class Detections:
         path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell; unknown numbers are
         left empty. Raises ep.FileError.
         """
-        columns = [getattr(self, name) for name in COLUMNS[:-3]] + [self.is_noise.astype(int)] + [self.cells[:, 0], self.cells[:, 1]]
+        columns = [getattr(self, name) for name in COLUMNS[:-3]] + [self.is_noise.astype(int), *self.cells.T]
         with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
             writer = csv.writer(stream, lineterminator="\n")
             writer.writerow(COLUMNS)

@@ -171,7 +171,8 @@ def _read_cells(group, count: int, plane: Plane) -> list[dict]:
     def made(kind, row):
         return None if np.isnan(row[0]) else kind(*map(float, row))
 
-    return [{"cells": int(cells[i]), "power": float(power[i]), "peak": made(plane.make_peak, peaks[i]), "box": made(plane.make_box, boxes[i])}
+    return [{"cells": int(cells[i]), "power": float(power[i]), "peak": made(plane.make_peak, peaks[i]),
+             "box": made(plane.make_box, boxes[i])}
             for i in range(count)]
 
 

@@ -73,6 +73,8 @@ install_project() {
   compgen -G ".venv/installed-$hash-$extras*" >/dev/null && return
   say "installing echopath into .venv"
   pip_install --no-build-isolation -e ".${extras:+[$extras]}"
+  # On the path itself, too: in the folder above, the project's own folder would else be taken for the package.
+  printf '%s\n' "$PWD/python" >"$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/echopath_sources.pth"
   touch ".venv/installed-$hash-$extras"
 }
 

@@ -21,6 +21,9 @@ class Parts(dict):
         self.selections = None if selections is None else dict(selections)
         self.radar = radar
 
+    def __missing__(self, name):
+        raise KeyError(f"no part '{name}'; there are {', '.join(map(str, self))}")
+
 
 def decompose(paths, radar=None, parts=None, **settings):
     """The signals of parts of the paths, in one pass.
@@ -87,7 +90,7 @@ def parts_of_options(texts) -> dict:
         name, equals, expression = text.partition("=")
         name = name.strip()
         if not (name and equals):
-            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall' .* R\", got {text}")
+            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall*' .* R\", got {text}")
         if name in parts:
             raise ValueError(f"part: must have a name of its own, got {name} twice")
         parts[name] = Selection(expression)

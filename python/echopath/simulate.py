@@ -137,7 +137,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
                     "keyframes": keyframes, "progress": progress}
         families = ep.families(paths, request.objects) if request else None
         cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings)
-    with clock("labels"):
+    with clock("parts of paths"):
         group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=group_of_path, noise_seed=noise_seed,
@@ -151,7 +151,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         with clock("angles"):
             frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
     if request:
-        with clock("annotation"):
+        with clock("labels of cells"):
             parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
             frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
     if detect_keywords is not None:

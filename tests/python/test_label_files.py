@@ -328,7 +328,7 @@ def test_commands_write_labels(scene_path, tmp_path, capsys):
     made = ep.load_labels(tmp_path / "more" / "labels.h5")
     assert list(made) == ["by", "power", "choice", "choice 2"] and made["choice 2"].dynamic_range_db == 30.0
     assert [label.name for label in made["by"].objects] == ["person"]
-    assert (tmp_path / "more" / "labels_choice 2.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "more" / "labels_choice_2.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
-                      help="also say which paths of a frame it takes, as in \"T .* 'wall' .* R & power > 1e-15\"; may be "
+                      help="also say which paths of a frame it takes, as in \"T .* 'wall*' .* R & power > 1e-17\"; may be "
                            "repeated")
     info.set_defaults(command=_info)
 
@@ -111,7 +111,7 @@ def _add_trace_options(parser, default_rays) -> None:
 
 def _add_part_option(parser) -> None:
     parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
-                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall' .* R\"; may be "
+                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall*' .* R\"; may be "
                              "repeated, the first that takes a path has it")
 
 

@@ -20,8 +20,9 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
     written = []
 
     def write(name: str, figure) -> None:
-        plots.save_png(figure, folder / f"{name}.png")
-        written.append(folder / f"{name}.png")
+        path = folder / f"{_file_name(name)}.png"
+        plots.save_png(figure, path)
+        written.append(path)
 
     for index, (partition, labels) in enumerate(of_partitions.items()):
         written += ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, index == 0))
@@ -35,8 +36,12 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
 
 def _map_names(partition: str, is_first: bool) -> dict:
     """File names of label maps; those of objects and ghosts are the same for all partitions."""
-    names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{partition}"}
+    names = {"parts": "parts" if partition == ONLY_PARTITION else _file_name(f"parts_{partition}")}
     return names | ({"objects": "objects", "ghosts": "ghosts"} if is_first else {})
+
+
+def _file_name(name: str) -> str:
+    return name.replace(" ", "_").replace("/", "_")
 
 
 def _powers(frame, partition: str, selections: dict) -> dict:

@@ -161,7 +161,7 @@ def _crop(panels, extent) -> None:
 
 def _small_print(figure, note: str) -> None:
     if note:
-        figure.text(0.995, 0.004, note, fontsize=6.5, color="0.4", horizontalalignment="right", verticalalignment="bottom")
+        figure.supxlabel(note, x=0.995, fontsize=6.5, color="0.4", horizontalalignment="right")  # the layout leaves it room
 
 
 def _colour_bar(figure, image, panels) -> None:

@@ -42,6 +42,13 @@ def _written(path: Path):
             Path(temporary).unlink(missing_ok=True)
 
 
+def write_texts(folder, texts: dict) -> None:
+    """Writes files {name: text} into `folder`, each whole or not at all. Raises ep.FileError."""
+    for name, text in texts.items():
+        with written_whole(Path(folder) / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 
 import numpy as np
 
 import echopath as ep
 
 from ..actors import shapes
+from .timing import fastest
 
 REPEATS = 3
 PATH_ARRAYS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "curved_cell", "jones")
@@ -51,21 +51,12 @@ def _two_spheres(terms: Terms):
 def _measure(terms: Terms, radar, num_rays: int) -> dict:
     scene = _two_spheres(terms)
     settings = {"max_bounces": 3, "footprint": terms.footprint, "polarization": terms.polarization}
-    base = _fastest(lambda: ep.trace(scene, radar, num_rays=1, **settings))[0]
-    seconds, paths = _fastest(lambda: ep.trace(scene, radar, num_rays=num_rays, **settings))
-    replay = _fastest(lambda: paths.amplitude)[0]
+    base = fastest(lambda: ep.trace(scene, radar, num_rays=1, **settings), REPEATS)[0]
+    seconds, paths = fastest(lambda: ep.trace(scene, radar, num_rays=num_rays, **settings), REPEATS)
+    replay = fastest(lambda: paths.amplitude, REPEATS)[0]
     sizes = {name: np.asarray(getattr(paths, name)).nbytes / paths.num_paths for name in PATH_ARRAYS}
     return {**dataclasses.asdict(terms), "rays_per_second": num_rays / max(seconds - base, 1e-9), "setup_seconds": base,
             "replayed_paths_per_second": paths.num_paths / max(replay, 1e-9),
             "bytes_per_hit": paths.hits.nbytes / max(paths.num_hits, 1), "bytes_per_path": sum(sizes.values()),
             **{f"bytes_of_{name}": sizes[name] for name in OPTIONAL_ARRAYS},
             "num_hits": paths.num_hits, "num_paths": paths.num_paths}
-
-
-def _fastest(work):
-    best, result = float("inf"), None
-    for _ in range(REPEATS):
-        began = time.perf_counter()
-        result = work()
-        best = min(best, time.perf_counter() - began)
-    return best, result

@@ -10,12 +10,13 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import written_whole
+from ..files import write_texts
 from ..materials import data_folder
 from ..measures import residual
 from ..scene_file import load_scene
 from .false_alarms import describe_false_alarms, measure_false_alarms
 from .machine import machine
+from .timing import processor_time
 
 RAYS, QUICK_RAYS = (5_000, 50_000), (1_000,)
 NUM_PARTS = (1, 4, 16, 64)
@@ -58,9 +59,7 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     _tell(progress, steps)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    with written_whole(folder / "labels.json") as temporary:
-        Path(temporary).write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    write_texts(folder, {"labels.json": json.dumps(results, indent=1) + "\n"})
     draw_labels(results, folder / "labels.png")
     return results
 
@@ -87,21 +86,15 @@ def _cost_of_parts(paths, repeats: int) -> list[dict]:
     for num_parts in NUM_PARTS:
         parts, ratios, seconds = partition_of(paths, num_parts), [], []
         for _ in range(repeats):
-            whole_seconds, whole = _processor_time(lambda: ep.synthesize(paths))
-            part_seconds, cubes = _processor_time(lambda: ep.decompose(paths, None, parts))
+            whole_seconds, whole = processor_time(lambda: ep.synthesize(paths))
+            part_seconds, cubes = processor_time(lambda: ep.decompose(paths, None, parts))
             ratios.append(part_seconds / whole_seconds)
             seconds.append(part_seconds)
-        matching, _ = _processor_time(lambda: ep._core.partition_groups(paths, list(parts.items())))
+        matching, _ = processor_time(lambda: ep._core.partition_groups(paths, list(parts.items())))
         rows.append({"num_parts": num_parts, "num_filled": sum(bool(cube.any()) for cube in cubes.values()),
                      "over_synthesize": float(np.median(ratios)), "processor_s": float(np.median(seconds)),
                      "matching_s": matching, "sum_error": residual(whole, cubes)})
     return rows
-
-
-def _processor_time(work):
-    began = time.process_time()
-    result = work()
-    return time.process_time() - began, result
 
 
 # --- matching ---
@@ -138,7 +131,7 @@ def _rates(title: str, paths) -> dict:
 
 
 def _least_time(work) -> float:
-    return min(_processor_time(work)[0] for _ in range(MATCH_REPEATS))
+    return min(processor_time(work)[0] for _ in range(MATCH_REPEATS))
 
 
 # --- words ---

@@ -3,10 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..plots.style import new_figure, save_png
+from ..plots.style import CURVE_COLOURS, new_figure, save_png
 from .labels import RATE_TARGET
-
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe and Ito
 
 
 def draw_labels(results: dict, path) -> None:
@@ -19,7 +17,7 @@ def draw_labels(results: dict, path) -> None:
 
 
 def _draw_cost(axes, cases: list) -> None:
-    for colour, case in zip(COLOURS, cases):
+    for colour, case in zip(CURVE_COLOURS, cases):
         counts = [row["num_parts"] for row in case["rows"]]
         axes.plot(counts, [row["over_synthesize"] for row in case["rows"]], "o-", color=colour,
                   label=f"{case['rays']:,} rays, {case['paths']:,} paths")
@@ -37,7 +35,7 @@ def _draw_cost(axes, cases: list) -> None:
 def _draw_rates(axes, cases: list) -> None:
     labels = ["bare loop", *cases[0]["hits_per_second"]]
     height = 0.8 / len(cases)
-    for index, (colour, case) in enumerate(zip(COLOURS, cases)):
+    for index, (colour, case) in enumerate(zip(CURVE_COLOURS, cases)):
         rates = np.array([case["bare_hits_per_second"], *case["hits_per_second"].values()]) * 1e-6
         axes.barh(np.arange(len(labels)) + (index + 0.5) * height - 0.4, rates, 0.9 * height, color=colour, label=case["title"])
     axes.axvline(RATE_TARGET * 1e-6, color="black", linewidth=0.8, linestyle=(0, (1, 2)))

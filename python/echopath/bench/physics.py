@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import platform
 import time
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import echopath as ep
 
 from . import report
 from .cost import measure_costs
+from .machine import machine
 from .targets import Target, all_targets, plate, radar
 
 EXPONENTS = (10, 11, 12, 13, 14, 15, 16, 18, 20)   # of two: numbers of rays
@@ -54,7 +54,7 @@ def run_physics(folder, *, rays_max: int = 2 ** 16, quick: bool = False, progres
     shifts = QUICK_SHIFTS if quick else NUM_SHIFTS
     began, used = time.perf_counter(), time.process_time()
     advance = _Progress(progress)
-    results = {"machine": _machine(), "shifts": shifts, "rays": rays, "targets": {}}
+    results = {"machine": machine(), "shifts": shifts, "rays": rays, "targets": {}}
     advance.share(all_targets(), 0.0, 0.7, lambda target: results["targets"].update(
         {target.name: _curves(target, rays, shifts, most)}))
     results["plates"] = []
@@ -155,17 +155,3 @@ def _slope(points: list[dict], quantity: str) -> float | None:
         return None
     rays = [point["num_rays"] for point in points[begin:end]]
     return float(np.polyfit(np.log(rays), np.log(errors[begin:end]), 1)[0])
-
-
-def _machine() -> dict:
-    return {"processor": _processor(), "threads": ep.num_threads(), "system": platform.platform(),
-            "python": platform.python_version(), "numpy": np.__version__, "echopath": ep.__version__}
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()

@@ -10,9 +10,10 @@ import numpy as np
 import echopath as ep
 
 from ..actors import shapes
-from ..files import written_whole
+from ..files import write_texts
 from .machine import machine
 from .replay_cases import CHIRPS, FREQUENCY, Case, all_cases, person_scene, radar
+from .timing import fastest
 
 RAYS, QUICK_RAYS = 100_000, 5_000               # of the times
 ERROR_RAYS = 3_000                              # of the errors, whose reference renews each chirp
@@ -47,9 +48,7 @@ def run_replay(folder, *, quick: bool = False, progress=None) -> dict:
     done()
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    with written_whole(folder / "replay.json") as temporary:
-        Path(temporary).write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    write_texts(folder, {"replay.json": json.dumps(results, indent=1) + "\n"})
     draw_replay(results, folder / "replay.png")
     return results
 
@@ -67,12 +66,7 @@ def _counter(progress, steps: int):
 
 
 def _fastest(work, repeats=REPEATS):
-    best, result = float("inf"), None
-    for _ in range(repeats):
-        began = time.perf_counter()
-        result = work()
-        best = min(best, time.perf_counter() - began)
-    return best, result
+    return fastest(work, repeats)
 
 
 def _times(case: Case, rays: int) -> dict:

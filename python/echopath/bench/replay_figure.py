@@ -1,9 +1,8 @@
 """What replay gains and errs, in one picture."""
 from __future__ import annotations
 
-from ..plots.style import new_figure, save_png
+from ..plots.style import CURVE_COLOURS, new_figure, save_png
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe and Ito
 MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interpolated, 1e-5 rad (default)": "o", "every chirp": "s",
            "Newton step": "D", "renewed 4 times": "P", "renewed 16 times": "X"}
 FLOOR_RAD = 1e-6
@@ -20,7 +19,7 @@ def draw_replay(results: dict, path) -> None:
 
 
 def _draw_variants(axes, cases: dict) -> None:
-    for colour, case in zip(COLOURS, cases.values()):
+    for colour, case in zip(CURVE_COLOURS, cases.values()):
         for row in case["variants"]:
             axes.plot(row["share_of_every_chirp"], max(row["error_db"], FLOOR_DB), MARKERS[row["label"]], color=colour, markersize=7,
                       markerfacecolor="none" if row["label"] != "interpolated, 1e-5 rad (default)" else colour)
@@ -38,7 +37,7 @@ def _draw_variants(axes, cases: dict) -> None:
 
 
 def _draw_apertures(axes, rows: list) -> None:
-    for colour, distance in zip(COLOURS, sorted({row["distance_m"] for row in rows})):
+    for colour, distance in zip(CURVE_COLOURS, sorted({row["distance_m"] for row in rows})):
         shown = [row for row in rows if row["distance_m"] == distance and row["paths"]]
         for key, line, text in (("material_rad", "-", "recorded points"), ("fermat_rad", "--", "Newton step")):
             axes.plot([row["aperture_m"] for row in shown], [max(row[key], FLOOR_RAD) for row in shown], line, color=colour, marker=".",

@@ -6,7 +6,7 @@ import io
 import json
 from pathlib import Path
 
-from ..files import written_whole
+from ..files import write_texts
 
 MUST_REACH = (  # target, rays, dB
     ("sphere_161", 2 ** 13, 0.1), ("sphere_3228", 2 ** 13, 0.1), ("ellipsoid", 2 ** 14, 0.1))
@@ -39,13 +39,10 @@ def verdicts(results: dict) -> list[dict]:
 
 def write_results(results: dict, folder: Path) -> None:
     """Writes physics.json, physics.csv (a row for each target, variant and number of rays) and costs.csv."""
-    folder.mkdir(parents=True, exist_ok=True)
     points = [{"target": name, "variant": label, **{column: point[column] for column in POINT_COLUMNS}}
               for name, target in results["targets"].items() for label, curve in target["curves"].items() for point in curve]
-    for name, text in (("physics.json", json.dumps(results, indent=1) + "\n"), ("physics.csv", _csv(points)),
-                       ("costs.csv", _csv(results["costs"]))):
-        with written_whole(folder / name) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8")
+    write_texts(folder, {"physics.json": json.dumps(results, indent=1) + "\n", "physics.csv": _csv(points),
+                         "costs.csv": _csv(results["costs"])})
 
 
 def _csv(rows: list[dict]) -> str:

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import echopath as ep
 
-from ..files import written_whole
+from ..files import write_texts
 from . import replay_cases, speed_frames, speed_synthesis, speed_tracer
 from .machine import machine
+from .timing import processor_time
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
 PHASE_TOLERANCES = (1e-1, 1e-3, 1e-5, 1e-7)
@@ -40,11 +41,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in (("speed.json", json.dumps(results, indent=1) + "\n"),
-                       ("speed.csv", _csv(results["synthesis"]["rows"]))):
-        with written_whole(folder / name) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8")
+    write_texts(folder, {"speed.json": json.dumps(results, indent=1) + "\n",
+                         "speed.csv": _csv(results["synthesis"]["rows"])})
     draw_synthesis(results, folder / "speed_synthesis.png")
     draw_frames(results, folder / "speed_frames.png")
     return results
@@ -75,18 +73,12 @@ def _csv(rows: list[dict]) -> str:
 def _replay(case, quick: bool) -> dict:
     """Processor seconds of a trace and of its replay at all chirps without synthesis, for each aim for the phase."""
     rays = QUICK_REPLAY_RAYS if quick else REPLAY_RAYS
-    trace_s, paths = _processor_time(lambda: ep.trace(case.scene, case.radar, num_rays=rays, max_bounces=case.max_bounces))
+    trace_s, paths = processor_time(lambda: ep.trace(case.scene, case.radar, num_rays=rays, max_bounces=case.max_bounces))
     ep._core.replay_only(paths, case.radar)
     rows = [{"phase_tolerance": tolerance,
-             "replay_s": _processor_time(lambda: ep._core.replay_only(paths, case.radar, phase_tolerance=tolerance))[0]}
+             "replay_s": processor_time(lambda: ep._core.replay_only(paths, case.radar, phase_tolerance=tolerance))[0]}
             for tolerance in PHASE_TOLERANCES]
     return {"name": case.name, "title": case.title, "paths": paths.num_paths, "trace_s": trace_s, "rows": rows}
-
-
-def _processor_time(work):
-    began = time.process_time()
-    result = work()
-    return time.process_time() - began, result
 
 
 def verdicts(results: dict) -> list[dict]:

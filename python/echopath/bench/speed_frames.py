@@ -12,6 +12,7 @@ from ..materials import data_folder
 from ..scene_file import load_scene
 from ..stages import StageClock
 from .speed_tracer import bare_share
+from .timing import wall_time
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
@@ -108,24 +109,18 @@ def measure_street(*, quick: bool = False) -> dict:
     """The frame of the demo with both partitions, and the floor under it, term by term."""
     scene = street()
     rays = QUICK_STREET_RAYS if quick else STREET_RAYS
-    trace_s, paths = _wall(lambda: ep.trace(scene.scene, scene.radar, num_rays=rays))
+    trace_s, paths = wall_time(lambda: ep.trace(scene.scene, scene.radar, num_rays=rays))
     path_chirps = ep._core.replay_only(paths, scene.radar)
-    replay_s, _ = _wall(lambda: ep._core.replay_only(paths, scene.radar))
+    replay_s, _ = wall_time(lambda: ep._core.replay_only(paths, scene.radar))
     chirps = scene.radar.waveform.num_chirps
     moving = round((path_chirps - paths.num_paths) / (chirps - 1))
-    whole_s, _ = _wall(lambda: ep.synthesize(paths, scene.radar))
-    parts_s, _ = _wall(lambda: ep.decompose(paths, scene.radar, scene.parts))
+    whole_s, _ = wall_time(lambda: ep.synthesize(paths, scene.radar))
+    parts_s, _ = wall_time(lambda: ep.decompose(paths, scene.radar, scene.parts))
     one_chirp = with_frame(scene.radar, 1)
-    still_s, _ = _wall(lambda: ep.synthesize(paths, one_chirp))
+    still_s, _ = wall_time(lambda: ep.synthesize(paths, one_chirp))
     queries_s = bare_share(scene.scene, scene.radar, rays)["bare_s"]
     moving_s = 1e-9 * MOVING_NS * moving * chirps * 2.0 / ep.num_threads()
     terms = {"queries_s": queries_s, "moving_s": moving_s, "still_s": still_s * (1.0 - moving / max(1, paths.num_paths))}
     return {"rays": rays, "paths": paths.num_paths, "moving_paths": moving, "chirps": chirps, "trace_s": trace_s,
             "replay_s": replay_s, "synthesize_s": whole_s, "decompose_s": parts_s, "frame_s": trace_s + parts_s,
             "floor": terms, "floor_s": sum(terms.values())}
-
-
-def _wall(work):
-    began = time.perf_counter()
-    result = work()
-    return time.perf_counter() - began, result

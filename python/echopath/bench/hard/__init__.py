@@ -4,8 +4,8 @@ from __future__ import annotations
 import dataclasses
 import json
 import time
-from pathlib import Path
 
+from ...files import write_texts
 from ..machine import machine
 from . import faults, geometry, heavy, motions, oracle, places, repeat, scenes, signals
 from .case import Case
@@ -53,13 +53,11 @@ def run_hard(folder, *, quick: bool = False, progress=None) -> list[Result]:
         if progress:
             progress("hard", index / len(cases))
         results.append(measure(case))
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "hard.md").write_text(page(results, described(machine())), encoding="utf-8")
     rows = [{"group": one.case.group, "case": one.case.name, "bound": one.case.bound_text, "value": one.value,
              "holds": one.holds,
              "seconds": one.seconds, "error": one.error} for one in results]
-    (folder / "hard.json").write_text(json.dumps({"machine": machine(), "cases": rows}, indent=1), encoding="utf-8")
+    write_texts(folder, {"hard.md": page(results, described(machine())),
+                         "hard.json": json.dumps({"machine": machine(), "cases": rows}, indent=1)})
     if progress:
         progress("hard", 1.0)
     return results

@@ -28,7 +28,7 @@ def _draw_cost(axes, cases: list) -> None:
     axes.set_xlabel("number of parts")
     axes.set_ylabel("time of decompose over that of synthesize")
     axes.set_title("All parts from one pass")
-    axes.legend(frameon=False, loc="upper right")
+    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16))
     axes.grid(alpha=0.25)
 
 

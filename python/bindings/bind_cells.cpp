@@ -46,9 +46,7 @@ py::array_t<bool> as_mask(const std::vector<uint8_t>& values, const Shape& shape
 
 py::array mean_power_of(const RangeDoppler& map) {
   const Shape shape{static_cast<py::ssize_t>(map.velocity.size()), static_cast<py::ssize_t>(map.range.size())};
-  return numpy_take(run_job("power", py::none(), [&](Job&) {
-    return mean_power(map.values, static_cast<int64_t>(map.num_transmitters) * map.num_receivers);
-  }), shape);
+  return numpy_take(run_job("power", py::none(), [&](Job& job) { return mean_power(map, &job); }), shape);
 }
 
 double noise_of_a_cell(const Radar& radar, const py::object& window) {

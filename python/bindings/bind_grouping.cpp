@@ -11,6 +11,7 @@
 #include "array.h"
 #include "echopath/label/families.h"
 #include "echopath/label/visibility.h"
+#include "named_selections.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -20,11 +21,7 @@ using Objects = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
 py::object text_key(const std::string& name) { return py::str(name); }
 
-KeyedGrouping selections_grouping(const std::vector<std::pair<std::string, Selection>>& parts) {
-  std::vector<NamedSelection> named;
-  for (const auto& [name, selection] : parts) named.push_back({name, selection});
-  return {by_selections(std::move(named)), &text_key};
-}
+KeyedGrouping selections_grouping(const SelectionPairs& parts) { return {by_selections(named_selections(parts)), &text_key}; }
 
 // Remembers the families that it meets, also those of later records.
 KeyedGrouping families_grouping(SurfaceMap surfaces) {

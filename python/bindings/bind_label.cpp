@@ -11,14 +11,11 @@
 
 #include "array.h"
 #include "echopath/label/expression.h"
-#include "echopath/label/partition.h"
-#include "echopath/label/selection.h"
+#include "named_selections.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
-
-using NamedSelections = std::vector<std::pair<std::string, Selection>>;
 
 // Text becomes a Selection wherever one is asked for. Unlike py::implicitly_convertible, which would turn a fault in
 // the text into "incompatible arguments", this lets the message with the caret through.
@@ -37,15 +34,9 @@ py::array_t<bool> matches_of(const Selection& selection, const Paths& paths) {
   return mask;
 }
 
-std::vector<NamedSelection> named(const NamedSelections& parts) {
-  std::vector<NamedSelection> made;
-  for (const auto& [name, selection] : parts) made.push_back({name, selection});
-  return made;
-}
-
-py::tuple partition_groups(const Paths& paths, const NamedSelections& parts) {
-  Partition partition =
-      run_job("partition", py::none(), [&](Job& job) { return make_partition(paths, named(parts), &job); });
+py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
+  Partition partition = run_job("partition", py::none(),
+                                [&](Job& job) { return make_partition(paths, named_selections(parts), &job); });
   return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
 }
 
@@ -159,7 +150,8 @@ void bind_label(py::module_& m) {
   bind_num_bounces(m);
   m.def("read_hits", &read_hits, py::arg("paths"),
         "For benchmarks: reads what matching reads, on one thread, and returns a sum of it.");
-  m.def("check_part_names", [](const NamedSelections& parts) { check_part_names(named(parts)); }, py::arg("parts"),
+  m.def("check_part_names", [](const SelectionPairs& parts) { check_part_names(named_selections(parts)); },
+        py::arg("parts"),
         "Raises ValueError where a name of [(name, selection), ...] is empty, \"other\" or given twice.");
   m.def("partition_groups", &partition_groups, py::arg("paths"), py::arg("parts"),
         R"(The part of each path in a partition.

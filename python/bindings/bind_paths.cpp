@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/label/partition.h"
+#include "named_selections.h"
 #include "path_series.h"
 #include "run_job.h"
 
@@ -85,8 +85,7 @@ std::vector<PathsPtr> split(const Paths& paths, const Partition& partition, Job&
 }
 
 py::dict partition_paths(const Paths& paths, const py::dict& parts) {
-  std::vector<NamedSelection> named;
-  for (const auto& [name, selection] : parts) named.push_back({name.cast<std::string>(), selection.cast<Selection>()});
+  const std::vector<NamedSelection> named = named_selections(parts);
   Partition partition;
   const std::vector<PathsPtr> made = run_job("partition", py::none(), [&](Job& job) {
     partition = make_partition(paths, named, &job);
@@ -99,8 +98,8 @@ py::dict partition_paths(const Paths& paths, const py::dict& parts) {
 
 PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
                            const py::array& diffuse, const py::array& weight, const py::array& stratum,
-                           const py::array& batch, const py::array& flags, const py::object& curved_cell, const py::object& jones, const Scene& scene, const Radar& radar,
-                           const TraceFrame& frame) {
+                           const py::array& batch, const py::array& flags, const py::object& curved_cell,
+                           const py::object& jones, const Scene& scene, const Radar& radar, const TraceFrame& frame) {
   auto paths = std::make_shared<Paths>();
   const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
   paths->hits = std::make_shared<const std::vector<Hit>>(rows.data(), rows.data() + rows.size());

@@ -31,19 +31,6 @@ int64_t cells_of(size_t size, int64_t count, const char* argument) {
 
 }  // namespace
 
-std::vector<double> mean_power(std::span<const std::complex<double>> values, int64_t num_channels) {
-  const int64_t num_cells = cells_of(values.size(), num_channels, "num_channels");
-  std::vector<double> mean(static_cast<size_t>(num_cells));
-  for_cells(num_cells, [&](int64_t begin, int64_t end) {
-    for (int64_t channel = 0; channel < num_channels; ++channel) {
-      const std::complex<double>* value = values.data() + channel * num_cells;
-      for (int64_t i = begin; i < end; ++i) mean[i] += std::norm(value[i]);
-    }
-    for (int64_t i = begin; i < end; ++i) mean[i] /= static_cast<double>(num_channels);
-  });
-  return mean;
-}
-
 std::vector<double> power_shares(std::span<const double> power, int64_t num_parts) {
   const int64_t num_cells = cells_of(power.size(), num_parts, "num_parts");
   std::vector<double> share(power.size());

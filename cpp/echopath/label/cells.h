@@ -1,7 +1,6 @@
 #pragma once
 // Labels of the cells of a map from the powers of parts. Pure functions on arrays. A map is [rows, columns], row-major, of
 // N cells: velocities (or azimuths) and ranges. Powers are in W, finite and not negative.
-#include <complex>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,9 +8,6 @@
 namespace echopath {
 
 inline constexpr int16_t kNoLabel = -1;
-
-// Mean over the channels of |value|^2, [N] from [channels, N]. Raises invalid_argument unless the channels share the values.
-std::vector<double> mean_power(std::span<const std::complex<double>> values, int64_t num_channels);
 
 // Power of each part over the sum of all parts, [K, N] from [K, N]: sums to 1 in each cell, 0 where no part has power.
 // Raises invalid_argument unless num_parts >= 1 divides the number of powers; so do the functions below.

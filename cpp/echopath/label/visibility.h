@@ -24,10 +24,6 @@ struct Sight {
 struct ObjectVisibility {
   std::string name;
   Sight transmitter, receiver;
-
-  // The end that sees less of it: an echo needs both.
-  const Sight& worse() const { return receiver.visible_share < transmitter.visible_share ? receiver : transmitter; }
-  bool in_view() const { return transmitter.in_view && receiver.in_view; }
 };
 
 struct VisibilitySettings {

@@ -46,23 +46,6 @@ CfarFactors kept_factors(const CfarDesign& design, Job* job) {
   return factors;
 }
 
-// [V, R] mean over channels
-std::vector<double> mean_power(const RangeDoppler& map, Job* job) {
-  const int64_t num_velocities = static_cast<int64_t>(map.velocity.size());
-  const int64_t num_ranges = static_cast<int64_t>(map.range.size()), size = num_velocities * num_ranges;
-  const int channels = map.num_transmitters * map.num_receivers;
-  std::vector<double> power(size);
-  parallel_for(num_velocities, [&](int64_t v) {
-    if (job) job->throw_if_cancelled();
-    for (int c = 0; c < channels; ++c) {
-      const std::complex<double>* values = map.values.data() + c * size;
-      for (int64_t i = v * num_ranges; i < (v + 1) * num_ranges; ++i) power[i] += std::norm(values[i]);
-    }
-    for (int64_t i = v * num_ranges; i < (v + 1) * num_ranges; ++i) power[i] /= channels;
-  });
-  return power;
-}
-
 struct Found {
   int64_t range;
   double noise;

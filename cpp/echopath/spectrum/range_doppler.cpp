@@ -119,6 +119,22 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
   return range_doppler(cube.data(), static_cast<int64_t>(cube.size()), radar, window, zero_pad, job);
 }
 
+std::vector<double> mean_power(const RangeDoppler& map, Job* job) {
+  const auto num_ranges = static_cast<int64_t>(map.range.size());
+  const int64_t size = static_cast<int64_t>(map.velocity.size()) * num_ranges;
+  const int num_channels = map.num_transmitters * map.num_receivers;
+  std::vector<double> power(static_cast<size_t>(size));
+  parallel_for(static_cast<int64_t>(map.velocity.size()), [&](int64_t v) {
+    double* row = power.data() + v * num_ranges;
+    for (int c = 0; c < num_channels; ++c) {
+      const std::complex<double>* values = map.values.data() + c * size + v * num_ranges;
+      for (int64_t r = 0; r < num_ranges; ++r) row[r] += std::norm(values[r]);
+    }
+    for (int64_t r = 0; r < num_ranges; ++r) row[r] /= num_channels;
+  }, job);
+  return power;
+}
+
 double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window) {
   const int num_samples = waveform.num_samples, num_chirps = waveform.num_chirps;
   const double range_bandwidth = equivalent_noise_bandwidth(window_samples(window, num_samples));

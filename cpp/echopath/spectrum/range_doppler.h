@@ -36,6 +36,9 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 
+// Mean over the channels of |value|^2, [V, R] in W.
+std::vector<double> mean_power(const RangeDoppler& map, Job* job = nullptr);
+
 // Mean power of white noise in a cell of a map, W: sample_power ENBW_range ENBW_velocity/(num_samples num_chirps) with the
 // equivalent noise bandwidths of the window (PHYSICS 2.3); padding does not change it. sample_power (W): of complex samples;
 // for real ones twice theirs, because a map holds their positive frequencies times sqrt 2.

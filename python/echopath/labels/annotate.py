@@ -63,8 +63,7 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, settings), request.plane)
     if cubes:
         powers |= add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[_PARTS].whole, progress)
-    return label_parts(request, paths, powers[_PARTS], selections, scene_labels, settings)
+    return label_partitions(request, paths, families, powers.pop(_FAMILIES), powers, {_PARTS: selections}, settings)[_PARTS]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -108,7 +107,18 @@ def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler"
     return Request(radar, objects, made, bool(noise), float(noise_margin_db), dynamic_range_db, bool(errors))
 
 
-def label_scene(request: Request, paths, families, powers, whole, progress=None) -> dict:
+def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict, settings: dict) -> dict:
+    """{partition: Labels} from ViewPowers of the families and {partition: ViewPowers}; objects and ghosts are the same in all.
+
+    selections: {partition: {name: selection}}; settings: signal settings
+    """
+    whole = next(iter(powers.values())).whole
+    scene_labels = _label_scene(request, paths, families, family_powers, whole, settings.get("progress"))
+    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), scene_labels, settings)
+            for partition, of_parts in powers.items()}
+
+
+def _label_scene(request: Request, paths, families, powers, whole, progress=None) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
     powers: ViewPowers of the families; whole: power [V, R] in W; progress: callable (stage, fraction) or None
@@ -121,8 +131,8 @@ def label_scene(request: Request, paths, families, powers, whole, progress=None)
     return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
 
 
-def label_parts(request: Request, paths, powers, selections: dict, scene_labels: dict, settings: dict) -> Labels:
-    """Labels of a partition. powers: its ViewPowers; scene_labels: of `label_scene`; settings: signal settings."""
+def _label_parts(request: Request, paths, powers, selections: dict, scene_labels: dict, settings: dict) -> Labels:
+    """Labels of a partition. powers: its ViewPowers; scene_labels: of `_label_scene`; settings: signal settings."""
     names, plane = list(powers.cells), request.plane
     power = np.stack([powers.cells[name] for name in names])
     above_noise, mask = request.masks(powers.whole)
@@ -139,12 +149,11 @@ def label_frame(request: Request, paths, families, cubes: dict, family_cubes: di
 
     selections: {partition: {name: selection}}; settings: signal settings.
     """
-    views = cubes | {_FAMILIES: family_cubes}
-    powers = {view: add_powers([CubeSet(request.radar, 1.0, {view: views[view]})], request.plane)[view] for view in views}
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(cubes))].whole,
-                               settings.get("progress"))
-    return {view: label_parts(request, paths, powers[view], selections.get(view, {}), scene_labels, settings)
-            for view in cubes}
+    def powers_of(view):
+        return add_powers([CubeSet(request.radar, 1.0, {_PARTS: view})], request.plane)[_PARTS]
+
+    powers = {partition: powers_of(view) for partition, view in cubes.items()}
+    return label_partitions(request, paths, families, powers_of(family_cubes), powers, selections, settings)
 
 
 def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict) -> Labels:

@@ -5,7 +5,7 @@ import echopath as ep
 
 from ..keywords import known_keywords
 from ..parts import ONLY_PARTITION, check_partitions
-from .annotate import MAP_KEYWORDS, label_parts, label_scene, make_request
+from .annotate import MAP_KEYWORDS, label_partitions, make_request
 from .powers import CubeSet, add_powers, decomposed
 
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
@@ -34,11 +34,9 @@ def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
     num_parts = len(families) + sum(len(group) + 1 for group in chosen.values())
     powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, settings), request.plane)
     powers |= add_powers([CubeSet(frame.radar, 1.0, frame.parts)], request.plane)
-    selections = frame.selections | chosen
-    scene_labels = label_scene(request, paths, families, powers[_FAMILIES], powers[next(iter(selections))].whole,
-                               progress)
-    return {partition: label_parts(request, paths, powers[partition], group, scene_labels, settings)
-            for partition, group in selections.items()}
+    family_powers, selections = powers.pop(_FAMILIES), frame.selections | chosen
+    powers = {partition: powers[partition] for partition in selections}
+    return label_partitions(request, paths, families, family_powers, powers, selections, settings)
 
 
 def _as_new_partitions(parts, frame) -> dict:

@@ -30,12 +30,6 @@ LabelRegion region_of(const std::vector<std::pair<int, int>>& cells, bool rows_w
   return label_regions(label, power, 1, shape).front();
 }
 
-TEST(Cells, MeanPowerIsTheMeanOverChannels) {
-  const std::vector<std::complex<double>> values{{3, 4}, {0, 1}, {1, 0}, {2, 0}};
-  EXPECT_EQ(mean_power(values, 2), (std::vector<double>{13.0, 2.5}));
-  EXPECT_THROW(mean_power(values, 3), std::invalid_argument);
-}
-
 TEST(Cells, SharesSumToOneWhereThereIsPower) {
   constexpr int64_t kParts = 5, kCells = 20'000;
   std::vector<double> power = random_powers(kParts * kCells);

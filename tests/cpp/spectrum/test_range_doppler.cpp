@@ -38,6 +38,14 @@ std::vector<Complex> tones(const Radar& radar, double r, double d) {
   return cube;
 }
 
+TEST(RangeDoppler, MeanPowerIsTheMeanOverChannels) {
+  RangeDoppler map;
+  map.num_receivers = 2, map.num_transmitters = 1;
+  map.velocity = {0.0}, map.range = {0.0, 1.0};
+  map.values = {{3, 4}, {0, 1}, {1, 0}, {2, 0}};
+  EXPECT_EQ(mean_power(map), (std::vector<double>{13.0, 2.5}));
+}
+
 TEST(RangeDoppler, EqualsTheSlowTransform) {
   const Radar radar = small_radar();
   const ChirpSequence& w = radar.waveform;

@@ -25,17 +25,16 @@ std::vector<double> coefficient_row(int n, int order) {
   return row;
 }
 
-// T_n(x) and its first three derivatives.
-std::array<double, 4> chebyshev(int n, double x) {
-  std::array<double, 4> before = {1.0, 0.0, 0.0, 0.0}, here = {x, 1.0, 0.0, 0.0};  // T_0, T_1
-  if (n == 0) return before;
-  for (int i = 1; i < n; ++i) {
+// T_n(x) and its first three derivatives, n = 0 .. order-1.
+std::vector<std::array<double, 4>> chebyshev(int order, double x) {
+  std::vector<std::array<double, 4>> values = {{1.0, 0.0, 0.0, 0.0}, {x, 1.0, 0.0, 0.0}};
+  for (int n = 2; n < order; ++n) {
+    const std::array<double, 4>&before = values[static_cast<size_t>(n) - 2], &here = values[static_cast<size_t>(n) - 1];
     std::array<double, 4> next;
-    for (int d = 0; d < 4; ++d) next[d] = 2.0 * (x * here[d] + (d > 0 ? d * here[d - 1] : 0.0)) - before[d];
-    before = here;
-    here = next;
+    for (size_t d = 0; d < 4; ++d) next[d] = 2.0 * (x * here[d] + (d > 0 ? static_cast<double>(d) * here[d - 1] : 0.0)) - before[d];
+    values.push_back(next);
   }
-  return here;
+  return values;
 }
 
 struct Piece {
@@ -76,19 +75,22 @@ class NodeSet {
     const double x = std::clamp((time - piece.middle()) * scale, -1.0, 1.0);
     sampling.order = order_;
     sampling.first_node.push_back(first_node);
+    const std::vector<std::array<double, 4>> basis = chebyshev(order_, x);
     std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
-    for (int d = 0; d <= num_derivatives_; ++d) out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
-    for (int n = 0; n < order_; ++n) {
-      const std::array<double, 4> basis = chebyshev(n, x);
-      for (int d = 0; d <= num_derivatives_; ++d) {
-        double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
-        for (int k = 0; k < order_; ++k) weights[k] += std::pow(scale, d) * basis[d] * coefficients(n)[static_cast<size_t>(k)];
+    double unit = 1.0;  // of the derivative, s^-d
+    for (size_t d = 0; d <= num_derivatives_; ++d, unit *= scale) {
+      out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
+      double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
+      for (int n = 0; n < order_; ++n) {
+        const double factor = unit * basis[static_cast<size_t>(n)][d];
+        for (int k = 0; k < order_; ++k) weights[k] += factor * coefficients(n)[static_cast<size_t>(k)];
       }
     }
   }
 
  private:
-  int order_, num_derivatives_;
+  int order_;
+  size_t num_derivatives_;
   std::vector<std::vector<double>> rows_;  // [n, k]: Chebyshev coefficient n from the values at the nodes
 };
 

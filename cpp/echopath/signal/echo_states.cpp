@@ -8,42 +8,59 @@
 namespace echopath {
 namespace {
 
-// Values at the nodes of one chirp; echo p of node k stands at p + k * stride.
+// Values at the nodes that some chirps share; echo p of node k stands at p + k * stride.
 struct Nodes {
   const double *delay, *amplitude;  // amplitudes: re, im interleaved
   int64_t stride;
-  const double *value, *slope;      // weights [order]
+  const double *value, *slope;      // weights [chirp, order]
   int order;
 };
 
-// Of kLanes echoes from p on; sums stay in the registers.
-template <int kLanes>
+// Of kLanes echoes from p on, at kChirps chirps for which the nodes are read once; sums stay in the registers.
+template <int kLanes, int kChirps>
 ECHOPATH_INLINE void interpolate_some(const Nodes& nodes, int p, EchoStates* states) {
   typedef double Lanes __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
-  const double *delay = nodes.delay + p, *amplitude = nodes.amplitude + 2 * p;
   const auto at = [](const double* from) { return *reinterpret_cast<const Lanes*>(from); };
-  Lanes lags = nodes.value[0] * at(delay), rates = nodes.slope[0] * at(delay);
-  Lanes low = nodes.value[0] * at(amplitude), high = nodes.value[0] * at(amplitude + kLanes);
-  for (int k = 1; k < nodes.order; ++k) {
-    delay += nodes.stride;
-    amplitude += 2 * nodes.stride;
-    lags += nodes.value[k] * at(delay);
-    rates += nodes.slope[k] * at(delay);
-    low += nodes.value[k] * at(amplitude);
-    high += nodes.value[k] * at(amplitude + kLanes);
+  Lanes lags[kChirps] = {}, rates[kChirps] = {}, low[kChirps] = {}, high[kChirps] = {};
+  for (int k = 0; k < nodes.order; ++k) {
+    const double* from = nodes.amplitude + 2 * (p + k * nodes.stride);
+    const Lanes delay = at(nodes.delay + p + k * nodes.stride), first = at(from), second = at(from + kLanes);
+    for (int c = 0; c < kChirps; ++c) {
+      const double value = nodes.value[c * nodes.order + k];
+      lags[c] += value * delay;
+      rates[c] += nodes.slope[c * nodes.order + k] * delay;
+      low[c] += value * first;
+      high[c] += value * second;
+    }
   }
   const auto store = [](double* to, Lanes lanes) { *reinterpret_cast<Lanes*>(to) = lanes; };
-  store(states->delay + p, lags);
-  store(states->rate + p, rates);
-  store(states->amplitude + 2 * p, low);
-  store(states->amplitude + 2 * p + kLanes, high);
+  for (int c = 0; c < kChirps; ++c) {
+    store(states[c].delay + p, lags[c]);
+    store(states[c].rate + p, rates[c]);
+    store(states[c].amplitude + 2 * p, low[c]);
+    store(states[c].amplitude + 2 * p + kLanes, high[c]);
+  }
 }
 
-template <int kLanes>
+template <int kLanes, int kChirps>
 ECHOPATH_INLINE void interpolate(Nodes nodes, int count, EchoStates* states) {
   int p = 0;
-  for (; p + kLanes <= count; p += kLanes) interpolate_some<kLanes>(nodes, p, states);
-  for (; p < count; ++p) interpolate_some<1>(nodes, p, states);
+  for (; p + kLanes <= count; p += kLanes) interpolate_some<kLanes, kChirps>(nodes, p, states);
+  for (; p < count; ++p) interpolate_some<1, kChirps>(nodes, p, states);
+}
+
+// As many chirps at once as there are registers for.
+template <int kChirps>
+void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
+  if (instruction_set() == InstructionSet::kAvx512) run_simd<interpolate<8, kChirps>>(nodes, count, states);
+  else run_simd<interpolate<4, kChirps>>(nodes, count, states);
+}
+
+// From `chirp` on, up to `most`.
+int chirps_that_share_nodes(const TimeSampling& sampling, int chirp, int most) {
+  int count = 1;
+  while (count < most && sampling.first_node[chirp + count] == sampling.first_node[chirp]) ++count;
+  return count;
 }
 
 ECHOPATH_INLINE void add_bends(const double* delay, double bend, double twist, int count, EchoBends* bends) {
@@ -55,21 +72,35 @@ ECHOPATH_INLINE void add_bends(const double* delay, double bend, double twist, i
 
 }  // namespace
 
-void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends) {
+void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states) {
   const TimeSampling& sampling = echoes.sampling;
-  const size_t row = static_cast<size_t>(chirp) * sampling.order;
-  if (bends) {
-    std::fill_n(bends->bend, count, 0.0);
-    std::fill_n(bends->twist, count, 0.0);
+  const int end = chirp + num_chirps, at_once = instruction_set() == InstructionSet::kAvx512 ? 4 : 2;
+  while (chirp < end) {
+    const size_t row = static_cast<size_t>(chirp) * sampling.order;
+    const int64_t first = int64_t{sampling.first_node[chirp]} * echoes.num_echoes + begin;
+    const Nodes nodes{echoes.delay.data() + first, reinterpret_cast<const double*>(echoes.amplitude.data() + first),
+                      echoes.num_echoes, sampling.value.data() + row, sampling.slope.data() + row, sampling.order};
+    const int shared = chirps_that_share_nodes(sampling, chirp, std::min(at_once, end - chirp));
+    if (shared == 4) interpolate_at<4>(nodes, count, states);
+    else if (shared > 1) interpolate_at<2>(nodes, count, states);
+    else interpolate_at<1>(nodes, count, states);
+    const int done = shared == 3 ? 2 : shared;
+    chirp += done;
+    states += done;
   }
-  const int64_t first = int64_t{sampling.first_node[chirp]} * echoes.num_echoes + begin;
-  const Nodes nodes{echoes.delay.data() + first, reinterpret_cast<const double*>(echoes.amplitude.data() + first), echoes.num_echoes,
-                    sampling.value.data() + row, sampling.slope.data() + row, sampling.order};
-  if (instruction_set() == InstructionSet::kAvx512) run_simd<interpolate<8>>(nodes, count, &states);
-  else run_simd<interpolate<4>>(nodes, count, &states);
-  if (!bends || sampling.bend.empty()) return;
+}
+
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends) {
+  evaluate_states(echoes, chirp, 1, begin, count, &states);
+  if (!bends) return;
+  std::fill_n(bends->bend, count, 0.0);
+  std::fill_n(bends->twist, count, 0.0);
+  const TimeSampling& sampling = echoes.sampling;
+  if (sampling.bend.empty()) return;
+  const size_t row = static_cast<size_t>(chirp) * sampling.order;
+  const double* delay = echoes.delay.data() + int64_t{sampling.first_node[chirp]} * echoes.num_echoes + begin;
   for (int k = 0; k < sampling.order; ++k) {
-    run_simd<add_bends>(nodes.delay + k * nodes.stride, sampling.bend[row + k], sampling.twist[row + k], count, bends);
+    run_simd<add_bends>(delay + k * echoes.num_echoes, sampling.bend[row + k], sampling.twist[row + k], count, bends);
   }
 }
 

@@ -19,7 +19,10 @@ struct EchoBends {
   alignas(64) double twist[EchoStates::kCapacity];
 };
 
-// Of echoes [begin, begin + count), count <= kCapacity. `bends` may be null; zeros where the sampling has none.
+// Of echoes [begin, begin + count), count <= kCapacity, at chirps [chirp, chirp + num_chirps): states [num_chirps]. Costs least
+// where neighbouring chirps share their nodes.
+void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states);
+// Likewise at one chirp. `bends` may be null; zeros where the sampling has none.
 void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends = nullptr);
 
 }  // namespace echopath

@@ -111,16 +111,17 @@ namespace {
 
 // Values of all chirps of echoes [begin, end): few echoes at a time, whose nodes stay in the first-level cache.
 void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_chirps) {
-  EchoStates states;
-  for (int chirp = 0; chirp < num_chirps; ++chirp) {
-    evaluate_states(echoes, chirp, begin, static_cast<int>(end - begin), states);
+  constexpr int kChirpsAtOnce = 4;
+  EchoStates states[kChirpsAtOnce];
+  for (int chirp = 0; chirp < num_chirps; chirp += kChirpsAtOnce) {
+    evaluate_states(echoes, chirp, std::min(kChirpsAtOnce, num_chirps - chirp), begin, static_cast<int>(end - begin), states);
   }
 }
 
 }  // namespace
 
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job) {
-  constexpr int64_t kEchoes = EchoStates::kCapacity / 2;
+  constexpr int64_t kEchoes = EchoStates::kCapacity / 4;
   const ReplayStream stream(paths, radar, settings, job);
   int64_t path_chirps = 0;
   stream.run([&](int, std::span<Echoes> blocks, std::span<const int64_t>) {

@@ -19,7 +19,7 @@ namespace echopath::bindings {
 namespace {
 
 const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "evaluate", "phase_tolerance",
-                                            "retrace", "keyframes", "progress"};
+                                            "retrace", "keyframes", "progress", "probe"};
 
 enum class Evaluation { kInterpolated, kChirps, kSamples };
 constexpr auto kEvaluation = choice<Evaluation>("evaluate", "interpolated", "chirps", "samples");
@@ -37,6 +37,12 @@ CubeSettings settings_of(double tolerance, const std::string& method, const std:
   return settings;
 }
 
+// Fills `probe`, unless it is None, with what the pass says.
+void set_probe(SignalProbe* probe, CubeSettings& settings) {
+  if (probe) *probe = {probe->seed, 0, {}};
+  settings.probe = probe;
+}
+
 py::array cube_array(Cube&& cube) {
   return numpy_take(std::move(cube.values), {cube.num_tx, cube.num_rx, cube.num_chirps, cube.num_samples});
 }
@@ -46,9 +52,11 @@ const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
                           const std::string& replay, const std::string& evaluate, double phase_tolerance,
-                          const std::string& retrace, int keyframes, const py::object& progress, const py::kwargs& unknown) {
+                          const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe,
+                          const py::kwargs& unknown) {
   refuse_unknown(unknown, "synthesize", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
+  CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
+  set_probe(probe, settings);
   return cube_array(run_job("synthesize", progress, [&](Job& job) {
     return synthesize(paths, radar_or_own(paths, radar), settings, &job);
   }));
@@ -57,9 +65,10 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
 py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vector<KeyedGrouping>& views, double tolerance,
                          const std::string& method, const std::string& replay, const std::string& evaluate,
                          double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
-                         const py::kwargs& unknown) {
+                         SignalProbe* probe, const py::kwargs& unknown) {
   refuse_unknown(unknown, "decompose", kKeywords);
-  const CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
+  CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
+  set_probe(probe, settings);
   std::vector<Grouping> rules;
   for (const KeyedGrouping& view : views) rules.push_back(view.rule);
   auto cubes = run_job("decompose", progress, [&](Job& job) {
@@ -148,7 +157,7 @@ void bind_sim(py::module_& m) {
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
-        py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
         R"(The noise-free IF signal of paths.
 
 radar: another waveform, array or motion than that of the trace, or None
@@ -163,16 +172,17 @@ retrace: "never" (one record serves the frame), "invalid" (shadow rays and point
     "always" (the scene is traced anew by the same rays, to which phases of rough surfaces then belong: for coherent echoes), for each of `keyframes` stretches of chirps
 keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
 progress: callable(stage, fraction) or None
+probe: a SignalProbe, filled with spot checks of this signal, or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
-        py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
         R"(The signals of parts of the paths, several views of them replayed once.
 
 views: list of Grouping
 Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
-tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes and progress are as in synthesize.)");
+tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes, progress and probe are as in synthesize.)");
 }
 
 }  // namespace echopath::bindings

@@ -14,9 +14,9 @@ from . import _core
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CosinePower, Deformation,
     DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
-    Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, Skin, Stratum, TraceFrame, TraceStatistics,
-    Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform, boltzmann,
-    cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
+    Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame,
+    TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform,
+    boltzmann, cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
     power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
     synthesize, validity, virtual_array,
 )
@@ -29,6 +29,7 @@ from . import actors
 from .actors import Actor, Part
 from .detections import Detections, detect, detect_frame
 from .families import Families, families
+from .guard import Check, GuardWarning, check_signal
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .measures import power_by_chirp
 from .parts import Parts, decompose
@@ -65,17 +66,17 @@ def _viewer():
 
 
 __all__ = [
-    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "ChirpSequence",
-    "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame",
-    "GainTable", "GhostLabel", "Isotropic", "Joint", "KeyframeMotion", "Labels", "LinearMotion", "Material", "Mesh",
-    "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth",
-    "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "Skin", "Stratum",
-    "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares", "VertexSequence",
-    "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar",
-    "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "hits",
-    "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_scene", "materials",
-    "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "power", "power_by_chirp",
-    "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "save_label_images",
-    "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "validity",
-    "view", "virtual_array", "visibility",
+    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
+    "ChirpSequence", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family",
+    "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Isotropic", "Joint", "KeyframeMotion", "Labels",
+    "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells",
+    "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection",
+    "Sight", "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity",
+    "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate",
+    "annotate_frame", "beamform", "boltzmann", "cfar", "check_signal", "compensate_tdm", "decompose", "detect",
+    "detect_frame", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame",
+    "load_labels", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads",
+    "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power",
+    "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "speed_of_light",
+    "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array", "visibility",
 ]

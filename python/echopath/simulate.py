@@ -9,6 +9,7 @@ import echopath as ep
 from .azimuth_map import checked_settings, sees_azimuth
 from .detections.checks import check_keywords
 from .effects import of_paths
+from .guard import check_signal, warn_of
 from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
@@ -34,6 +35,7 @@ class Frame:
     labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not asked
         for
     detections: Detections in its map, None when not asked for
+    checks: list [C] of Check, what the guard of the run compared; [] when it was off
     stages: time and peak memory of each stage
     """
 
@@ -55,6 +57,7 @@ class Frame:
     keyframes: int = 0
     labels: dict = dataclasses.field(default_factory=dict)
     detections: object = None
+    checks: list = dataclasses.field(default_factory=list)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
@@ -106,7 +109,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
              parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
              keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, detections=None,
-             progress=None) -> Frame:
+             guard=True, progress=None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
@@ -120,8 +123,10 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
+    guard: whether the signal is held against slower ways at a few places: see `Frame.checks`
     progress: callable (stage, fraction) or None
-    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
+    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning) where a check disagrees
+    by more than is promised.
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
@@ -135,16 +140,18 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     with clock("synthesis"):
         settings = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate, "retrace": retrace,
                     "keyframes": keyframes, "progress": progress}
+        probe = ep.SignalProbe(seed=seed) if guard else None
         families = ep.families(paths, request.objects) if request else None
-        cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings)
+        cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings | {"probe": probe})
     with clock("parts of paths"):
         group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
                   part_of_path=group_of_path, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
                   angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
-                  keyframes=keyframes,
+                  keyframes=keyframes, checks=check_signal(whole, probe, tolerance=tolerance) if guard else [],
                   stages=clock.stages)
+    warn_of(frame.checks, stacklevel=2)
     with clock("spectra"):
         with_spectra(frame)
     if sees_azimuth(radar):

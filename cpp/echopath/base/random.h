@@ -9,7 +9,7 @@ namespace echopath {
 // Independent uses of one seed.
 enum class Stream : uint32_t {
   kLaunchShift = 1, kBounce = 2, kPhase = 3, kNoise = 4, kLaunchPoint = 5, kThinning = 6, kScatterShift = 7, kScatterPoint = 8,
-  kTraining = 16
+  kProbe = 9, kTraining = 16
 };
 
 inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {

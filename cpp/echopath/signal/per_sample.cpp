@@ -31,16 +31,22 @@ bool passes_filter(const CarrierModel& model, const Bent& echo) {
   return frequency >= 0.0 && frequency < model.highest_frequency;
 }
 
-ECHOPATH_INLINE void add_bent(CarrierModel model, Bent echo, int num_samples, double* out_re, double* out_im) {
-  const double slope = model.slope, centre = model.window_centre, step = model.sample_interval;
+// Of a sample, in sqrt(W).
+ECHOPATH_INLINE Phasor value_at(const CarrierModel& model, const Bent& echo, double sample) {
+  const double slope = model.slope, centre = model.window_centre;
   const double carrier = model.start_frequency + slope * (centre - echo.delay);
+  const double x = sample * model.sample_interval - centre;
+  const double moved = x * (echo.rate + x * (echo.half_bend + x * echo.sixth_twist));  // s since the window centre
+  const double cycles = echo.cycles + carrier * moved + slope * (x * (echo.delay + moved) - 0.5 * moved * moved);
+  const Phasor phasor = phasor_of_cycles(cycles);
+  return {echo.re * phasor.re - echo.im * phasor.im, echo.re * phasor.im + echo.im * phasor.re};
+}
+
+ECHOPATH_INLINE void add_bent(CarrierModel model, Bent echo, int num_samples, double* out_re, double* out_im) {
   for (int n = 0; n < num_samples; ++n) {
-    const double x = n * step - centre;
-    const double moved = x * (echo.rate + x * (echo.half_bend + x * echo.sixth_twist));  // s since the window centre
-    const double cycles = echo.cycles + carrier * moved + slope * (x * (echo.delay + moved) - 0.5 * moved * moved);
-    const Phasor phasor = phasor_of_cycles(cycles);
-    out_re[n] += echo.re * phasor.re - echo.im * phasor.im;
-    out_im[n] += echo.re * phasor.im + echo.im * phasor.re;
+    const Phasor value = value_at(model, echo, n);
+    out_re[n] += value.re;
+    out_im[n] += value.im;
   }
 }
 
@@ -56,6 +62,22 @@ void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, i
     const uint32_t group = echoes.group.empty() ? 0 : echoes.group[static_cast<size_t>(begin + p)];
     double* row = rows.first + group * rows.stride;
     run_simd<add_bent>(model_, echo, num_samples_, row, row + row_length);
+  }
+}
+
+void PerSample::add_samples(const Echoes& echoes, int chirp, int64_t begin, int count, std::span<const double> samples,
+                            std::span<double> re, std::span<double> im) const {
+  EchoStates states;
+  EchoBends bends;
+  evaluate_states(echoes, chirp, begin, count, states, &bends);
+  for (int p = 0; p < count; ++p) {
+    const Bent echo = bent_echo(model_, states, bends, p);
+    if (!passes_filter(model_, echo)) continue;
+    for (size_t s = 0; s < samples.size(); ++s) {
+      const Phasor value = value_at(model_, echo, samples[s]);
+      re[s] += value.re;
+      im[s] += value.im;
+    }
   }
 }
 

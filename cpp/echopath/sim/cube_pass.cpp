@@ -1,6 +1,7 @@
 #include "echopath/sim/cube_pass.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -49,13 +50,17 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
     synthesizers_.emplace_back(radar.waveform, stream.num_channels(), way.num_groups, paths.num_paths(),
                                settings.synthesis);
   }
+  std::optional<PassProbe> probe;
+  if (settings.probe) probe.emplace(paths, radar, stream.replayer(), settings.synthesis, *settings.probe);
   if (job) job->start(paths.num_paths() * stream.num_channels() * static_cast<int64_t>(ways.size()));
   stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
+    if (probe) probe->see(channel, blocks, indices);
     for (size_t way = 0; way < ways.size(); ++way) {
       set_groups(ways[way], indices, blocks);
       synthesizers_[way].add(channel, blocks, job);
     }
   });
+  if (probe) probe->finish(*settings.probe, job);
 }
 
 Cube CubePass::cube(size_t way, int group, Job* job) const {

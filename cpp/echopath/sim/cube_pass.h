@@ -6,6 +6,7 @@
 
 #include "echopath/replay/replay.h"
 #include "echopath/sim/keyframes.h"
+#include "echopath/sim/signal_probe.h"
 #include "echopath/signal/synthesizer.h"
 
 namespace echopath {
@@ -14,6 +15,7 @@ struct CubeSettings {
   SynthesisOptions synthesis;  // the method is chosen from the whole set of paths, never per part
   ReplaySettings replay;
   KeyframeSettings keyframes;
+  SignalProbe* probe = nullptr;  // filled by each pass
 };
 
 // IF samples [tx, rx, chirp, sample] in sqrt(W), noise-free.

@@ -105,6 +105,7 @@ Views decompose(const Paths& paths, const Radar& radar, const std::vector<Groupi
   Views frame(views.size());
   for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
     const Paths record = record_of(paths, stretch, retrace, job);
+    if (settings.probe) settings.probe->first_chirp = stretch.first_chirp;
     const Views parts = decompose_record(record, stretch.radar, views, within_stretch(settings), job);
     const bool is_first = stretch.first_chirp == 0;
     for (size_t view = 0; view < views.size(); ++view) {

@@ -8,6 +8,7 @@ Cube synthesize(const Paths& paths, const Radar& radar, const CubeSettings& sett
   Cube frame = Cube::zeros(radar);
   for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
     const Paths record = record_of(paths, stretch, retrace, job);
+    if (settings.probe) settings.probe->first_chirp = stretch.first_chirp;
     frame.insert_chirps(synthesize(record, stretch.radar, within_stretch(settings), job), stretch.first_chirp);
   }
   return frame;

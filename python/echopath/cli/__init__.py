@@ -172,7 +172,7 @@ def _run(options) -> None:
     for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
-                 *report.validity(certificate), *report.files(written)]:
+                 *report.checks(frame.checks), *report.validity(certificate), *report.files(written)]:
         print(text)
 
 

@@ -51,6 +51,11 @@ def validity(certificate) -> list[str]:
     return str(certificate).splitlines()
 
 
+def checks(of_guard) -> list[str]:
+    """What the guard of a run compared; nothing where it was off."""
+    return ["checks of this run", *(line(check.name, str(check)) for check in of_guard)] if of_guard else []
+
+
 def stages(all_stages) -> list[str]:
     """Time and peak memory of each stage."""
     lines = [line(stage.name, f"{stage.seconds:8.2f} s {stage.peak_memory / 2**20:10,.0f} MiB") for stage in all_stages]

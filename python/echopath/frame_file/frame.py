@@ -10,6 +10,7 @@ import numpy as np
 import echopath as ep
 
 from ..files import written_whole
+from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..simulate import Frame, with_spectra
 from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
@@ -21,6 +22,7 @@ from .scene import read_scene, write_scene
 
 FORMAT = "echopath frame"
 SCHEMA_VERSION = 1  # grows when a reader of the old layout would misread the new one
+CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace")
 
 
@@ -60,6 +62,7 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     with _new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         _write_signal(file, frame)
+        _write_checks(file, frame.checks)
         _write_spectra(file, frame)
         _write_range_azimuth(file, frame)
         _write_partitions(file, frame, is_kept)
@@ -83,6 +86,7 @@ def load_frame(path) -> Frame:
         if "signal" not in file:
             return frame
         _read_signal(file, frame)
+        frame.checks = _read_checks(file)
         _read_partitions(file, frame)
         with_spectra(frame)
         if "labels" in file:
@@ -176,6 +180,25 @@ def _write_signal(file, frame: Frame) -> None:
     group.attrs["keyframes"] = frame.keyframes
     if frame.noise_seed is not None:
         group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
+
+
+def _write_checks(file, checks) -> None:
+    group = file.create_group("checks")
+    for field in ("name", "unit"):
+        write_texts(group, field, [getattr(check, field) for check in checks])
+    for field, dtype in CHECK_NUMBERS.items():
+        write_array(group, field, np.array([getattr(check, field) for check in checks], dtype))
+
+
+def _read_checks(file) -> list:
+    """Of frames that were written before there were any: []."""
+    if "checks" not in file:
+        return []
+    group = read_group(file, "checks")
+    names = read_texts(group, "name")
+    columns = {"name": names, "unit": read_texts(group, "unit", len(names))}
+    columns |= {field: read_array(group, field, dtype, (len(names),)).tolist() for field, dtype in CHECK_NUMBERS.items()}
+    return [Check(**dict(zip(columns, row))) for row in zip(*columns.values())]
 
 
 def _write_spectra(file, frame: Frame) -> None:

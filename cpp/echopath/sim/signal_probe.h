@@ -1,0 +1,71 @@
+#pragma once
+// Spot checks of a pass of replay and synthesis: a few samples of a few chirps as direct sums of all echoes, and a few of
+// these evaluated at the chirp instead of between nodes.
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "echopath/replay/replay.h"
+#include "echopath/signal/carrier.h"
+#include "echopath/signal/synthesizer.h"
+
+namespace echopath {
+
+// One chirp of one channel of the frame.
+struct ProbedChirp {
+  static constexpr int kSamples = 8;
+  int tx = 0, rx = 0, chirp = 0;
+  std::array<int, kSamples> sample{};
+  std::array<std::complex<double>, kSamples> value{};  // sqrt(W): sums of sines and cosines of the echoes as replayed
+  double amplitude_sum = 0.0;                          // sqrt(W), of |amplitude| of all echoes in this chirp
+  // Moving echoes that were evaluated at the chirp too: the strongest and random ones of each block of paths.
+  int64_t num_echoes = 0;
+  double phase_error = 0.0;      // rad at the start frequency, rms weighted by the power of the echoes
+  double largest_phase_error = 0.0;  // rad
+  double amplitude_error = 0.0;  // rms of the differences over rms of the amplitudes
+};
+
+// What passes leave behind. Chirps and samples are drawn by `seed`.
+struct SignalProbe {
+  uint64_t seed = 1;
+  int first_chirp = 0;  // of the frame, with which the next pass begins
+  std::vector<ProbedChirp> chirps;
+};
+
+// Looks at the echoes of one pass, at two chirps. Same bits for any number of threads.
+class PassProbe {
+ public:
+  // All must outlive it.
+  PassProbe(const Paths& paths, const Radar& radar, const Replayer& replayer, const SynthesisOptions& synthesis,
+            const SignalProbe& probe);
+  ~PassProbe();
+  // Blocks of one channel, with the indices of the paths of all of them.
+  void see(int channel, std::span<const Echoes> blocks, std::span<const int64_t> indices);
+  // Evaluates the echoes drawn and adds the chirps to `probe`. Raises Cancelled.
+  void finish(SignalProbe& probe, Job* job);
+
+ private:
+  struct Aim;
+  struct Seen;
+  class Strongest;
+  void look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const;
+  void add_samples(const Aim& aim, const Echoes& block, int64_t begin, int count, const EchoStates& states,
+                   Seen& seen) const;
+  void draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
+                   Seen& seen) const;
+  void compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const;
+  static void add(const Seen& some, Seen& all);
+
+  const Paths& paths_;
+  const Radar& radar_;
+  const Replayer& replayer_;
+  CarrierModel model_;
+  std::unique_ptr<const PerSample> per_sample_;
+  uint64_t seed_;
+  std::vector<Aim> aims_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,79 @@
+"""The guard of a run: what it computed, held against slower ways at a few random places, and a warning where they disagree.
+
+What it cannot see: places that were not drawn, and paths that no ray found.
+"""
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+import numpy as np
+
+LARGEST_OF_RMS = 6.0    # how much a NUFFT may err in one sample, over its rms of all samples
+ROUNDING = 1e-13        # of the sum of |amplitude|: of the direct sums
+BEYOND_TAIL = 10.0      # what a polynomial leaves out may add up to, over its last two coefficients, which the aims are for
+PHASE_TOLERANCE = 1e-5      # rad, the aim of `synthesize`
+AMPLITUDE_TOLERANCE = 1e-4  # relative, likewise
+
+
+class GuardWarning(UserWarning):
+    """A result disagrees with a slower way to it by more than the run promises."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Check:
+    """One comparison of the guard.
+
+    name: what was compared with what; error: how far they are apart, in `unit`; promise: the most that is promised
+    unit: "rad", "dB" or what the error is relative to; count: how many places were compared
+    """
+
+    name: str
+    error: float
+    promise: float
+    unit: str
+    count: int
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the error is no larger than promised."""
+        return self.error <= self.promise
+
+    def __str__(self) -> str:
+        verdict = "" if self.agrees else ": TOO MUCH"
+        return f"{self.error:.1e} {self.unit}, promised {self.promise:.0e}{verdict} ({self.count:,} compared)"
+
+
+def check_signal(cube, probe, *, tolerance: float = 1e-7, phase_tolerance: float = PHASE_TOLERANCE) -> list[Check]:
+    """What spot checks say of a signal.
+
+    cube: complex [tx, rx, chirp, sample] in sqrt(W), of `synthesize` or the sum of the parts of `decompose`; probe: the
+    SignalProbe that was filled with it; tolerance: rms of the samples, relative, and phase_tolerance: rad, as promised
+    Returns list [C] of Check: samples against direct sums of all echoes, then phases and amplitudes of moving echoes between
+    nodes against evaluation at the chirp (none where nothing moves).
+    """
+    checks = [_samples(cube, probe, tolerance)]
+    count = int(probe.num_echoes.sum())
+    if count == 0:
+        return checks
+    name = "moving echoes against exact ones"
+    phase, amplitude = float(np.max(probe.phase_error)), float(np.max(probe.amplitude_error))
+    return [*checks, Check(f"{name}, phase", phase, BEYOND_TAIL * phase_tolerance, "rad rms", count),
+            Check(f"{name}, size", amplitude, BEYOND_TAIL * AMPLITUDE_TOLERANCE, "of the amplitude rms", count)]
+
+
+def _samples(cube, probe, tolerance: float) -> Check:
+    """The rms over the samples drawn of each chirp, the largest of all chirps."""
+    got = cube[probe.tx[:, None], probe.rx[:, None], probe.chirp[:, None], probe.sample]
+    apart = np.sqrt(np.mean(np.abs(got - probe.value) ** 2, axis=1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = np.where(apart == 0.0, 0.0, apart / probe.amplitude_sum)
+    promise = LARGEST_OF_RMS * max(tolerance, ROUNDING)
+    return Check("samples against direct sums", float(np.max(error, initial=0.0)), promise, "of the sum of |a|", got.size)
+
+
+def warn_of(checks, stacklevel: int = 2) -> None:
+    """Warns (GuardWarning) of each of the `checks` that does not agree."""
+    for check in checks:
+        if not check.agrees:
+            warnings.warn(f"{check.name}: {check}", GuardWarning, stacklevel=stacklevel + 1)

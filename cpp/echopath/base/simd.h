@@ -4,13 +4,6 @@
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #define ECHOPATH_X86_KERNELS 1
 #endif
-// Functions with this mark are picked when the program is loaded, whatever ECHOPATH_INSTRUCTION_SET says; new loops better use
-// run_simd. Sanitizers run before the picking is possible.
-#if defined(ECHOPATH_X86_KERNELS) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define ECHOPATH_SIMD __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define ECHOPATH_SIMD
-#endif
 // Helpers of such loops must be inlined to be compiled for the same instruction set.
 #define ECHOPATH_INLINE inline __attribute__((always_inline))
 

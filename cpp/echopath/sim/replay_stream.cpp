@@ -22,28 +22,73 @@ int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   return std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
 }
 
-// Indices of the paths on which nothing moves, and of the others.
-std::pair<std::vector<int64_t>, std::vector<int64_t>> split_by_motion(const Replayer& replayer, int64_t num_paths, Job* job) {
-  std::pair<std::vector<int64_t>, std::vector<int64_t>> split;
-  auto& [still, moving] = split;
-  const auto is_still = [&](int64_t path) {
-    if (job && path % kLargestBlock == 0) job->throw_if_cancelled();
-    return replayer.is_static(path);
-  };
-  int64_t num_still = 0;
-  for (int64_t path = 0; path < num_paths; ++path) num_still += is_still(path) ? 1 : 0;
-  still.reserve(static_cast<size_t>(num_still));
-  moving.reserve(static_cast<size_t>(num_paths - num_still));
-  for (int64_t path = 0; path < num_paths; ++path) (is_still(path) ? still : moving).push_back(path);
-  return split;
-}
+constexpr int64_t kPathsOfTask = 1 << 15;  // whose levels are found
+
+// Indices of the paths by level, in their order; at level 0 those on which nothing moves.
+class PathsByLevel {
+ public:
+  PathsByLevel(const Replayer& replayer, int64_t num_paths, Job* job)
+      : num_levels_(static_cast<size_t>(replayer.num_levels()) + 2), level_(static_cast<size_t>(num_paths)) {
+    const int64_t num_tasks = (num_paths + kPathsOfTask - 1) / kPathsOfTask;
+    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(num_levels_));
+    parallel_for(num_tasks, [&](int64_t task) {
+      if (job) job->throw_if_cancelled();
+      find_levels(replayer, task);
+    });
+    std::vector<std::vector<int64_t>> lists = lists_of_counts();
+    parallel_for(num_tasks, [&](int64_t task) { fill(task, lists); });
+    lists_ = std::move(lists);
+  }
+
+  std::vector<std::vector<int64_t>> take() { return std::move(lists_); }
+
+ private:
+  std::pair<int64_t, int64_t> range_of(int64_t task) const {
+    return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(level_.size()))};
+  }
+
+  void find_levels(const Replayer& replayer, int64_t task) {
+    const auto [begin, end] = range_of(task);
+    for (int64_t path = begin; path < end; ++path) {
+      const int level = replayer.is_static(path) ? 0 : replayer.first_level(path);
+      level_[static_cast<size_t>(path)] = static_cast<uint8_t>(level);
+      ++place_[static_cast<size_t>(task)][static_cast<size_t>(level)];
+    }
+  }
+
+  // Makes counts of the tasks the places where each begins to write.
+  std::vector<std::vector<int64_t>> lists_of_counts() {
+    std::vector<size_t> sizes(num_levels_);
+    for (std::vector<size_t>& places : place_) {
+      for (size_t level = 0; level < num_levels_; ++level) sizes[level] += std::exchange(places[level], sizes[level]);
+    }
+    std::vector<std::vector<int64_t>> lists(num_levels_);
+    for (size_t level = 0; level < num_levels_; ++level) lists[level].resize(sizes[level]);
+    return lists;
+  }
+
+  void fill(int64_t task, std::vector<std::vector<int64_t>>& lists) {
+    const auto [begin, end] = range_of(task);
+    std::vector<size_t>& places = place_[static_cast<size_t>(task)];
+    for (int64_t path = begin; path < end; ++path) {
+      const size_t level = level_[static_cast<size_t>(path)];
+      lists[level][places[level]++] = path;
+    }
+  }
+
+  size_t num_levels_;
+  std::vector<uint8_t> level_;               // by path
+  std::vector<std::vector<size_t>> place_;   // [task][level]
+  std::vector<std::vector<int64_t>> lists_;
+};
 
 }  // namespace
 
 void ReplayStream::run(const Sink& sink) const {
-  const auto [still, moving] = split_by_motion(replayer_, num_paths_, job_);
-  add_still(still, sink);
-  add_moving(moving, sink);
+  std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_, num_paths_, job_).take();
+  add_still(by_level.front(), sink);
+  by_level.front() = {};
+  add_moving(std::move(by_level), sink);
 }
 
 void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink) const {
@@ -51,15 +96,11 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink
 }
 
 // Each path at the order that its meshes need; where that was not enough, at the next.
-void ReplayStream::add_moving(const std::vector<int64_t>& paths, const Sink& sink) const {
-  const int num_levels = replayer_.num_levels();
-  std::vector<std::vector<int64_t>> by_level(static_cast<size_t>(num_levels) + 2);
-  for (const int64_t path : paths) by_level[static_cast<size_t>(replayer_.first_level(path))].push_back(path);
-  for (int level = 1; level <= num_levels; ++level) {
-    const auto at = static_cast<size_t>(level);
+void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const {
+  for (int level = 1; level <= replayer_.num_levels(); ++level) {
     const Extent extent{0, num_channels(), replayer_.num_nodes(level)};
     const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
-    for (const FailedPath& failed : run_blocks(by_level[at], extent, replay, sink)) {
+    for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, sink)) {
       by_level[static_cast<size_t>(failed.next_level)].push_back(failed.path);
     }
   }

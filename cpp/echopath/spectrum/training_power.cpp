@@ -8,12 +8,9 @@
 namespace echopath {
 namespace {
 
-// sum[i] = values[i] + ... + values[i + width - 1] for i in [0, count - width], by doubling: sums of 1, 2, 4, ... numbers.
-ECHOPATH_SIMD void moving_sums(const double* values, int64_t count, int64_t width, double* sum) {
-  if (width == 0 || width > count) return;
-  const int64_t num_sums = count - width + 1;
-  std::vector<double> level(values, values + count);
-  std::fill(sum, sum + num_sums, 0.0);
+// sum[i] = values[i] + ... + values[i + width - 1] for i in [0, num_sums), by doubling: sums of 1, 2, 4, ... numbers in `level`
+// [count], which holds the values at first.
+ECHOPATH_INLINE void add_levels(double* level, int64_t count, int64_t width, int64_t num_sums, double* sum) {
   int64_t done = 0;
   for (int64_t size = 1; size <= width; size *= 2) {
     if (width & size) {
@@ -25,14 +22,22 @@ ECHOPATH_SIMD void moving_sums(const double* values, int64_t count, int64_t widt
   }
 }
 
-ECHOPATH_SIMD void add(const double* values, int64_t count, double* sum) {
+void moving_sums(const double* values, int64_t count, int64_t width, double* sum) {
+  if (width == 0 || width > count) return;
+  const int64_t num_sums = count - width + 1;
+  std::vector<double> level(values, values + count);
+  std::fill(sum, sum + num_sums, 0.0);
+  run_simd<add_levels>(level.data(), count, width, num_sums, sum);
+}
+
+ECHOPATH_INLINE void add(const double* values, int64_t count, double* sum) {
   for (int64_t i = 0; i < count; ++i) sum[i] += values[i];
 }
 
-ECHOPATH_SIMD int64_t count_below(const double* values, int64_t count, double limit) {
-  int64_t below = 0;
-  for (int64_t i = 0; i < count; ++i) below += values[i] < limit;
-  return below;
+ECHOPATH_INLINE void count_below(const double* values, int64_t count, double limit, int64_t* below) {
+  int64_t found = 0;
+  for (int64_t i = 0; i < count; ++i) found += values[i] < limit;
+  *below = found;
 }
 
 }  // namespace
@@ -71,7 +76,7 @@ void TrainingPower::sums(int64_t velocity, double* sum) const {
   std::fill(sum, sum + num_ranges_, 0.0);
   for (int64_t shift = -window_.reach_velocity(); shift <= window_.reach_velocity(); ++shift) {
     const std::vector<double>& spans = std::abs(shift) > window_.guard_velocity ? outer_ : inner_;
-    add(spans.data() + (velocity + shift + num_velocities_) % num_velocities_ * num_ranges_, num_ranges_, sum);
+    run_simd<add>(spans.data() + (velocity + shift + num_velocities_) % num_velocities_ * num_ranges_, num_ranges_, sum);
   }
 }
 
@@ -94,7 +99,9 @@ bool TrainingPower::visit_spans(int64_t velocity, int64_t range, Visit visit) co
 bool TrainingPower::is_order_below(int64_t velocity, int64_t range, int64_t order, double limit) const {
   int64_t may_be_above = window_.num_training() - order;  // and no more
   return visit_spans(velocity, range, [&](const double* values, int64_t count) {
-    may_be_above -= count - count_below(values, count, limit);
+    int64_t below = 0;
+    run_simd<count_below>(values, count, limit, &below);
+    may_be_above -= count - below;
     return may_be_above >= 0;
   });
 }

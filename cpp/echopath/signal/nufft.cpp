@@ -13,9 +13,13 @@ namespace {
 
 constexpr int kOversampling = 2;
 
+// The error of a tone grows steeply toward the ends of the samples; few of them cannot average it, and get a wider grid.
+constexpr int kFewSamples = 100, kMargin = 4;
+
 // The grid must hold twice the samples, and the kernel without meeting itself.
 int grid_size_for(int num_samples, int width) {
-  return fast_fft_size(std::max(kOversampling * num_samples, 2 * width));
+  const int margin = num_samples < kFewSamples ? kMargin : 0;
+  return fast_fft_size(std::max(kOversampling * num_samples + margin, 2 * width));
 }
 
 int64_t row_length_for(int grid_size, int width) {

@@ -91,6 +91,8 @@ def verdicts(results: dict) -> list[dict]:
     fastest = max(results["synthesis"]["rates"], key=lambda row: (row["threads"], not row["scattered"]))
     rows.append(_row(f"path-chirps/s at 1e-6, {fastest['threads']} threads", speed_synthesis.RATE_TARGET,
                      fastest["per_second_of_free_cores"]))
+    over = max(row["error"] / row["tolerance"] for row in results["synthesis"]["slow"])
+    rows.append(_row("error of all methods over the tolerance, 1 to 1e6 echoes", 1.0, over, most=True))
     excess = speed_frames.linearity(results["frames"]["paths"])
     if excess is not None:
         rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
@@ -134,7 +136,10 @@ def _synthesis_lines(found: dict) -> list[str]:
                   if "gain" in row else "")
         lines.append(f"{row['tolerance']:10.0e}{row['ns']:14.2f}{row['error']:12.1e}{row['scattered_ns']:12.2f}{theirs}")
     lines += [f"{row['method']:>10}{row['ns']:14.2f}{row['error']:12.1e}" for row in found["sums"]]
-    lines.append("")
+    lines += ["", f"beside a slow sum, one chirp of {speed_synthesis.SLOW_SAMPLES} samples: rms error over the samples",
+              "    echoes      method  tolerance   of the sum of |a|   of the signal's rms",
+              *(f"{row['echoes']:>10,}{row['method']:>12}{row['tolerance']:11.0e}{row['error']:20.1e}{row['error_of_signal']:22.1e}"
+                for row in found["slow"]), ""]
     for row in found["rates"]:
         kind = "a speed of its own each" if row["scattered"] else "bodies"
         lines.append(f"{row['threads']} threads, {kind:<24}{1e-6 * row['per_second']:7.0f} M path-chirps/s by the clock, "
@@ -143,7 +148,7 @@ def _synthesis_lines(found: dict) -> list[str]:
 
 
 def _frame_lines(frames: dict) -> list[str]:
-    lines = ["", "street paths repeated, whole signal       wall s  processor s   peak MiB"]
+    lines = ["", "street, whole signal, medians             wall s  processor s   peak MiB"]
     for kind, rows in frames.items():
         for row in rows:
             each = f"   {1e9 * row['processor_s'] / row['paths']:8.1f} ns per path" if kind == "paths" else ""

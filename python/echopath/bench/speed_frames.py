@@ -1,7 +1,6 @@
 """Whole frames: time and memory against paths, chirps, channels and parts, and the street scene beside its floor."""
 from __future__ import annotations
 
-import time
 from importlib.resources import as_file
 
 import numpy as np
@@ -12,12 +11,14 @@ from ..materials import data_folder
 from ..scene_file import load_scene
 from ..stages import StageClock
 from .speed_tracer import bare_share
-from .timing import wall_time
+from .timing import processor_time, wall_time
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
-SEED_RAYS, QUICK_SEED_RAYS = 5_500, 1_000       # whose paths are repeated to any number
+TRIAL_RAYS = 2_000                              # that tell how many paths come of a ray
+MARGIN = 1.02                                   # of rays, since records differ in paths per ray by a per cent
 FRAME_CHIRPS = 16                               # of the frames that the number of paths is varied of
+MEASURED_PATHS = 10_000_000                     # in all repeats of a frame; 5 to 31 repeats
 SOME_PATHS = 200_000
 CHIRPS = (16, 64, 256)
 ARRAYS = ((1, 1), (1, 4), (3, 4))
@@ -34,17 +35,10 @@ def street():
         return load_scene(path)
 
 
-def repeated(paths, count: int):
-    """`count` paths of the mixture and in the order of a record: all of it again and again, and a random share at last."""
-    times, rest = divmod(count, paths.num_paths)
-    some = np.sort(np.random.default_rng(1).permutation(paths.num_paths)[:rest])
-    chosen = np.concatenate([np.tile(np.arange(paths.num_paths), times), some])
-    turn = np.concatenate([np.repeat(np.arange(times), paths.num_paths), np.full(rest, times)])
-    columns = {name: np.asarray(getattr(paths, name))[chosen]
-               for name in ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
-    return ep.Paths.from_arrays(hits=np.tile(paths.hits, times + (rest > 0)),
-                                offsets=paths.offsets[chosen] + turn * len(paths.hits), scene=paths.scene, radar=paths.radar,
-                                frame=paths.frame, **columns)
+def record_of(scene, num_paths: int):
+    """A record of the street of about `num_paths` paths, and hardly fewer."""
+    paths_of_ray = ep.trace(scene.scene, scene.radar, num_rays=TRIAL_RAYS).num_paths / TRIAL_RAYS
+    return ep.trace(scene.scene, scene.radar, num_rays=int(np.ceil(MARGIN * num_paths / paths_of_ray)))
 
 
 def with_frame(radar, num_chirps: int, array=(1, 1)):
@@ -57,39 +51,41 @@ def with_frame(radar, num_chirps: int, array=(1, 1)):
     return ep.Radar(new, transmitters=transmitters, receivers=[ep.Antenna((0.0, half * i, 1.0)) for i in range(array[1])])
 
 
-def _measured(work) -> dict:
-    """Seconds of the clock and of the processor, and the peak of memory in bytes."""
-    clock, began = StageClock(), time.process_time()
-    with clock("work"):
-        work()
-    return {"wall_s": clock.stages[0].seconds, "processor_s": time.process_time() - began,
-            "peak_bytes": clock.stages[0].peak_memory}
+def _measured(work, num_paths: int) -> dict:
+    """Seconds of the clock and of the processor, medians of the repeats after a first that is not counted, and the peak of
+    memory in bytes."""
+    clock, processor_s = StageClock(), []
+    work()
+    for _ in range(int(np.clip(MEASURED_PATHS // num_paths, 5, 31))):
+        with clock("work"):
+            processor_s.append(processor_time(work)[0])
+    return {"wall_s": float(np.median([stage.seconds for stage in clock.stages])), "processor_s": float(np.median(processor_s)),
+            "peak_bytes": max(stage.peak_memory for stage in clock.stages), "repeats": len(processor_s)}
 
 
 def measure_frames(*, quick: bool = False, tell=None) -> dict:
     """Rows of measured frames by what was varied."""
     scene = street()
-    seed = ep.trace(scene.scene, scene.radar, num_rays=QUICK_SEED_RAYS if quick else SEED_RAYS)
     found = {"paths": [], "chirps": [], "channels": [], "parts": []}
 
-    def add(kind: str, value, work) -> None:
-        found[kind].append({kind: value, **_measured(work)})
+    def add(kind: str, value, num_paths: int, work) -> None:
+        found[kind].append({kind: value, **_measured(work, num_paths)})
         if tell:
             tell()
 
     few = with_frame(scene.radar, FRAME_CHIRPS)
-    ep.synthesize(repeated(seed, 1000), few)
     for count in QUICK_PATHS if quick else PATHS:
-        paths = repeated(seed, count)
-        add("paths", count, lambda paths=paths: ep.synthesize(paths, few))
-    some = repeated(seed, 2_000 if quick else SOME_PATHS)
+        paths = record_of(scene, count)
+        add("paths", paths.num_paths, paths.num_paths, lambda paths=paths: ep.synthesize(paths, few))
+    some = record_of(scene, 2_000 if quick else SOME_PATHS)
     for count in CHIRPS:
-        add("chirps", count, lambda count=count: ep.synthesize(some, with_frame(scene.radar, count)))
+        add("chirps", count, some.num_paths, lambda count=count: ep.synthesize(some, with_frame(scene.radar, count)))
     for array in ARRAYS:
-        add("channels", array[0] * array[1], lambda array=array: ep.synthesize(some, with_frame(scene.radar, 64, array)))
+        add("channels", array[0] * array[1], some.num_paths,
+            lambda array=array: ep.synthesize(some, with_frame(scene.radar, 64, array)))
     for count in PARTS:
         parts = _parts(scene.scene, count)
-        add("parts", count, lambda parts=parts: ep.decompose(some, with_frame(scene.radar, 64), parts))
+        add("parts", count, some.num_paths, lambda parts=parts: ep.decompose(some, with_frame(scene.radar, 64), parts))
     return found
 
 

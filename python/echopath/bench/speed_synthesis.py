@@ -15,6 +15,9 @@ TARGETS = {1e-4: 4.0, 1e-6: 5.0, 1e-10: 4.0}    # times FINUFFT
 RATE_TOLERANCE, RATE_TARGET = 1e-6, 400e6       # path-chirps/s
 REPEATS = 5
 CHIRPS_OF_FINUFFT = 16                          # per repeat
+SLOW_COUNTS, QUICK_SLOW_COUNTS = (1, 100, 10_000, 1_000_000), (1, 100)  # echoes of the slow sum
+SLOW_SAMPLES = 64                               # of its one chirp
+SLOW_METHODS = (("nufft", 1e-4), ("nufft", 1e-7), ("nufft", 1e-10), ("recurrence", 1e-10), ("direct", 1e-10))
 SUM_PATHS = 2_048                               # of the sums without a grid, whose time per path is always the same
 ERROR_CHIRPS = 2                                # of which the direct sum is made
 BODIES = 40                                     # that move each as a whole, 2 m deep
@@ -22,10 +25,10 @@ FASTEST = 30.0                                  # m/s
 RANGES = (2.0, 72.0)                            # m
 
 
-def waveform(num_chirps: int):
-    """77 GHz, 1 GHz, 512 samples."""
-    return ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=num_chirps,
-                            chirp_interval=60e-6)
+def waveform(num_chirps: int, num_samples: int = 512):
+    """77 GHz, 1 GHz in 512 samples."""
+    return ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9 * num_samples / 512, num_samples=num_samples,
+                            sampling_rate=20e6, num_chirps=num_chirps, chirp_interval=60e-6)
 
 
 class Echoes:
@@ -34,18 +37,23 @@ class Echoes:
     scattered: each has a speed of its own, else those of a body share it
     """
 
-    def __init__(self, num_paths: int, num_chirps: int, *, scattered: bool = False, seed: int = 1):
+    def __init__(self, num_paths: int, num_chirps: int, *, scattered: bool = False, num_samples: int = 512, seed: int = 1):
         draw = np.random.default_rng(seed)
-        self.waveform = waveform(num_chirps)
+        self.waveform = waveform(num_chirps, num_samples)
         times = ep._core.trial_node_times(self.waveform, NODES)
         body = draw.integers(0, BODIES, num_paths)
         place = draw.uniform(RANGES[0], RANGES[1] - 2.0, BODIES)[body] + 2.0 * draw.random(num_paths)
         speed = draw.uniform(-FASTEST, FASTEST, num_paths if scattered else BODIES)[slice(None) if scattered else body]
         if scattered:
             place = draw.uniform(*RANGES, num_paths)
-        self.delays = 2.0 * (place + speed * times[:, None]) / ep.speed_of_light
         turn = np.exp(2j * np.pi * draw.random(num_paths))
-        self.amplitudes = draw.random(num_paths) * turn * (1.0 + 0.1 * np.sin(50.0 * times[:, None]))
+        self._place, self._speed, self._amplitude = place, speed, draw.random(num_paths) * turn
+        self.delays, _, self.amplitudes = self.at(times[:, None])
+
+    def at(self, times):
+        """Delays in s, their rates in s/s and amplitudes at times in s that broadcast with [paths]."""
+        return (2.0 * (self._place + self._speed * times) / ep.speed_of_light, 2.0 * self._speed / ep.speed_of_light,
+                self._amplitude * (1.0 + 0.1 * np.sin(50.0 * times)))
 
     @property
     def num_paths(self) -> int:
@@ -71,21 +79,28 @@ def finufft_version() -> str | None:
     return finufft.__version__
 
 
-def tones_at_rest(delays, amplitudes, of_waveform):
-    """Points [P] in [-pi, pi) and strengths [P] of the type-1 transform that gives the samples of echoes at rest.
+def tones(delays, amplitudes, of_waveform, rates=0.0):
+    """Points [P] in [-pi, pi) and strengths [P] of the type-1 transform that gives the samples of echoes in one chirp.
 
     Phases in extended precision.
 
-    delays: [P] s; amplitudes: [P] sqrt(W)
+    delays: [P] s, in the middle of the chirp; amplitudes: [P] sqrt(W); rates: [P] s/s
     """
     tau = delays.astype(np.longdouble)
     slope = np.longdouble(of_waveform.bandwidth) * of_waveform.sampling_rate / of_waveform.num_samples
-    middle = np.longdouble(of_waveform.num_samples // 2) / of_waveform.sampling_rate
-    cycles = of_waveform.start_frequency * tau + slope * tau * (middle - tau / 2)
-    beat = slope * tau / of_waveform.sampling_rate
+    centre = (np.longdouble(of_waveform.num_samples) - 1) / 2 / of_waveform.sampling_rate
+    away = np.longdouble(of_waveform.num_samples // 2) / of_waveform.sampling_rate - centre
+    beat = slope * tau + (of_waveform.start_frequency + slope * (centre - tau)) * rates
+    cycles = of_waveform.start_frequency * tau + slope * tau * (centre - tau / 2) + beat * away
+    beat = beat / of_waveform.sampling_rate
     turn = 2 * np.longdouble(np.pi) * (cycles - np.rint(cycles))
     points = (2.0 * np.pi * (beat - np.rint(beat))).astype(float)
     return points, np.conj(amplitudes) * (np.cos(turn).astype(float) + 1j * np.sin(turn).astype(float))
+
+
+def slow_sum(points, strengths, num_samples: int):
+    """Samples [num_samples] of the type-1 transform, one complex exponential for each point and sample."""
+    return np.array([(strengths * np.exp(1j * points * n)).sum() for n in range(-(num_samples // 2), (num_samples + 1) // 2)])
 
 
 class Finufft:
@@ -136,6 +151,7 @@ def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
                  "sums": [_sum_row(method, chirps) for method in ("recurrence", "direct")]}
     finally:
         ep.set_num_threads(threads)
+    found["slow"] = [row for count in (QUICK_SLOW_COUNTS if quick else SLOW_COUNTS) for row in _against_slow_sum(count)]
     found["rates"] = [_rate(paths, chirps, count, scattered)
                       for scattered in (False, True) for count in sorted({1, threads})]
     return found
@@ -143,7 +159,7 @@ def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
 
 def _rows(paths: int, chirps: int, quick: bool, tell) -> list[dict]:
     bodies, scattered = Echoes(paths, chirps), Echoes(paths, chirps, scattered=True)
-    points, strengths = tones_at_rest(bodies.delays[0], bodies.amplitudes[0], bodies.waveform)
+    points, strengths = tones(bodies.delays[0], bodies.amplitudes[0], bodies.waveform)
     frame = bodies.in_few_chirps(ERROR_CHIRPS)
     moving_truth = frame.trial(method="direct")[2]
     truth = ep._core.synthesis_trial(waveform(1), bodies.delays[:1], bodies.amplitudes[:1], method="direct")[2][0]
@@ -175,12 +191,24 @@ def _sum_row(method: str, chirps: int) -> dict:
     some = Echoes(SUM_PATHS, 4)
     seconds = min(some.trial(method=method)[1] for _ in range(3))
     count = 64
-    points, strengths = tones_at_rest(some.delays[0, :count], some.amplitudes[0, :count], some.waveform)
-    n = np.arange(512) - 256
-    turn = points.astype(np.longdouble)[:, None] * n
-    truth = (strengths[:, None] * (np.cos(turn) + 1j * np.sin(turn))).sum(0).astype(complex)
+    truth = slow_sum(*tones(some.delays[0, :count], some.amplitudes[0, :count], some.waveform), 512)
     made = ep._core.synthesis_trial(waveform(1), some.delays[:1, :count], some.amplitudes[:1, :count], method=method)[2][0]
     return {"method": method, "ns": 1e9 * seconds / (SUM_PATHS * 4), "error": relative_error(made, truth)}
+
+
+def _against_slow_sum(count: int) -> list[dict]:
+    """Errors of all methods, for echoes each at a speed of its own: rms over the samples, relative to the sum of |amplitude|
+    (what the tolerance bounds), and to the rms of the signal. `tolerance` of the sums without a grid is rounding."""
+    echoes = Echoes(count, 1, scattered=True, num_samples=SLOW_SAMPLES)
+    delays, rates, amplitudes = echoes.at((SLOW_SAMPLES - 1) / 2.0 / echoes.waveform.sampling_rate)
+    truth = slow_sum(*tones(delays, amplitudes, echoes.waveform, rates), SLOW_SAMPLES)
+    rows = []
+    for method, tolerance in SLOW_METHODS:
+        made = echoes.trial(method=method, tolerance=tolerance)[2][0]
+        rms = float(np.sqrt(np.mean(np.abs(made - truth) ** 2)))
+        rows.append({"echoes": count, "method": method, "tolerance": tolerance, "error": rms / float(np.abs(amplitudes).sum()),
+                     "error_of_signal": relative_error(made, truth)})
+    return rows
 
 
 def _rate(paths: int, chirps: int, threads: int, scattered: bool) -> dict:

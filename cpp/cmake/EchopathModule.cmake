@@ -30,8 +30,9 @@ function(echopath_finite_numbers name)
   target_compile_options(echopath_${name} PRIVATE -fcx-limited-range -fno-math-errno)
 endfunction()
 
-# echopath_test(NAME [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one GoogleTest program, test_NAME.
+# echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
+# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
 function(echopath_test name)
   cmake_parse_arguments(ARG "EACH_INSTRUCTION_SET" "" "LIBS;HARD" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)

@@ -162,10 +162,19 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
   return run_job("beamform", progress, [&](Job& job) { return beamform(map, radar, chosen, angles, beams, &job); });
 }
 
+// What all azimuths then show is the same.
+void warn_of_blindness(const Radar& radar) {
+  if (default_angles(virtual_array(radar)).azimuth.size() > 1) return;
+  constexpr const char* kText = "range_azimuth: the antennas of this radar tell no azimuths apart (they stand in one place or one "
+                                "above the other): every azimuth of the map shows the same";
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, kText, 1) != 0) throw py::error_already_set();
+}
+
 RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                                const BeamformOptions& beams, const py::object& progress, std::optional<double> velocity,
                                std::string combine) {
   require(combine == "sum" || combine == "peak", "combine", "must be 'sum' or 'peak'", "'" + combine + "'");
+  warn_of_blindness(radar);
   const VelocityChoice choice{velocity, combine == "sum" ? Combine::kSum : Combine::kPeak};
   return run_job("range_azimuth", progress,
                  [&](Job& job) { return range_azimuth(map, radar, angles, choice, beams, &job); });

@@ -56,11 +56,14 @@ KeyedGrouping all_of(const std::vector<KeyedGrouping>& groupings) {
   return {by_all(std::move(rules)), key_of};
 }
 
-SurfaceMap surfaces_of(const Scene& scene, const std::optional<Objects>& objects, double time, const Vec3& antenna) {
-  if (!objects) return map_surfaces(scene, time, antenna);
+SurfaceMap surfaces_of(const Scene& scene, const Objects& objects) {
   std::vector<NamedGlobs> named;
-  for (const auto& [name, globs] : *objects) named.push_back({name, globs});
+  for (const auto& [name, globs] : objects) named.push_back({name, globs});
   return map_surfaces(scene, named);
+}
+
+SurfaceMap surfaces_of(const Scene& scene, const std::optional<Objects>& objects, double time, const Vec3& antenna) {
+  return objects ? surfaces_of(scene, *objects) : map_surfaces(scene, time, antenna);
 }
 
 py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects) {
@@ -104,6 +107,8 @@ py::list sight_list(const std::vector<ObjectVisibility>& seen) {
 }
 
 void bind_visibility(py::module_& m) {
+  m.def("check_objects", [](const Scene& scene, const Objects& objects) { surfaces_of(scene, objects); }, py::arg("scene"),
+        py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
   m.def("visibility_in_trace", [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
                                   const py::object& progress) {
     return sight_list(visibility_in_trace(paths, radar, objects, progress));

@@ -104,6 +104,13 @@ def named_globs(objects):
     return list(dict([(name, _globs_of(name, globs)) for name, globs in pairs]).items())
 
 
+def check_objects(scene, objects) -> None:
+    """Raises what `families` would for `objects` of a scene: to know before a long trace."""
+    named = named_globs(objects)
+    if named is not None:
+        _core.check_objects(scene, named)
+
+
 def _globs_of(name, globs) -> list:
     found = [globs] if isinstance(globs, str) else list(globs) if isinstance(globs, Iterable) else [globs]
     if not isinstance(name, str) or not all(isinstance(glob, str) for glob in found):

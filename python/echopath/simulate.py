@@ -9,6 +9,7 @@ import echopath as ep
 from .azimuth_map import checked_settings, sees_azimuth
 from .detections.checks import check_keywords
 from .effects import of_paths
+from .families import check_objects
 from .guard import check_signal, warn_of
 from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
@@ -130,7 +131,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
-    request = _label_request(radar, labels, _num_batches(batches, target_error_db), window, zero_pad, angle_settings)
+    request = _label_request(scene, radar, labels, _num_batches(batches, target_error_db), window, zero_pad, angle_settings)
     detect_keywords = _detect_keywords(scene, radar, detections, request, {"window": window, "zero_pad": zero_pad})
     clock = StageClock()
     with clock("trace"):
@@ -200,12 +201,13 @@ def _cubes(paths, radar, partitions: dict, families, settings: dict):
     return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
 
 
-def _label_request(radar, labels, num_batches: int, window, zero_pad, angles: dict):
-    """How to label, None: not at all."""
+def _label_request(scene, radar, labels, num_batches: int, window, zero_pad, angles: dict):
+    """How to label, checked; None: not at all."""
     if labels is None or labels is False:
         return None
     keywords = {} if labels is True else dict(labels)
     refuse_unknown("labels", keywords, MAP_KEYWORDS)
+    check_objects(scene, keywords.get("objects"))
     if keywords.get("plane") == "range_azimuth":
         keywords["angles"] = angles
     return make_request(radar, num_batches, window=window, zero_pad=zero_pad, **keywords)

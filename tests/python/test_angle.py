@@ -276,6 +276,13 @@ def test_frames_of_one_channel_have_no_map_of_azimuth():
     assert frame.range_azimuth is None
 
 
+def test_a_map_of_azimuth_by_one_antenna_is_warned_of():
+    radar = mimo([(0, 0)], [(0, 0)])
+    spectrum = ep.range_doppler(np.zeros((1, 1, radar.waveform.num_chirps, radar.waveform.num_samples)), radar)
+    with pytest.warns(RuntimeWarning, match="range_azimuth: the antennas of this radar tell no azimuths apart"):
+        ep.range_azimuth(spectrum, radar)
+
+
 def test_virtual_arrays_tell_what_they_are():
     array = ep.virtual_array(mimo([(0, 0), (3, 0)], LINE, height=1.0))
     assert array.positions.shape == (2, 4, 3) and array.elements.shape == (7, 3)

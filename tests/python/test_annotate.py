@@ -343,6 +343,14 @@ def test_unknown_keywords_name_the_nearest(plates_and_wall):
         ep.simulate(ep.Scene(), make_radar(), labels={"noise_margin": 3})
 
 
+@pytest.mark.parametrize("objects, message", [({"x": "bicycle"}, "objects: .*'bicycle'"),
+                                              ({"x": "a", "y": "a"}, "objects: must each have a mesh")])
+def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkeypatch, objects, message):
+    monkeypatch.setattr(ep, "trace", None)
+    with pytest.raises(ValueError, match=message):
+        ep.simulate(plates_and_wall[0].scene, make_radar(), labels={"objects": objects})
+
+
 def test_retraced_frames_label_what_comes_out_of_hiding():
     """A plate behind a screen that leaves: hidden in the middle of the frame, when it is traced, and bare at the end of it."""
     scene, radar = ep.Scene(), make_radar()

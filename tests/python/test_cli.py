@@ -150,6 +150,17 @@ def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_mistyped_option_gets_the_usage_of_its_command_and_the_nearest_one():
+    done = call("run", "scene.toml", "--out", "x", "--ray", "100")  # no shortening of --rays
+    assert done.returncode == 2 and done.stderr.startswith("usage: echopath run")
+    assert "unrecognized arguments: --ray 100 (the nearest option is --rays)" in " ".join(done.stderr.split())
+
+
+def test_a_scene_file_in_the_place_of_a_frame_is_told(scene_path, tmp_path):
+    done = call("labels", scene_path, "--out", tmp_path / "out")
+    assert done.returncode == 2 and "a scene file, where a frame file (.h5) is asked for" in done.stderr
+
+
 @pytest.mark.hard
 @pytest.mark.parametrize("delay", [0.0, 0.7])
 def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path, delay):

@@ -176,6 +176,7 @@ FAULTS = [
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}", "parts: must be all expressions (one partition) or all tables"),
     (RADAR + "[parts]\na = 'T & R'", "parts.a: path expression: expected a hit (. 'mesh' S D [...]) or '(', got &\n  T & R\n    ^"),
     (RADAR + "[parts.b]\na = 'T . R & power > x'", "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
+    (RADAR + "[parts.b]\na = 'T . R & power > abc'", "parts.b.a: path expression: expected a power in W, such as 1e-15, got 'abc'\n"),
     (RADAR + mesh_object("material = 'metal'") + "\n[parts]\na = \"T 'wal' R\"",
      "parts.a: path expression: expected a glob that takes a mesh, got 'wal'; nearest names: "),
     (RADAR + "[parts]\nother = 'T . R'", "parts.other: must not use the name of the rest, got other"),

@@ -24,9 +24,12 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
-  std::vector<std::pair<size_t, std::string>> ranked;
+  using Rank = std::pair<bool, size_t>;  // not begun by the word, edits
+  std::vector<std::pair<Rank, std::string>> ranked;
   ranked.reserve(candidates.size());
-  for (const std::string& name : candidates) ranked.emplace_back(edit_distance(word, name), name);
+  for (const std::string& name : candidates) {
+    ranked.emplace_back(Rank(word.empty() || !name.starts_with(word), edit_distance(word, name)), name);
+  }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   std::vector<std::string> nearest;
   for (size_t i = 0; i < std::min(ranked.size(), static_cast<size_t>(count)); ++i) nearest.push_back(ranked[i].second);

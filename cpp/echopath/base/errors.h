@@ -29,7 +29,7 @@ void require(bool holds, std::string_view argument, std::string_view rule, const
   throw std::invalid_argument(text.str());
 }
 
-// The candidates most like `word` (edit distance), best first, at most `count`; for "did you mean" texts.
+// The candidates most like `word`, at most `count`: those it begins, then by edit distance; for "did you mean" texts.
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count = 3);
 
 }  // namespace echopath

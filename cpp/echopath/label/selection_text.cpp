@@ -71,7 +71,7 @@ class Parser {
     skip_space();
     double watts = 0.0;
     const auto [end, fault] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), watts);
-    if (fault != std::errc() || !std::isfinite(watts)) fail("a power in W, such as 1e-15");
+    if (fault != std::errc() || !std::isfinite(watts)) fail_at_word("a power in W, such as 1e-15");
     at_ = static_cast<size_t>(end - text_.data());
     return watts;
   }
@@ -89,6 +89,13 @@ class Parser {
     if (text_.substr(at_, symbol.size()) != symbol) return false;
     at_ += symbol.size();
     return true;
+  }
+  // Tells of all of the word that is there.
+  [[noreturn]] void fail_at_word(const std::string& expected) {
+    skip_space();
+    const std::string_view rest = text_.substr(at_), word = rest.substr(0, rest.find_first_of(" \t\r\n()&|"));
+    if (word.size() <= 1) fail(expected);
+    throw_expression_error(text_, at_, "expected " + expected + ", got '" + std::string(word) + "'");
   }
   [[noreturn]] void fail(const std::string& expected) {
     skip_space();

@@ -12,6 +12,8 @@ namespace {
 void check_name(const std::string& name) {
   require(!name.empty(), "name", "must not be empty", "''");
   require(name.find_first_of("/*?'\"") == std::string::npos, "name", "must be free of / * ? and quotes", name);
+  // Signs that join names where they are keys (label/families.h, label/grouping.h).
+  require(name.find_first_of("\x1e\x1f") == std::string::npos, "name", "must be free of the signs 0x1e and 0x1f", name);
   const std::string blanks = " \t\r\n\v\f";
   const bool bare = blanks.find(name.front()) == std::string::npos && blanks.find(name.back()) == std::string::npos;
   require(bare, "name", "must not begin or end with white space", "'" + name + "'");

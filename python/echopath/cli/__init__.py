@@ -32,10 +32,30 @@ def main(arguments=None) -> int:
     return 0
 
 
+class _Command(argparse.ArgumentParser):
+    """A command that says itself, with its own usage, which of its options are wrong; none may be shortened."""
+
+    def __init__(self, **settings):
+        super().__init__(allow_abbrev=False, **settings)
+
+    def parse_known_args(self, args=None, namespace=None):
+        options, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._nearest_option(unknown)}")
+        return options, unknown
+
+    def _nearest_option(self, unknown) -> str:
+        from .. import _core
+
+        wrong = next((word for word in unknown if word.startswith("--")), None)
+        known = [option for option in self._option_string_actions if option.startswith("--")]
+        return f" (the nearest option is {_core.nearest_names(wrong.partition('=')[0], known, 1)[0]})" if wrong else ""
+
+
 def _parser() -> argparse.ArgumentParser:
     import echopath as ep
 
-    parser = argparse.ArgumentParser(prog="echopath", description="FMCW radar simulation by ray tracing.")
+    parser = _Command(prog="echopath", description="FMCW radar simulation by ray tracing.")
     parser.add_argument("--version", action="version", version=f"echopath {ep.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 

@@ -64,7 +64,7 @@ def stages(all_stages) -> list[str]:
 
 def powers(whole, parts: dict) -> list[str]:
     """Mean received power of the whole and of each part of each partition, without noise."""
-    lines = ["received power, without noise", line("whole", _power_text(power_dbm(whole)))]
+    lines = ["received power, without noise, of one realisation of the random phases", line("whole", _power_text(power_dbm(whole)))]
     for partition, cubes in parts.items():
         lines.append(f"received power, {partition}")
         lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]

@@ -126,14 +126,16 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
-        write("range_azimuth", plots.plot_range_azimuth(maps, title=title + ", from above"))
+        write("range_azimuth", plots.plot_range_azimuth(maps))
     return written
 
 
 def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:
-    """Range-azimuth maps of the whole and of the parts of a partition (None: no parts) that a picture shows."""
+    """{title: range-azimuth map} of the whole and of the parts of a partition (None: no parts) that a picture shows."""
     spectra = shown_parts(frame.part_spectra[partition], vmin) if partition is not None else {}
-    return {"whole": frame.range_azimuth} | {name: frame.range_azimuth_of(one) for name, one in spectra.items()}
+    noise = ", with its noise" if frame.noise_seed is not None else ""
+    parts = {f"{plots.part_title(name)}, without noise": frame.range_azimuth_of(one) for name, one in spectra.items()}
+    return {"everything" + noise: frame.range_azimuth} | parts
 
 
 def shown_parts(spectra: dict, vmin: float) -> dict:

@@ -6,7 +6,7 @@ import numpy as np
 import echopath as ep
 
 from .. import _core
-from ..families import named_globs
+from ..families import check_objects
 from ..keywords import refuse_unknown
 from ..labels.planes import with_receivers
 
@@ -17,9 +17,7 @@ KEYWORDS = (*CFAR_KEYWORDS, "objects", "max_peaks")
 def check_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> None:
     """Raises what `detect_frame` would for keywords, from an empty map of one receiver: to know before a long trace."""
     refuse_unknown("detections", keywords, KEYWORDS)
-    for _, globs in named_globs(keywords.get("objects")) or []:
-        for glob in globs:
-            ep.hits(glob).check(scene)
+    check_objects(scene, keywords.get("objects"))
     one, waveform = with_receivers(radar, slice(0, 1)), radar.waveform
     nothing = np.zeros((len(one.transmitters), 1, waveform.num_chirps, waveform.num_samples))
     _core.check_cfar(ep.range_doppler(nothing, one, **spectrum_settings), one,

@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 import os
 from contextlib import contextmanager
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -157,6 +158,9 @@ def reading(path):
     except FileNotFoundError:
         raise ep.FileError(f"{path}: no such file") from None
     except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
+        if Path(path).suffix.lower() == ".toml":
+            raise ep.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out DIR` "
+                               "makes DIR/frame.h5 of it") from None
         raise ep.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
 
 

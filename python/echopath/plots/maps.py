@@ -101,12 +101,16 @@ def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
     """The parts in as many panels, the panels left over removed; returns the last image."""
     for axes, (name, spectrum) in zip(panels, spectra.items()):
         image = _draw(axes, spectrum, vmin, vmax)
-        axes.set_title((name if name != "other" else "other: all the rest") +
-                       (f"\n{with_error(powers[name])}".replace("+-", "±") if powers else ""))
+        axes.set_title(part_title(name) + (f"\n{with_error(powers[name])}".replace("+-", "±") if powers else ""))
     for axes in panels[len(spectra):]:
         axes.remove()
     _crop(panels[:len(spectra)], signal_extent(list(spectra.values()), vmin, is_moving_meant=True))
     return image
+
+
+def part_title(name: str) -> str:
+    """What stands above the map of a part."""
+    return name if name != "other" else "other: all the rest"
 
 
 def _limits(spectrum, vmin, vmax):

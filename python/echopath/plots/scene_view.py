@@ -14,11 +14,15 @@ MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
 MARGIN = 0.6                            # m around the rays
 RADAR_LABEL = "radar"
+MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
+NAME_LOOK = {"fontsize": 7, "color": "0.25"}
+TICK_SPACE = 0.06                       # of the longest side: room that a number on an axis in perspective needs
 
 
 @dataclasses.dataclass
 class _Drawing:
-    """What the views show: polygons [N, 3] with colours [4], edges [2, 3], rays [S, 2, 3] by number of bounces."""
+    """What the views show: polygons [N, 3] with colours [4], edges [2, 3], rays [S, 2, 3] by number of bounces; names:
+    {object: (lowest, highest) corner [3] of its box}."""
 
     bodies: list
     body_colours: list
@@ -28,6 +32,7 @@ class _Drawing:
     radar: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    names: dict
 
 
 def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
@@ -36,7 +41,7 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
 
     paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
-    Mirrors are drawn translucent.
+    Mirrors are drawn translucent; up to 12 objects bear their names.
     Returns a matplotlib figure with three views in metres.
     """
     time = paths.frame.trace_time if time is None else time
@@ -61,7 +66,7 @@ def _collect(scene, shown, time: float) -> _Drawing:
                 for count in np.unique(shown.num_bounces)}
     corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
-    drawing = _Drawing([], [], [], [], segments, 0.5 * (transmitter + receiver), low, high)
+    drawing = _Drawing([], [], [], [], segments, 0.5 * (transmitter + receiver), low, high, _names(scene, time))
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
         _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh.material.mirror)
@@ -89,6 +94,18 @@ def _object_vertices(scene, time: float):
     vertices = [np.asarray(scene.world_vertices(mesh_id, time)) for mesh_id, mesh in enumerate(scene.meshes)
                 if not mesh.material.mirror]
     return np.concatenate([np.zeros((0, 3)), *vertices])
+
+
+def _names(scene, time: float) -> dict:
+    """(lowest, highest) corner [3] of each object, {name: corners}; {} of too many."""
+    objects = {}
+    for mesh_id, mesh in enumerate(scene.meshes):
+        if not mesh.material.mirror:
+            objects.setdefault(mesh.name.split("/")[0], []).append(np.asarray(scene.world_vertices(mesh_id, time)))
+    if len(objects) > MOST_NAMES:
+        return {}
+    vertices = {name: np.concatenate(parts) for name, parts in objects.items()}
+    return {name: (points.min(axis=0), points.max(axis=0)) for name, points in vertices.items()}
 
 
 def _add_mesh(drawing: _Drawing, triangles, is_mirror: bool) -> None:
@@ -131,10 +148,15 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     add(Poly3DCollection, drawing.bodies, 3, facecolors=drawing.body_colours, edgecolors="none")
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
+    for name, (low, high) in drawing.names.items():
+        axes.text(*0.5 * (low + high)[:2], high[2], f"{name}\n", zorder=5, horizontalalignment="center",
+                  verticalalignment="baseline", **NAME_LOOK)
     _frame_box(axes, drawing)
 
 
 def _frame_box(axes, drawing: _Drawing) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     axes.set_xlim(drawing.low[0], drawing.high[0])
     axes.set_ylim(drawing.low[1], drawing.high[1])
     axes.set_zlim(drawing.low[2], drawing.high[2])
@@ -143,7 +165,9 @@ def _frame_box(axes, drawing: _Drawing) -> None:
     axes.set_xlabel("x in m")
     axes.set_ylabel("y in m")
     axes.set_zlabel("z in m")
-    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+    for axis, side in zip((axes.xaxis, axes.yaxis, axes.zaxis), drawing.high - drawing.low):
+        share = side / (drawing.high - drawing.low).max()
+        axis.set_major_locator(MaxNLocator(nbins=min(max(int(share / TICK_SPACE), 1), 8), steps=(1, 2, 5, 10)))
         axis.pane.set_visible(False)
         axis._axinfo["grid"].update(color=(0.85, 0.85, 0.85), linewidth=0.4)
 
@@ -151,6 +175,7 @@ def _frame_box(axes, drawing: _Drawing) -> None:
 def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     """The scene along an axis: mirrors below the rays, bodies above them."""
     from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.patheffects import withStroke
 
     columns = list(plane)
     depth = ({0, 1, 2} - set(plane)).pop()
@@ -166,6 +191,11 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.add_collection(PolyCollection([drawing.bodies[i][:, columns] for i in order],
                                        facecolors=[drawing.body_colours[i] for i in order], edgecolors="none"))
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
+    if depth == 2:  # from the side they would stand on each other
+        halo = [withStroke(linewidth=2.0, foreground="white")]
+        for name, (low, high) in drawing.names.items():
+            axes.annotate(name, (0.5 * (low[0] + high[0]), high[1]), xytext=(0, 3), textcoords="offset points", ha="center",
+                          path_effects=halo, **NAME_LOOK)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
     axes.set_aspect("equal")

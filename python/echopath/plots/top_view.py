@@ -23,7 +23,7 @@ LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vmax=None):
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
-    maps: of `range_azimuth`, one or {name: map}; of several the first sets the scale
+    maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame.
     """

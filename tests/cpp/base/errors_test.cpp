@@ -35,6 +35,10 @@ TEST(NearestNames, OneInsertionDeletionOrReplacementComesBeforeTwo) {
   EXPECT_EQ(nearest_names("abc", {"xyc", "abcd", "ab", "abx"}), (Names{"abcd", "ab", "abx"}));
 }
 
+TEST(NearestNames, WhatTheWordBeginsComesFirst) {
+  EXPECT_EQ(nearest_names("ped", {"bed", "pedestrian", "red"}, 2), (Names{"pedestrian", "bed"}));
+}
+
 TEST(NearestNames, KeepsTheGivenOrderAmongEquals) {
   EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"}));
 }

@@ -59,14 +59,17 @@ struct Places {
   alignas(64) double t[kSize];       // place in the cell, [-1, 1]
   alignas(64) double re[kSize];
   alignas(64) double im[kSize];
-  alignas(64) int32_t cell[kSize];   // of the first kernel value, counted from -width
+  alignas(64) int32_t cell[kSize];   // of the first kernel value, counted from 1 - width
 };
 
+// Adding this to twice a place in cells, less 1, leaves twice its whole cells, and these in the lowest bits.
+constexpr double kCellShift = 2.0 * kRoundingShift;
+
 ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
-  const Vec left = frequency * spreading.grid_size + 0.5 * spreading.width;
-  const Cells cell = __builtin_convertvector(left, Cells) + 1;
-  *reinterpret_cast<UnalignedCells*>(places.cell + p) = cell;
-  store(places.t + p, 2.0 * (__builtin_convertvector(cell, Vec) - left) - 1.0);
+  const Vec twice = multiply_add(frequency, all(2.0 * spreading.grid_size), all(spreading.width - 1.0));
+  const Vec shifted = twice + kCellShift;
+  *reinterpret_cast<UnalignedCells*>(places.cell + p) = __builtin_convertvector(bits(shifted), Cells);
+  store(places.t + p, (shifted - kCellShift) - twice);
 }
 
 int num_runs(const int32_t* cell, int count) {
@@ -170,6 +173,19 @@ struct Spreader {
     add_window(re, im, first + places.cell[p]);
   }
 
+  // Sums over the lanes of up to kLanes moments from d on; one that is left alone shares the work of both its parts.
+  template <int kFirst, int kCount>
+  ECHOPATH_INLINE static void add_up(int d, const Vec* moment_re, const Vec* moment_im, double* sum_re, double* sum_im) {
+    if (kLanes > 2 && d + 1 == kCount) {
+      const Vec both = sums_of_two(moment_re[d], moment_im[d]);
+      sum_re[kFirst + d] = both[0];
+      sum_im[kFirst + d] = both[1];
+      return;
+    }
+    store(sum_re + kFirst + d, sums(moment_re + d));
+    store(sum_im + kFirst + d, sums(moment_im + d));
+  }
+
   // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell: sums of (re + j im) t^d.
   template <int kFirst, int kCount>
   ECHOPATH_INLINE void add_moments(const Places& places, int begin, int end, double* sum_re, double* sum_im) const {
@@ -196,10 +212,7 @@ struct Spreader {
       }
     }
 #pragma GCC unroll 16
-    for (int d = 0; d < kRounded; d += kLanes) {
-      store(sum_re + kFirst + d, sums(moment_re + d));
-      store(sum_im + kFirst + d, sums(moment_im + d));
-    }
+    for (int d = 0; d < kCount; d += kLanes) add_up<kFirst, kCount>(d, moment_re, moment_im, sum_re, sum_im);
     if constexpr (kFirst + kCount < kTerms) {
       constexpr int kNext = kFirst + kCount, kLeft = kTerms - kNext;
       add_moments<kNext, (kLeft < kTermsAtOnce ? kLeft : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);

@@ -51,8 +51,8 @@ class Nufft : public SpreadMethod {
 
   void samples(const double* row, std::complex<double>* out) const override {
     FftBuffer grid(grid_size_);
-    // Row cell i is grid cell i - width, modulo the grid.
-    int64_t cell = (grid_size_ - kernel_.width) % grid_size_;
+    // Row cell i is grid cell i + 1 - width, modulo the grid.
+    int64_t cell = (grid_size_ + 1 - kernel_.width) % grid_size_;
     for (int64_t i = 0; i < row_length(); ++i) {
       grid[cell] += std::complex<double>(row[i], row[i + row_length()]);
       if (++cell == grid_size_) cell = 0;

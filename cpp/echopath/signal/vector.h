@@ -68,4 +68,18 @@ ECHOPATH_INLINE Vec sums(const Vec* x) {
 #endif
 }
 
+// Its first lanes are the sums of all lanes of a and of b.
+ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
+#if ECHOPATH_LANES == 8
+  Vec pair = __builtin_shuffle(a, b, Mask{0, 8, 2, 10, 4, 12, 6, 14}) + __builtin_shuffle(a, b, Mask{1, 9, 3, 11, 5, 13, 7, 15});
+  pair = pair + __builtin_shuffle(pair, Mask{4, 5, 6, 7, 0, 1, 2, 3});
+  return pair + __builtin_shuffle(pair, Mask{2, 3, 0, 1, 6, 7, 4, 5});
+#elif ECHOPATH_LANES == 4
+  const Vec pair = __builtin_shuffle(a, b, Mask{0, 4, 2, 6}) + __builtin_shuffle(a, b, Mask{1, 5, 3, 7});
+  return pair + __builtin_shuffle(pair, Mask{2, 3, 0, 1});
+#else
+  return Vec{a[0], b[0]} + Vec{a[1], b[1]};
+#endif
+}
+
 }  // namespace echopath::ECHOPATH_KERNELS

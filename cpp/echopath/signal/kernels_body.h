@@ -10,6 +10,8 @@ namespace {
 
 // Chirps whose echoes at a vector of nodes fit into the registers.
 constexpr int kChirpsAtOnce = kLanes == 8 ? 4 : 2;
+// Of them, those whose carriers are found together.
+constexpr int kCarriersAtOnce = 4;
 // Terms of a polynomial whose moments do, real and imaginary.
 constexpr int kTermsAtOnce = kLanes == 8 ? 12 : 5;
 // Echoes in one cell from which their moments are quicker than a kernel for each, for kernels of one vector or two.
@@ -20,23 +22,36 @@ constexpr int kCellsOfTile = 128;
 // Echoes of a sorted tile are spread in this many places in turn: a sum of the last few is not yet ready to be loaded.
 constexpr int kStreams = 8;
 
-struct Carrier {
-  Vec frequency, re, im;
+template <int kCount>
+struct Carriage {
+  Vecs<kCount> frequency, re, im;
 };
 
 // The phase model of carrier.h, in half turns.
-ECHOPATH_INLINE Carrier carrier_of(const CarrierModel& model, Vec tau, Vec rate, Vec re, Vec im) {
+template <int kCount>
+ECHOPATH_INLINE Carriage<kCount> carriers_of(const CarrierModel& model, const Vec* tau, const Vec* rate, const Vec* re, const Vec* im) {
   const double centre = 2.0 * model.centre_frequency, rest = 2.0 * model.centre_frequency_rest;
-  const Vec swept = tau * (model.slope * model.sample_interval);
-  const Vec frequency = multiply_add(rate, model.centre_frequency * model.sample_interval - swept, swept);
-  const Vec beside = tau * (rest - model.slope * tau) + frequency * (2.0 * model.reference_offset);
-  const Vec turns = (all(centre) * tau + beside) + kRoundingShift;
-  const Vec left = exact_multiply_add(all(centre), tau, kRoundingShift - turns) + beside;
-  const PhasorOf<Vec> phasor = phasor_of_half_turns<Vec>(left);
-  const Mask sign = bits(turns) << 63;  // of an odd number of half turns
-  const Vec c = from_bits(bits(phasor.re) ^ sign), s = from_bits(bits(phasor.im) ^ sign);
-  const Mask kept = (frequency >= 0.0) & (frequency < model.highest_frequency);
-  return {kept ? frequency : Vec{}, kept ? re * c + im * s : Vec{}, kept ? re * s - im * c : Vec{}};
+  const double swept_share = model.slope * model.sample_interval, centre_share = model.centre_frequency * model.sample_interval;
+  const double offset = 2.0 * model.reference_offset;
+#define EACH(value) each<kCount>([&](int i) __attribute__((always_inline)) { return value; })
+  const Vecs<kCount> swept = EACH(tau[i] * swept_share);
+  const Vecs<kCount> frequency = EACH(multiply_add(rate[i], centre_share - swept.of[i], swept.of[i]));
+  const Vecs<kCount> beside = EACH(tau[i] * (rest - model.slope * tau[i]) + frequency.of[i] * offset);
+  const Vecs<kCount> turns = EACH((all(centre) * tau[i] + beside.of[i]) + kRoundingShift);
+  const Vecs<kCount> left = EACH(exact_multiply_add(all(centre), tau[i], kRoundingShift - turns.of[i]) + beside.of[i]);
+  const PhasorOf<Vecs<kCount>> phasor = phasor_of_half_turns<Vecs<kCount>>(left);
+  Carriage<kCount> out;
+#pragma GCC unroll 8
+  for (int i = 0; i < kCount; ++i) {
+    const Mask sign = bits(turns.of[i]) << 63;  // of an odd number of half turns
+    const Vec c = from_bits(bits(phasor.re.of[i]) ^ sign), s = from_bits(bits(phasor.im.of[i]) ^ sign);
+    const Mask kept = (frequency.of[i] >= 0.0) & (frequency.of[i] < model.highest_frequency);
+    out.frequency.of[i] = kept ? frequency.of[i] : Vec{};
+    out.re.of[i] = kept ? re[i] * c + im[i] * s : Vec{};
+    out.im.of[i] = kept ? re[i] * s - im[i] * c : Vec{};
+  }
+#undef EACH
+  return out;
 }
 
 void modulate(const CarrierModel& model, const EchoStates& states, int count, Carriers& out) {
@@ -46,10 +61,11 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
       re[lane] = states.amplitude[2 * (p + lane)];
       im[lane] = states.amplitude[2 * (p + lane) + 1];
     }
-    const Carrier carrier = carrier_of(model, load(states.delay + p), load(states.rate + p), re, im);
-    store(out.frequency + p, carrier.frequency);
-    store(out.re + p, carrier.re);
-    store(out.im + p, carrier.im);
+    const Vec delay = load(states.delay + p), rate = load(states.rate + p);
+    const Carriage<1> carrier = carriers_of<1>(model, &delay, &rate, &re, &im);
+    store(out.frequency + p, carrier.frequency.of[0]);
+    store(out.re + p, carrier.re.of[0]);
+    store(out.im + p, carrier.im.of[0]);
   }
 }
 
@@ -72,11 +88,36 @@ ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Pl
   store(places.t + p, (shifted - kCellShift) - twice);
 }
 
-int num_runs(const int32_t* cell, int count) {
-  int changes = 0;
-  for (int p = 1; p < count; ++p) changes += cell[p] != cell[p - 1] ? 1 : 0;
-  return 1 + changes;
-}
+// Where runs of one cell end: bit p of the words, where the echo behind p has another cell or is none.
+struct RunEnds {
+  static constexpr int kWords = TileAtChirps::kCapacity / 64;
+  uint64_t word[kWords];
+
+  RunEnds(const int32_t* cell, int count) {
+    for (int w = 0; w < kWords; ++w) word[w] = 64 * w < count ? differences(cell + 64 * w, cell + 64 * w + 1) : 0;
+    const int last = (count - 1) / 64;
+    word[last] = (word[last] & ((uint64_t{1} << (count - 1) % 64) - 1)) | uint64_t{1} << (count - 1) % 64;
+  }
+
+  int count() const {
+    int sum = 0;
+    for (const uint64_t bits : word) sum += __builtin_popcountll(bits);
+    return sum;
+  }
+
+  // Calls visit(begin, end) for each run.
+  template <class Visit>
+  ECHOPATH_INLINE void visit_runs(Visit visit) const {
+    int begin = 0;
+    for (int w = 0; w < kWords; ++w) {
+      for (uint64_t bits = word[w]; bits != 0; bits &= bits - 1) {
+        const int end = 64 * w + __builtin_ctzll(bits) + 1;
+        visit(begin, end);
+        begin = end;
+      }
+    }
+  }
+};
 
 // How many echoes each of the cells of a tile has, for each of kCounters shares of the tile: a counter that was just raised is
 // not yet ready to be raised again.
@@ -236,13 +277,10 @@ struct Spreader {
     add_window(re, im, row);
   }
 
-  void add_runs(const Places& places, int count, double* first) const {
-    for (int begin = 0; begin < count;) {
-      int end = begin + 1;
-      while (end < count && places.cell[end] == places.cell[begin]) ++end;
+  void add_runs(const Places& places, const RunEnds& ends, double* first) const {
+    ends.visit_runs([&](int begin, int end) __attribute__((always_inline)) {
       add_run(places, begin, end, first + places.cell[begin]);
-      begin = end;
-    }
+    });
   }
 
   // After bring_together.
@@ -267,7 +305,8 @@ template <int kWidth>
 void spread_tile(const Spreading& spreading, const Places& places, int count, double* row) {
   constexpr int kFew = kFewInCell[Spreader<kWidth>::kPadded > 8];
   const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
-  const int runs = num_runs(places.cell, count);
+  const RunEnds ends(places.cell, count);
+  const int runs = ends.count();
   if (runs * kShortRun > count) {
     CellCounts counts = count_cells(places.cell, count);
     if (counts.num_cells <= kCellsOfTile && 2 * counts.num_taken <= runs && counts.num_taken * kFew <= count) {
@@ -277,7 +316,7 @@ void spread_tile(const Spreading& spreading, const Places& places, int count, do
     }
     if (runs * kFew > count) return spreader.add_apart(places, count, row);
   }
-  spreader.add_runs(places, count, row);
+  spreader.add_runs(places, ends, row);
 }
 
 template <int kWidth>
@@ -329,12 +368,16 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
         im[c] = multiply_add(weight, i, im[c]);
       }
     }
+    constexpr int kTogether = kChirps < kCarriersAtOnce ? kChirps : kCarriersAtOnce;
 #pragma GCC unroll 4
-    for (int c = 0; c < kChirps; ++c) {
-      const Carrier carrier = carrier_of(model, delay[c], rate[c], re[c], im[c]);
-      locate(spreading, carrier.frequency, p, places[c]);
-      store(places[c].re + p, carrier.re);
-      store(places[c].im + p, carrier.im);
+    for (int c = 0; c < kChirps; c += kTogether) {
+      const Carriage<kTogether> carriers = carriers_of<kTogether>(model, delay + c, rate + c, re + c, im + c);
+#pragma GCC unroll 4
+      for (int i = 0; i < kTogether; ++i) {
+        locate(spreading, carriers.frequency.of[i], p, places[c + i]);
+        store(places[c + i].re + p, carriers.re.of[i]);
+        store(places[c + i].im + p, carriers.im.of[i]);
+      }
     }
   }
 }

@@ -21,6 +21,26 @@ ECHOPATH_INLINE Vec all(double x) { return x - Vec{}; }
 ECHOPATH_INLINE Mask bits(Vec x) { return reinterpret_cast<Mask>(x); }
 ECHOPATH_INLINE Vec from_bits(Mask x) { return reinterpret_cast<Vec>(x); }
 
+// Bit i tells that a[i] != b[i], for i in [0, 64).
+ECHOPATH_INLINE uint64_t differences(const int32_t* a, const int32_t* b) {
+  uint64_t bits = 0;
+#if ECHOPATH_LANES == 8
+  for (int i = 0; i < 4; ++i) {
+    const uint64_t some = _mm512_cmpneq_epi32_mask(_mm512_loadu_si512(a + 16 * i), _mm512_loadu_si512(b + 16 * i));
+    bits |= some << 16 * i;
+  }
+#elif ECHOPATH_LANES == 4
+  for (int i = 0; i < 8; ++i) {
+    const auto at = [i](const int32_t* from) { return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i)); };
+    const int equal = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(at(a), at(b))));
+    bits |= static_cast<uint64_t>(equal ^ 0xff) << 8 * i;
+  }
+#else
+  for (int i = 0; i < 64; ++i) bits |= static_cast<uint64_t>(a[i] != b[i]) << i;
+#endif
+  return bits;
+}
+
 // a * b + c; which roundings it has is the compiler's choice.
 ECHOPATH_INLINE Vec multiply_add(Vec a, Vec b, Vec c) { return a * b + c; }
 
@@ -40,6 +60,35 @@ ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
   const Vec error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
   return (product + c) + error;
 #endif
+}
+
+// Vectors that take each step together: the chain of one is short of work while it waits for its last result.
+template <int kCount>
+struct Vecs {
+  Vec of[kCount];
+};
+template <int kCount, class Step>
+ECHOPATH_INLINE Vecs<kCount> each(Step step) {
+  Vecs<kCount> out;
+#pragma GCC unroll 8
+  for (int i = 0; i < kCount; ++i) out.of[i] = step(i);
+  return out;
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator*(const Vecs<kCount>& a, const Vecs<kCount>& b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] * b.of[i]; });
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator*(const Vecs<kCount>& a, double b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] * b; });
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator+(const Vecs<kCount>& a, double b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] + b; });
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator-(const Vecs<kCount>& a, double b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] - b; });
 }
 
 // Lane i of the result is the sum of all lanes of x[i].

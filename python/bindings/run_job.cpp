@@ -5,6 +5,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace echopath::bindings {
 namespace {
@@ -51,12 +52,23 @@ class Worker {
   std::thread thread_;  // last: it uses the others from its first moment
 };
 
+bool is_looking = false;  // of the main thread, which alone runs handlers of signals; guarded by the GIL
+
+void look_for_signals() {
+  const bool before = std::exchange(is_looking, true);
+  const bool has_raised = PyErr_CheckSignals() != 0;
+  is_looking = before;
+  if (has_raised) throw py::error_already_set();
+}
+
 void poll(const std::string& stage, const py::object& progress, double fraction) {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  look_for_signals();
   if (!progress.is_none()) progress(stage, fraction);
 }
 
 }  // namespace
+
+bool looks_for_signals() { return is_looking; }
 
 void run_beside(const std::string& stage, const py::object& progress, const std::function<void(Job&)>& work) {
   if (!progress.is_none() && !PyCallable_Check(progress.ptr()))

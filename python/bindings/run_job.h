@@ -18,7 +18,11 @@ namespace echopath::bindings {
 // `work` must not touch Python objects. Called with the GIL, from any thread; Python sees signals on its main one only.
 void run_beside(const std::string& stage, const pybind11::object& progress, const std::function<void(Job&)>& work);
 
-// The same for work with a result: const Paths paths = run_job("trace", progress, [&](Job& job) { return trace(..., &job); });
+// Whether `run_beside` is looking for signals right now. A handler of signals that must not raise in the middle of anything
+// else may raise then: that ends the job.
+bool looks_for_signals();
+
+// run_beside for work with a result: const Paths paths = run_job("trace", progress, [&](Job& job) { return trace(..., &job); });
 template <class Work>
 std::invoke_result_t<Work&, Job&> run_job(const std::string& stage, const pybind11::object& progress, Work&& work) {
   using Result = std::invoke_result_t<Work&, Job&>;

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -13,15 +14,34 @@ import echopath as ep
 PATIENCE = 60  # s
 VIEW = [sys.executable, "-m", "echopath", "view"]
 HAS_SCREEN = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
+# A window that announces itself and then does `work` with it.
 ANNOUNCED = """
 import sys
+import echopath as ep
 from echopath.cli import main
+from echopath.interrupts import interrupts_are_kept
+from echopath_viewer.window.busy import run_with_progress
 from echopath_viewer.window.qt import QtCore
 from echopath_viewer.window import MainWindow
+
+def work(window):
+    print("up", flush=True)
+    {work}
+
 shown = MainWindow.showEvent
-MainWindow.showEvent = lambda self, event: (shown(self, event), QtCore.QTimer.singleShot(0, lambda: print("up", flush=True)))
+MainWindow.showEvent = lambda self, event: (shown(self, event), QtCore.QTimer.singleShot(0, lambda: work(self)))
 sys.exit(main(["view", sys.argv[1]]))
 """
+LONG = 300.0  # s
+WORK = {
+    "nothing": "pass",
+    "work with a progress bar": f"run_with_progress(window, 'Waiting', lambda progress: ep._core._wait({LONG}, progress))",
+    "work without": f"ep._core._wait({LONG})",
+    "a file": f"""with interrupts_are_kept():
+        ep._core._wait({LONG})""",
+}
+HEAD_START = 1.0  # s, of the work before Ctrl-C: the progress bar is up
+STOPS_WITHIN = 10.0  # s, of a busy machine that closes a window, drawn in software
 
 
 def run(command, **environment) -> subprocess.CompletedProcess:
@@ -53,12 +73,20 @@ def test_without_the_extra_it_says_what_to_install():
 
 
 @pytest.mark.skipif(not HAS_SCREEN, reason="needs a screen")
-def test_ctrl_c_closes_the_window(frame, tmp_path):
+@pytest.mark.parametrize("name", WORK)
+def test_ctrl_c_ends_the_work_and_closes_the_window(frame, tmp_path, name):
     ep.save_frame(frame, tmp_path / "frame.h5")
-    command = [sys.executable, "-c", ANNOUNCED, str(tmp_path / "frame.h5")]
+    command = [sys.executable, "-c", ANNOUNCED.format(work=WORK[name]), str(tmp_path / "frame.h5")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as viewer:
         assert viewer.stdout.readline() == "up\n"
+        time.sleep(HEAD_START)
         viewer.send_signal(signal.SIGINT)
-        _, errors = viewer.communicate(timeout=PATIENCE)
-    assert viewer.returncode == 130 and "Traceback" not in errors
+        begin = time.monotonic()
+        try:
+            _, errors = viewer.communicate(timeout=PATIENCE)
+        finally:
+            viewer.kill()
+    assert viewer.returncode == 130 and errors.splitlines()[-1] == "echopath: stopped; no file was left half written"
+    assert "Traceback" not in errors and "Error" not in errors
+    assert time.monotonic() - begin < STOPS_WITHIN

@@ -2,24 +2,22 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
-import threading
 
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
+from .ctrl_c import closing_on_ctrl_c
 from .main_window import MainWindow
-from .qt import QtCore, QtWidgets
-
-SIGNAL_CHECK_MS = 200
+from .qt import QtWidgets
 
 
 def view(*what, parts=None, block=True, **settings):
     """Opens a window on a frame file, a Frame, or `scene, paths[, parts]`; an empty one on nothing.
 
     parts, settings: of `model.from_paths`; block: returns when the window is closed, else at once with the window
-    Raises ep.FileError for a file that cannot be shown, before there is a window; OSError without a screen.
+    Raises ep.FileError for a file that cannot be shown, before there is a window; OSError without a screen;
+    KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they compute.
     """
     view_input = read_input(*what, parts=parts, **settings)
     require_screen()
@@ -30,7 +28,8 @@ def view(*what, parts=None, block=True, **settings):
     window.show()
     if not block:
         return window
-    _run(application)
+    with closing_on_ctrl_c(application):
+        application.exec()
     return None
 
 
@@ -40,26 +39,6 @@ def require_screen() -> None:
         return
     raise OSError("the viewer needs a screen, and DISPLAY names none; ep.plot_rays(scene, paths, off_screen=True, "
                   "screenshot='rays.png') draws without one")
-
-
-def _run(application) -> None:
-    """Until all windows are closed. Ctrl-C closes them and is raised as KeyboardInterrupt."""
-    if threading.current_thread() is not threading.main_thread():
-        application.exec()
-        return
-    interrupted = []
-    before = signal.signal(signal.SIGINT, lambda *_: interrupted.append(True))
-    # Python sees signals only while it runs; and what it sees in the middle of drawing must wait for its end.
-    watch = QtCore.QTimer(interval=SIGNAL_CHECK_MS)
-    watch.timeout.connect(lambda: application.closeAllWindows() if interrupted else None)
-    watch.start()
-    try:
-        application.exec()
-    finally:
-        watch.stop()
-        signal.signal(signal.SIGINT, before)
-    if interrupted:
-        raise KeyboardInterrupt
 
 
 def read_input(*what, parts=None, **settings):

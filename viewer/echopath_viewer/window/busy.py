@@ -1,6 +1,7 @@
 """Long work with a progress bar that can be cancelled."""
 from __future__ import annotations
 
+from .ctrl_c import is_heard, long_work
 from .qt import Qt, QtWidgets
 
 PATIENCE_MS = 400  # before a bar appears
@@ -21,14 +22,21 @@ def run_with_progress(parent, title: str, work):
     dialog.setAutoReset(False)
 
     def progress(stage: str, fraction: float) -> None:
+        if is_heard():
+            raise Cancelled
         dialog.setLabelText(f"{title}: {stage}")
         dialog.setValue(int(99.0 * min(max(fraction, 0.0), 1.0)))  # pumps events while the dialog is shown
         if dialog.wasCanceled():
             raise Cancelled
 
     try:
-        return work(progress)
+        with long_work():
+            return work(progress)
     except Cancelled:
+        return None
+    except KeyboardInterrupt:
+        if not is_heard():
+            raise
         return None
     finally:
         dialog.close()

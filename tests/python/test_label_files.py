@@ -170,8 +170,8 @@ def test_detections_of_a_frame_file_are_the_same_bits_and_know_their_paths(frame
     given, loaded = frame.detections, ep.load_frame(saved).detections
     assert len(given) > 2 and {"truck"} <= set(given.object)
     for field in dataclasses.fields(ep.Detections):
-        one, other = getattr(given, field.name), getattr(loaded, field.name)
         if field.name != "echoes":
+            one, other = np.asarray(getattr(given, field.name)), np.asarray(getattr(loaded, field.name))
             same = np.array_equal(one, other) if one.dtype.kind == "U" else one.tobytes() == other.tobytes()
             assert same and one.dtype.kind == other.dtype.kind and one.shape == other.shape, field.name
     for index in range(len(given)):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 
 import echopath as ep
 from echopath_viewer.model import CellBox, Session, from_frame
@@ -131,6 +132,8 @@ def test_plot_rays_writes_a_picture_without_a_screen(frame, tmp_path):
                           env=environment, capture_output=True, text=True)
     assert done.returncode == 0 and not done.stderr, done.stderr
     assert len(np.unique(pv.read(tmp_path / "rays.png").point_data.active_scalars, axis=0)) > 10
+    with Image.open(tmp_path / "rays.png") as image:
+        assert image.text["Seed"] == str(frame.paths.frame.seed) and image.text["Software"] == f"echopath {ep.__version__}"
 
 
 def test_plot_rays_draws_what_is_asked_for(frame):

@@ -76,6 +76,7 @@ def test_a_view_is_saved_and_loaded_with_its_camera(qtbot, window, tmp_path):
     qtbot.keyClick(window, Qt.Key.Key_T)
     camera = window.view3d.camera_state()
     window.save_view(tmp_path / "view.json")
+    assert json.loads((tmp_path / "view.json").read_text())["seed"] == window.session.paths.frame.seed
     qtbot.mouseClick(window.filter_box.reset_button, LEFT)
     qtbot.keyClick(window, Qt.Key.Key_F)
     window.load_view(tmp_path / "view.json")
@@ -85,13 +86,14 @@ def test_a_view_is_saved_and_loaded_with_its_camera(qtbot, window, tmp_path):
         assert value == pytest.approx(camera[name]), name
 
 
-def test_a_picture_holds_the_scene_too(qtbot, window, tmp_path):
+def test_a_picture_holds_the_scene_too_and_the_seed(qtbot, window, frame, tmp_path):
     window.screenshot(tmp_path / "window.png")
     image = QtGui.QImage(str(tmp_path / "window.png"))
     corner = window.view3d.mapTo(window, QtCore.QPoint(0, 0))
     colours = {image.pixel(corner.x() + x, corner.y() + y) for x in range(20, window.view3d.width() - 20, 5)
                for y in range(20, window.view3d.height() - 20, 5)}
     assert image.width() == window.width() and len(colours) > 10
+    assert image.text("Seed") == str(frame.paths.frame.seed) and image.text("Software").endswith(ep.__version__)
 
 
 def test_rays_and_meshes_are_exported_for_paraview(qtbot, window, frame, tmp_path, monkeypatch):
@@ -105,6 +107,7 @@ def test_rays_and_meshes_are_exported_for_paraview(qtbot, window, frame, tmp_pat
     assert np.array_equal(rays.cell_data["num_bounces"], frame.paths.num_bounces[path])
     assert rays.cell_data["power_dbm"] == pytest.approx(window.session.columns.power_dbm[path])
     assert meshes.n_cells == sum(len(mesh.triangles) for mesh in frame.scene.meshes)
+    assert [list(file.field_data["seed"]) for file in (rays, meshes)] == [[str(frame.paths.frame.seed)]] * 2
     assert list(meshes.field_data["mesh_names"]) == [mesh.name for mesh in frame.scene.meshes]
     monkeypatch.setattr(QtWidgets.QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "rays.stl"), ""))
     window.export_rays_dialog()

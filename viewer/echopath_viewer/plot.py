@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 import echopath as ep
+from echopath.origin import mark_png, origin_texts
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, whole_part
 from .scene_builder import SceneBuilder
@@ -49,10 +50,11 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     builder.look(view)
     if plotter is None and return_plotter is False:
         target.show(screenshot=False if screenshot is None else str(screenshot), auto_close=True)
-        return None
-    if screenshot is not None:
+    elif screenshot is not None:
         target.screenshot(str(screenshot))
-    return target
+    if screenshot is not None:
+        mark_png(screenshot, origin_texts(paths.frame.seed))
+    return target if plotter is not None or return_plotter else None
 
 
 def _check_numbers(radar, tx, rx, num_rays, chirp) -> None:

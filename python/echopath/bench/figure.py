@@ -1,6 +1,7 @@
 """Speed against error in one picture."""
 from __future__ import annotations
 
+from ..origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 
 SHOWN = ("sphere_161", "sphere_3228", "ellipsoid", "plate_5", "plate_20.3", "dihedral")
@@ -36,7 +37,7 @@ def draw_physics(results: dict, path) -> None:
         figure.supylabel("error of the level in dB (rms)", fontsize=9)
         handles, labels = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
-        save_png(figure, path)
+        save_png(figure, path, seed=FIXED_SEEDS)
 
 
 def _draw(axes, curves: dict) -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
 from .labels import RATE_TARGET
 
@@ -13,7 +14,7 @@ def draw_labels(results: dict, path) -> None:
         left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.35))
         _draw_cost(left, results["parts"])
         _draw_rates(right, results["rates"])
-        save_png(figure, path)
+        save_png(figure, path, seed=FIXED_SEEDS)
 
 
 def _draw_cost(axes, cases: list) -> None:

@@ -1,6 +1,7 @@
 """Speed against error of synthesis, and how whole frames grow."""
 from __future__ import annotations
 
+from ..origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 
 OURS, OWN_SPEED, FINUFFT, SUMS, GREY = "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#666666"  # Okabe and Ito
@@ -34,7 +35,7 @@ def draw_synthesis(results: dict, path) -> None:
                        f"{results['machine']['processor']}, {results['machine']['instruction_set']}")
         axes.legend(frameon=False, loc="upper right")
         axes.grid(alpha=0.25, which="both")
-        save_png(figure, path)
+        save_png(figure, path, seed=FIXED_SEEDS)
 
 
 def _curve(axes, rows, error: str, time: str, colour: str, style: str, label: str) -> None:
@@ -75,4 +76,4 @@ def draw_frames(results: dict, path) -> None:
         others.set_ylim(most / 100.0, most * 2.0)
         for axes in (paths, others, memory):
             axes.grid(alpha=0.25, which="both")
-        save_png(figure, path)
+        save_png(figure, path, seed=FIXED_SEEDS)

@@ -21,7 +21,7 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
 
     def write(name: str, figure) -> None:
         path = folder / f"{_file_name(name)}.png"
-        plots.save_png(figure, path)
+        plots.save_png(figure, path, seed=frame.paths.frame.seed)
         written.append(path)
 
     for index, (partition, labels) in enumerate(of_partitions.items()):

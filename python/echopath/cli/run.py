@@ -107,7 +107,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
     written = []
 
     def write(name: str, figure) -> None:
-        plots.save_png(figure, folder / f"{name}.png")
+        plots.save_png(figure, folder / f"{name}.png", seed=frame.paths.frame.seed, noise_seed=frame.noise_seed)
         written.append(folder / f"{name}.png")
 
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))

@@ -1,6 +1,8 @@
 """From a range-Doppler map to a labelled point cloud."""
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 import echopath as ep
@@ -47,7 +49,8 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
     columns = _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes)
-    return _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
+    found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
+    return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
 
 def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes) -> dict:

@@ -12,7 +12,8 @@ from .echo_fields import EchoFields
 
 NOISE = "noise"  # part of a detection that no echo made
 COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
-           "class_code", "share", "is_noise", "velocity_index", "range_index")
+           "class_code", "share", "is_noise", "velocity_index", "range_index", "seed", "noise_seed")
+_FIELDS = COLUMNS[:COLUMNS.index("is_noise")]
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -31,6 +32,7 @@ class Detections:
         `families`, 0 without an object
     echoes: which paths make which cell, None without paths
     centre: [3] m, in the radar's frame, from which points are counted: half-way between transmitters and receivers
+    seed, noise_seed: of the rays and of the noise in the map, None: not known
     """
 
     cells: np.ndarray
@@ -49,6 +51,8 @@ class Detections:
     class_code: np.ndarray
     echoes: EchoFields | None = None
     centre: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
+    seed: int | None = None
+    noise_seed: int | None = None
 
     @property
     def snr_db(self) -> np.ndarray:
@@ -80,14 +84,15 @@ class Detections:
     def to_csv(self, path) -> None:
         """Writes a table with a row for each detection, whole or not at all.
 
-        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell; unknown numbers are
-        left empty. Raises ep.FileError.
+        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds; unknown
+        numbers are left empty. Raises ep.FileError.
         """
-        columns = [getattr(self, name) for name in COLUMNS[:-3]] + [self.is_noise.astype(int), *self.cells.T]
+        columns = [getattr(self, name) for name in _FIELDS] + [self.is_noise.astype(int), *self.cells.T]
+        seeds = ["" if seed is None else str(seed) for seed in (self.seed, self.noise_seed)]
         with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
             writer = csv.writer(stream, lineterminator="\n")
             writer.writerow(COLUMNS)
-            writer.writerows([_as_text(value) for value in row] for row in zip(*columns))
+            writer.writerows([*map(_as_text, row), *seeds] for row in zip(*columns))
 
     def __len__(self) -> int:
         return len(self.range)

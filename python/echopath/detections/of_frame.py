@@ -1,6 +1,8 @@
 """Detections of a frame that was simulated or read back from a file."""
 from __future__ import annotations
 
+import dataclasses
+
 import echopath as ep
 
 from ..keywords import known_keywords
@@ -24,5 +26,6 @@ def detect_frame(frame, *, objects=None, max_peaks=1, progress=None, **keywords)
         raise ValueError("frame: must have signals to detect echoes in, got a record of paths alone")
     parts = next(iter(frame.part_spectra.values()), None)
     settings = {"max_peaks": max_peaks} if len(ep.virtual_array(frame.radar).elements) > 1 else None
-    return detect(frame.spectrum, frame.radar, paths=frame.paths, parts=parts, objects=objects, angles=settings,
-                  progress=progress, **keywords)
+    found = detect(frame.spectrum, frame.radar, paths=frame.paths, parts=parts, objects=objects, angles=settings,
+                   progress=progress, **keywords)
+    return dataclasses.replace(found, noise_seed=frame.noise_seed)

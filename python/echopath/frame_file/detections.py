@@ -25,8 +25,8 @@ def write_detections(group, detections: Detections) -> None:
         write_texts(group, name, [str(text) for text in getattr(detections, name)])
 
 
-def read_detections(group, paths, spectrum) -> Detections:
-    """The detections of a group; paths, spectrum: of the frame, whose paths are behind them, None: nobody asked."""
+def read_detections(group, paths, spectrum, noise_seed) -> Detections:
+    """The detections of a group; paths, spectrum, noise_seed: of the frame, whose paths are behind them."""
     cells = read_array(group, "cells", np.int64, (None, 2))
     count = len(cells)
     columns = {name: read_array(group, name, dtype, (count,)) for name, (dtype, _) in NUMBERS.items()}
@@ -35,4 +35,4 @@ def read_detections(group, paths, spectrum) -> Detections:
     if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
         raise ep.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")
     return Detections(cells=cells, centre=read_array(group, "centre", np.float64, (3,)),
-                      echoes=EchoFields(paths, spectrum), **columns)
+                      echoes=EchoFields(paths, spectrum), seed=paths.frame.seed, noise_seed=noise_seed, **columns)

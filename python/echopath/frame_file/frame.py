@@ -92,7 +92,7 @@ def load_frame(path) -> Frame:
         if "labels" in file:
             frame.labels = read_all_labels(read_group(file, "labels"))
         if "detections" in file:
-            frame.detections = read_detections(read_group(file, "detections"), paths, frame.spectrum)
+            frame.detections = read_detections(read_group(file, "detections"), paths, frame.spectrum, frame.noise_seed)
     return frame
 
 

@@ -50,6 +50,8 @@ def write_labels(group, labels: Labels) -> None:
     group.attrs["plane"] = labels.plane
     for name in SETTINGS:
         group.attrs[name] = getattr(labels, name)
+    if labels.seed is not None:
+        group.attrs["seed"] = np.uint64(labels.seed)
     write_array(group, plane.rows, getattr(labels, plane.rows), unit=plane.unit)
     write_array(group, "range", labels.range, unit="m")
     write_texts(group, "part", labels.part_names)
@@ -76,6 +78,7 @@ def read_labels(group) -> Labels:
     objects, ghosts = _read_objects(read_group(group, "objects"), plane), _read_ghosts(read_group(group, "ghosts"), plane)
     _check_indices(group, cells, {"dominant": len(names), "object_map": len(objects), "ghost_map": len(ghosts)})
     settings = {name: read_attribute(group, name, float) for name in SETTINGS}
+    settings["seed"] = read_attribute(group, "seed", int) if "seed" in group.attrs else None
     return Labels(plane=group.attrs["plane"], **axes, part_names=names, power=power, share=_core.power_shares(power),
                   objects=objects, ghosts=ghosts, **settings, **cells, **_read_errors(group, power.shape))
 

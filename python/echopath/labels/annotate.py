@@ -140,7 +140,8 @@ def _label_parts(request: Request, paths, powers, selections: dict, scene_labels
                     part_names=[str(name) for name in names], power=power, whole=powers.whole,
                     share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
                     noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
-                    dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, **scene_labels)
+                    dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=paths.frame.seed,
+                    **scene_labels)
     return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
 
 

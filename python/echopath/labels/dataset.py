@@ -24,6 +24,7 @@ def _dataset(labels: Labels, xarray):
         if getattr(labels, field) is not None:
             variables[field] = (("part", row, "range"), getattr(labels, field), {"units": unit})
     settings = {name: getattr(labels, name) for name in ("plane", "noise_power", "noise_margin_db", "dynamic_range_db")}
+    settings |= {} if labels.seed is None else {"seed": labels.seed}
     coordinates = {"part": labels.part_names, row: axis(row, getattr(labels, row)), "range": axis("range", labels.range)}
     return xarray.Dataset(variables, coords=coordinates, attrs=settings)
 

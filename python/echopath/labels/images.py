@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..files import written_whole
+from ..origin import origin_texts, png_info
 
 NO_LABEL = "none"                   # name of index 0
 NO_LABEL_COLOUR = (0, 0, 0)
@@ -69,7 +70,7 @@ def save_label_images(labels, folder, names: dict = MAPS) -> list:
     images, written = label_images(labels), []
     for kind, name in names.items():
         written.append(Path(folder) / f"{name}.png")
-        _write_label_image(written[-1], *images[kind], axes)
+        _write_label_image(written[-1], *images[kind], axes, origin_texts(labels.seed))
     return written
 
 
@@ -77,30 +78,30 @@ def _axis(name: str, unit: str, values) -> dict:
     return {"name": name, "unit": unit, "values": np.asarray(values).tolist()}
 
 
-def _write_label_image(path: Path, indices, entries: list, axes: dict) -> None:
+def _write_label_image(path: Path, indices, entries: list, axes: dict, origin: dict) -> None:
     colours = [NO_LABEL_COLOUR, *colours_of([entry["name"] for entry in entries])]
     rows = [{"index": index, **entry, "colour": "#%02x%02x%02x" % colour}
             for index, (entry, colour) in enumerate(zip([{"name": NO_LABEL}, *entries], colours))]
     with written_whole(path) as temporary:
-        _write_png(temporary, np.asarray(indices, np.int32) + 1, colours)
+        _write_png(temporary, np.asarray(indices, np.int32) + 1, colours, png_info(origin))
     with written_whole(path.with_suffix(".json")) as temporary:
-        temporary.write_text(_palette_text(path.name, axes, rows), encoding="utf-8")
+        temporary.write_text(_palette_text(path.name, origin, axes, rows), encoding="utf-8")
 
 
-def _palette_text(image: str, axes: dict, rows: list) -> str:
+def _palette_text(image: str, origin: dict, axes: dict, rows: list) -> str:
     """JSON with a line for each axis and label."""
-    lines = [f' "image": {json.dumps(image)},', ' "axes": {',
+    lines = [f' "image": {json.dumps(image)},', f' "origin": {json.dumps(origin)},', ' "axes": {',
              ",\n".join(f"  {json.dumps(side)}: {json.dumps(axis)}" for side, axis in axes.items()), " },", ' "labels": [',
              ",\n".join(f"  {json.dumps(row, ensure_ascii=False)}" for row in rows), " ]"]
     return "\n".join(["{", *lines, "}"]) + "\n"
 
 
-def _write_png(path, pixels, colours: list) -> None:
+def _write_png(path, pixels, colours: list, info) -> None:
     from PIL import Image
 
     if len(colours) > MAX_PALETTE:
-        Image.fromarray(pixels.astype(np.uint16)).save(path, format="PNG")
+        Image.fromarray(pixels.astype(np.uint16)).save(path, format="PNG", pnginfo=info)
         return
     image = Image.fromarray(pixels.astype(np.uint8), mode="L")
     image.putpalette([value for colour in colours for value in colour])
-    image.save(path, format="PNG", optimize=True)
+    image.save(path, format="PNG", optimize=True, pnginfo=info)

@@ -140,6 +140,7 @@ class Labels:
     power_error, share_error: [K, V, R] standard errors of mean_power in W and of mean_share, from the batches of rays
     certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;
         False outside the mask. These five are None unless asked for (`errors=True`)
+    seed: of the rays that were labelled, None: not known
     """
 
     plane: str
@@ -165,6 +166,7 @@ class Labels:
     power_error: np.ndarray | None = None
     share_error: np.ndarray | None = None
     certain: np.ndarray | None = None
+    seed: int | None = None
 
     @property
     def shape(self) -> tuple:

@@ -4,6 +4,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from ..files import written_whole
+from ..origin import origin_texts
 
 DPI = 160
 MAP_COLOURS = "inferno"
@@ -32,9 +33,12 @@ def new_figure(width: float, height: float):
         yield figure
 
 
-def save_png(figure, path) -> None:
-    """Writes a figure as PNG, whole or not at all; the same figure gives the same bytes."""
+def save_png(figure, path, *, seed=None, noise_seed=None) -> None:
+    """Writes a figure as PNG, whole or not at all, with what made it as text chunks; the same figure gives the same bytes.
+
+    seed: of the rays, noise_seed: of the thermal noise; None: there are none
+    """
     import matplotlib
 
     with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary:
-        figure.savefig(temporary, format="png", dpi=DPI, metadata={"Software": "echopath"})
+        figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))

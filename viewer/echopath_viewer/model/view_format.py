@@ -86,6 +86,7 @@ def _is_rectangle(value) -> bool:
 
 _RULES = {
     "frame": (_is_text, "a text"),
+    "seed": (lambda value: isinstance(value, int) and not isinstance(value, bool), "an integer"),
     "filters": (_is_filters, f"a table of {', '.join(field.name for field in dataclasses.fields(Filters))}"),
     "own_parts": (_is_table_of(_is_recipe), "a table of parts with their part, node and filters"),
     "node": (_or_none(_is_text), "a name or null"),

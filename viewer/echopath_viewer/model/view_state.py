@@ -16,7 +16,8 @@ from .view_format import FORMAT, VERSION, check_state
 def state_of(session) -> dict:
     """What the session shows, in plain JSON values."""
     return {
-        "format": FORMAT, "version": VERSION, "frame": session.title, "filters": dataclasses.asdict(session.filters),
+        "format": FORMAT, "version": VERSION, "frame": session.title, "seed": session.paths.frame.seed,
+        "filters": dataclasses.asdict(session.filters),
         "own_parts": {part.name: part.recipe for part in session.parts.of_group(OWN_GROUP)},
         "node": session.node, "node_base": list(session.node_base),
         "part": list(session.part_key), "partition": session.partition, "channel": list(session.channel),

@@ -5,6 +5,7 @@ import numpy as np
 import pyvista as pv
 
 from echopath.files import written_whole
+from echopath.origin import origin_texts
 
 from .polydata import lines_of, triangles_of
 
@@ -14,7 +15,7 @@ def export_rays(session, path, rays=None) -> int:
 
     rays: indices of paths, None: those that are drawn; path: of the file, written whole or not at all
     Cell data: path, bounce, num_bounces, mesh_id, power_dbm (dB re 1 mW), range (m), velocity (m/s). Field data:
-    mesh_names, time (s), transmitter, receiver. Returns the number of rays.
+    mesh_names, time (s), transmitter, receiver, software, seed. Returns the number of rays.
     """
     segments = session.segments(session.listed_rays() if rays is None else rays)
     poly = lines_of(segments.points, segments.ends)
@@ -28,7 +29,7 @@ def export_rays(session, path, rays=None) -> int:
     poly.field_data["time"] = [session.time]
     for name, number in zip(("transmitter", "receiver"), session.channel):
         poly.field_data[name] = [number]
-    _write(poly, path)
+    _write(poly, path, session)
     return len(segments.rays)
 
 
@@ -48,13 +49,16 @@ def export_meshes(session, path) -> int:
     poly = triangles_of(np.concatenate(points), np.concatenate(faces))
     poly.cell_data["mesh_id"] = np.concatenate(mesh_id)
     poly.field_data["mesh_names"] = list(session.mesh_names)
-    _write(poly, path)
+    _write(poly, path, session)
     return len(shown)
 
 
-def _write(poly: pv.PolyData, path) -> None:
+def _write(poly: pv.PolyData, path, session) -> None:
+    """With the version of the program and the seed of the rays among its field data."""
     path = str(path)
     if not path.endswith(".vtp"):
         raise ValueError(f"path: must end in .vtp, got {path}")
+    for name, text in origin_texts(session.paths.frame.seed).items():
+        poly.field_data[name.lower()] = [text]
     with written_whole(path) as temporary:
         poly.save(temporary)

@@ -8,6 +8,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.files import written_whole
+from echopath.origin import origin_texts
 
 from ..model import COLOUR_MODES, Session, from_file, from_frame
 from ..model.view_state import apply_state, load_state, save_state, state_of
@@ -250,8 +251,11 @@ class MainWindow(QtWidgets.QMainWindow):
     def screenshot(self, path) -> None:
         """Writes a picture of the window. Raises ep.FileError."""
         self.view3d.render()
+        picture = self.grab().toImage()
+        for keyword, text in origin_texts(self.session.paths.frame.seed if self.session else None).items():
+            picture.setText(keyword, text)
         with written_whole(Path(path).with_suffix(".png")) as temporary:
-            self.grab().save(str(temporary), "PNG")
+            picture.save(str(temporary), "PNG")
 
     # --- making ---
 

@@ -19,6 +19,10 @@ namespace {
 // A hit is confirmed when the rebuilt point lies this near the ray: 1 mm plus 1e-5 of the distance.
 constexpr double kFalseHitAbsolute = 1e-3;  // m
 constexpr double kFalseHitRelative = 1e-5;
+// What a ray in single precision explains of that distance, a few units. More is due to (u, v): on a triangle 10 m long and 1 mm
+// high they are off by up to a millimetre.
+constexpr double kRoundedAbsolute = 1e-6;  // m
+constexpr double kRoundedRelative = 5e-7;
 constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -104,6 +108,19 @@ void forget_hit(RTCHit& hit) {
 void forget_hit(RTCHit16& hits, int lane) {
   hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
   hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
+// Meets the plane of a triangle in double; (u, v) of the point of the triangle next to there, each rounded once.
+void meet_again(const Vec3& from, const Vec3& direction, const std::array<Vec3, 3>& corners, Hit& hit) {
+  const Vec3 along_u = corners[1] - corners[0], along_v = corners[2] - corners[0], normal = along_u.cross(along_v);
+  const double slope = normal.dot(direction), size = normal.squaredNorm();
+  if (slope == 0) return;
+  const Vec3 point = from + normal.dot(corners[0] - from) / slope * direction - corners[0];
+  const double u = std::max(0.0, point.cross(along_v).dot(normal) / size);
+  const double v = std::max(0.0, along_u.cross(point).dot(normal) / size);
+  const double sum = std::max(1.0, u + v);
+  hit.u = static_cast<float>(u / sum);
+  hit.v = static_cast<float>(v / sum);
 }
 
 // -1 for each lane of a packet that is in use.
@@ -238,17 +255,22 @@ void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count,
 // Rebuilds in double what Embree reports, the `hit.hit` of a ray.
 EmbreeScene::Verdict EmbreeScene::confirm(const Vec3& from, const Vec3& direction, RayHit& out) const {
   if (out.hit.mesh_id == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
-  const auto [a, b, c] = corners(out.hit.mesh_id, out.hit.triangle_id);
-  const double u = out.hit.u, v = out.hit.v;
-  out.position = a + u * (b - a) + v * (c - a);
-  out.distance = direction.dot(out.position - from);
-  const double squared_miss = (from + out.distance * direction - out.position).squaredNorm();
-  const double allowed = kFalseHitAbsolute + kFalseHitRelative * out.distance;
-  if (out.distance <= 0 || squared_miss > allowed * allowed) return Verdict::kFalseHit;
+  const auto triangle = corners(out.hit.mesh_id, out.hit.triangle_id);
+  const auto& [a, b, c] = triangle;
+  const auto misses = [&](double absolute, double relative) {
+    out.position = a + double{out.hit.u} * (b - a) + double{out.hit.v} * (c - a);
+    out.distance = direction.dot(out.position - from);
+    const double allowed = absolute + relative * out.distance;
+    return out.distance <= 0 || (from + out.distance * direction - out.position).squaredNorm() > allowed * allowed;
+  };
+  if (misses(kRoundedAbsolute, kRoundedRelative)) {
+    meet_again(from, direction, triangle, out.hit);
+    if (misses(kFalseHitAbsolute, kFalseHitRelative)) return Verdict::kFalseHit;
+  }
   out.normal = (b - a).cross(c - a).normalized();
   out.is_smooth = false;
   out.stretch = 1.0;
-  if (surfaces_[out.hit.mesh_id].normals) curve({a, b, c}, direction, out);
+  if (surfaces_[out.hit.mesh_id].normals) curve(triangle, direction, out);
   if (out.normal.dot(direction) > 0) {
     out.normal = -out.normal;
     if (out.is_smooth) out.curvature = -out.curvature;

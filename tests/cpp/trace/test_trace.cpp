@@ -1,6 +1,7 @@
 // The record of a trace: determinism, shapes, offsets of the world, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -115,6 +116,42 @@ TEST(Trace, HitsLieOnTheirTriangles) {
     EXPECT_LE(hit.normal.dot(direction), 0.0);
   }
   EXPECT_GT(num_hits, 100);
+}
+
+// A wall across the x axis, cut into pairs of slivers as high as it is.
+void add_slivers(Scene& scene, double distance, double width, double height, int num_pairs) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  for (int k = 0; k <= num_pairs; ++k) {
+    for (const double z : {-0.5 * height, 0.5 * height}) vertices.emplace_back(distance, (k - 0.5 * num_pairs) * width, z);
+  }
+  for (uint32_t k = 0; k < static_cast<uint32_t>(2 * num_pairs); k += 2) {
+    triangles.push_back({k, k + 2, k + 1});
+    triangles.push_back({k + 2, k + 3, k + 1});
+  }
+  add_mesh(scene, "slivers", std::move(vertices), std::move(triangles), share(Material::metal()));
+}
+
+// 10 m by 0.1 mm: single-precision (u, v) lose one ray in four, and leave 0.1 mm (median) to those they keep.
+TEST(Trace, SliversAreMetInDoublePrecision) {
+  constexpr double kDistance = 5.0;
+  constexpr double kPosition = 1e-6;  // m, median: 10 m times the rounding of u and v; where less rounds the ray, 10 times that
+  Scene scene;
+  add_slivers(scene, kDistance, 1e-4, 10.0, 10000);
+  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const int num_rays = 5000;
+  std::vector<double> errors;
+  for (int i = 0; i < num_rays; ++i) {
+    const Vec3 target(kDistance, 0.45 * std::sin(0.7 * i), 4.5 * std::sin(1.3 * i)), direction = target.normalized();
+    RayHit hit;
+    if (geometry.intersect(Vec3::Zero(), direction, hit) != EmbreeScene::Verdict::kHit) continue;
+    EXPECT_LT(std::abs(hit.position.x() - kDistance), 1e-12);
+    errors.push_back((hit.position - target).norm());
+  }
+  EXPECT_GT(errors.size(), 0.999 * num_rays);
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], kPosition);
+  EXPECT_LT(errors[errors.size() * 99 / 100], 10.0 * kPosition);
 }
 
 // Packets answer what single rays answer, whatever stands beside them.

@@ -29,23 +29,24 @@ def test_hits_and_shadows_are_those_of_a_second_tracer(seed):
     assert heavy.shadow_disagreement(seed, 100_000) <= SECOND_TRACER_SHARE
 
 
-def test_names_are_unique_and_every_case_says_what_it_expects():
+def test_names_are_unique_and_every_case_says_what_it_expects_and_how_it_fails():
     cases = hard.all_cases()
     assert len({case.name for case in cases}) == len(cases) > 60
-    assert all(case.expected and case.group and case.bound_text for case in cases)
+    assert all(case.expected and case.group and case.bound_text and case.broken for case in cases)
 
 
 def test_nan_keeps_to_no_bound():
     for at_least in (False, True):
-        assert not hard.Case("x", "g", "e", 0.0, "", lambda: 0.0, at_least).holds(float("nan"))
+        assert not hard.Case("x", "g", "e", 0.0, "", lambda: 0.0, "", at_least).holds(float("nan"))
 
 
 def test_the_page_has_no_empty_cell_and_tells_what_fails(tmp_path, monkeypatch, capsys):
     def broken():
         raise ValueError("no | such\nthing")
 
-    few = [hard.Case("good", "one", "small", 1.0, "m", lambda: 0.5), hard.Case("bad", "one", "small", 1.0, "m", lambda: 2.0),
-           hard.Case("ill", "two", "anything", 1.0, "", broken)]
+    few = [hard.Case("good", "one", "small", 1.0, "m", lambda: 0.5, "no | guard: 3"),
+           hard.Case("bad", "one", "small", 1.0, "m", lambda: 2.0, "none"),
+           hard.Case("ill", "two", "anything", 1.0, "", broken, "none")]
     monkeypatch.setattr(hard, "all_cases", lambda with_heavy: few)
     assert main(["bench", "hard", "--out", str(tmp_path), "--quick"]) == 0
     text = (tmp_path / "hard.md").read_text(encoding="utf-8")

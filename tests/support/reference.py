@@ -55,6 +55,7 @@ class Reference:
         self.materials = [mesh.material for mesh in scene.meshes]
         self.wavelength = C / radar.waveform.start_frequency
         self.spacing = spacing
+        self.sees_shadows = True
         rest = self.triangles(trace_time)[0]
         longest = np.linalg.norm(rest - np.roll(rest, 1, axis=1), axis=2).max(axis=1)
         self.pieces = np.maximum(1, np.ceil(longest / spacing)).astype(int)
@@ -101,7 +102,7 @@ class Reference:
         line = antenna - cells.points
         length = np.linalg.norm(line, axis=1)
         toward = line / length[:, None]
-        free = ~blocked(cells.points, np.broadcast_to(antenna, cells.points.shape), corners, cells.triangle)
+        free = ~self.blocked(cells.points, np.broadcast_to(antenna, cells.points.shape), corners, cells.triangle)
         return Leg(length, toward, free.astype(complex), -toward, np.zeros(len(length), bool), -1)
 
     def _over(self, cells, antenna, corners, owner, mesh):
@@ -123,13 +124,19 @@ class Reference:
         for index in mine:
             on_plane |= inside(point, corners[index])
         ok = same_side & on_plane
-        ok &= ~blocked(cells.points, point, corners, cells.triangle, leave_out=mine)
-        ok &= ~blocked(np.broadcast_to(antenna, point.shape), point, corners, np.full(len(point), -1), leave_out=mine)
+        ok &= ~self.blocked(cells.points, point, corners, cells.triangle, leave_out=mine)
+        ok &= ~self.blocked(np.broadcast_to(antenna, point.shape), point, corners, np.full(len(point), -1), leave_out=mine)
         leaving = _unit(point - antenna)
         cosine = np.abs(leaving @ normal)
         coefficient, is_tm = self.coefficient(mesh, cosine, leaving, normal)
         gain = np.where(ok, coefficient * self.shares(mesh, cosine)[0], 0.0)
         return Leg(length, toward, gain, leaving, is_tm & (not self.materials[mesh].mirror), mesh)
+
+    def blocked(self, starts, ends, *arguments, **keywords):
+        """`blocked`, which nothing is where shadows are not looked at."""
+        if not self.sees_shadows:
+            return np.zeros(len(starts), bool)
+        return blocked(starts, ends, *arguments, **keywords)
 
     # --- surfaces ---
 
@@ -242,6 +249,7 @@ class Reference:
         waveform = self.radar.waveform
         t = np.arange(waveform.num_samples) / waveform.sampling_rate
         seen = [field != 0 for _, field, _ in self.pairs(self.trace_time)[1]]
+        self.sees_shadows = False
         out = np.zeros((waveform.num_chirps, waveform.num_samples), complex)
         for j in range(waveform.num_chirps):
             begin = j * waveform.chirp_interval
@@ -249,6 +257,7 @@ class Reference:
             for n, offset in enumerate(t):
                 echoes = [*zip(self._lengths(begin + offset), fields), *self.planes_alone(begin + offset)]
                 out[j, n] = sum(self._sample(length, field, offset) for length, field in echoes)
+        self.sees_shadows = True
         return out
 
     def _lengths(self, time):

@@ -7,9 +7,9 @@ import echopath as ep
 
 from .reference import Reference
 
-SPACING = 2e-3        # m, of the reference's cells: a few hundredths of a turn where plates nearly face the radar
+SPACING = 1e-3        # m, of the reference's cells: edges of shadows fall between them, a percent of a plate of 0.1 m
 ROUGH_SPACING = 2e-3  # m, of rough plates: their powers add, but fringes of images are as narrow
-NUM_RAYS, BATCHES = 2 ** 15, 8
+NUM_RAYS, BATCHES = 2 ** 16, 8
 
 
 @dataclasses.dataclass
@@ -38,11 +38,14 @@ def random_material(random, *, rough):
 
 
 def random_scene(seed, *, rough):
-    """Plates that nearly face the radar, one perhaps in the shadow of another, moving, beside up to one large plane."""
+    """Plates that nearly face the radar, often one in the shadow of another, moving, beside up to one large plane."""
     random = np.random.default_rng(seed)
     scene = ep.Scene()
+    at = np.zeros(3)
     for k in range(random.integers(1, 4)):
-        at = np.array([random.uniform(5, 8), random.uniform(-1, 1), random.uniform(-0.8, 0.8)])
+        behind, at = at, np.array([random.uniform(5, 8), random.uniform(-1, 1), random.uniform(-0.8, 0.8)])
+        if k > 0 and not rough:  # plates as small as these would hardly ever hide each other
+            at = random.uniform(0.6, 0.8) * behind + np.array([0.0, *random.uniform(-0.04, 0.04, 2)])
         side = random.uniform(0.2, 0.4) if rough else random.uniform(0.06, 0.1)
         spread = 0.4 if rough else 0.005
         yaw = np.arctan2(at[1], at[0]) + random.uniform(-spread, spread)

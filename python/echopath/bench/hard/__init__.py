@@ -54,8 +54,8 @@ def run_hard(folder, *, quick: bool = False, progress=None) -> list[Result]:
             progress("hard", index / len(cases))
         results.append(measure(case))
     rows = [{"group": one.case.group, "case": one.case.name, "bound": one.case.bound_text, "value": one.value,
-             "holds": one.holds,
-             "seconds": one.seconds, "error": one.error} for one in results]
+             "holds": one.holds, "seen_to_fail": one.case.broken, "seconds": one.seconds, "error": one.error}
+            for one in results]
     write_texts(folder, {"hard.md": page(results, described(machine())),
                          "hard.json": json.dumps({"machine": machine(), "cases": rows}, indent=1)})
     if progress:

@@ -12,6 +12,7 @@ class Case:
     name: unique; group: heading of the page; expected: what must hold, in words
     bound: of the measured value, in `unit`, largest or (at_least) smallest
     measure: callable () -> value; is_heavy: too long for a test suite
+    broken: how the case was seen to fail: what was taken out of the program, and the value that came out
     """
 
     name: str
@@ -20,6 +21,7 @@ class Case:
     bound: float
     unit: str
     measure: Callable[[], float]
+    broken: str
     at_least: bool = False
     is_heavy: bool = False
 
@@ -33,16 +35,16 @@ class Case:
 
 
 class Cases(list):
-    """Cases of one group, filled by a decorator: @cases("name", "expected", bound=1e-6, unit="m")."""
+    """Cases of one group, filled by a decorator: @cases("name", "expected", bound=1e-6, unit="m", broken="...")."""
 
     def __init__(self, group: str):
         super().__init__()
         self.group = group
 
-    def __call__(self, name: str, expected: str, *, bound: float, unit: str = "", at_least: bool = False,
+    def __call__(self, name: str, expected: str, *, bound: float, broken: str, unit: str = "", at_least: bool = False,
                  heavy: bool = False):
         def keep(measure):
-            self.append(Case(name, self.group, expected, bound, unit, measure, at_least, heavy))
+            self.append(Case(name, self.group, expected, bound, unit, measure, broken, at_least, heavy))
             return measure
 
         return keep

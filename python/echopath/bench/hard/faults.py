@@ -59,7 +59,8 @@ while True:
 """
 
 
-@cases("kill -9 while a file is written", "files that are neither the old nor the new one", bound=0.0, unit="files")
+@cases("kill -9 while a file is written", "files that are neither the old nor the new one", bound=0.0, unit="files",
+       broken="files written in place: 4")
 def killed() -> float:
     return float(sum(killed_after(delay) for delay in (0.003, 0.011, 0.023, 0.05)))
 
@@ -95,7 +96,8 @@ print(path.read_bytes() == before, len(list(path.parent.iterdir())), len(os.list
 
 
 @cases("no space left", "a file error that names the file; the old file stays, nothing else is left behind, and the next "
-       "write works (of these five, broken)", bound=0.0, unit="promises")
+       "write works (of these five, broken)", bound=0.0, unit="promises",
+       broken="files written in place: 1; errors of the system passed on: 2")
 def no_space() -> float:
     with tempfile.TemporaryDirectory() as folder:
         error, after, later = run(NO_SPACE, Path(folder) / "paths.h5")
@@ -105,7 +107,8 @@ def no_space() -> float:
     return float(len(promises) - sum(promises))
 
 
-@cases("a folder that cannot be written", "a file error that names the file", bound=0.0, unit="promises broken")
+@cases("a folder that cannot be written", "a file error that names the file", bound=0.0, unit="promises broken",
+       broken="errors of the system passed on: FileExistsError")
 def unwritable() -> float:
     from .repeat import small_street
 
@@ -124,20 +127,22 @@ def unwritable() -> float:
 
 NO_MEMORY = """
 traced(1000)
-limit = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize() + (300 << 20)
+pages = [int(word) for word in open("/proc/self/statm").read().split()[:2]]
+limit, before = pages[0] * resource.getpagesize() + (300 << 20), pages[1] * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
 print(error_of(lambda: traced(3000000, max_bounces=16)))
 resident = int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize()
-print(resident >> 20)
+print((resident - before) >> 20)
 print(traced(1000).num_paths > 0)
 """
 
 
 @cases("memory exceeded", "300 MiB for a record of a gigabyte: MemoryError, what was made is given back and the next trace "
-       "works (of these three, broken)", bound=0.0, unit="promises")
+       "works (of these three, broken)", bound=0.0, unit="promises",
+       broken="blocks of rays kept after the failure: 1")
 def no_memory() -> float:
-    error, resident, works = run(NO_MEMORY)
-    promises = [error.startswith("MemoryError"), int(resident) < 500, works == "True"]
+    error, kept, works = run(NO_MEMORY)
+    promises = [error.startswith("MemoryError"), int(kept) < 50, works == "True"]
     return float(len(promises) - sum(promises))
 
 
@@ -163,7 +168,8 @@ except KeyboardInterrupt:
 
 
 @cases("Ctrl-C", "time from Ctrl-C to KeyboardInterrupt in trace, synthesis and, three times, file writing; no half-written "
-       "file is left", bound=1.5, unit="s")
+       "file is left", bound=1.5, unit="s",
+       broken="a job that cannot be cancelled: no answer within 10 s")
 def ctrl_c() -> float:
     moments = (("trace", 0.3), ("synthesis", 0.3), ("file", 0.3), ("file", 0.4), ("file", 0.5))
     return max(stopped_after(work, delay) for work, delay in moments)

@@ -20,7 +20,8 @@ cases = Cases("Large")
 NO_MESH = 2 ** 32 - 1
 
 
-@cases("10 million rays at edges of a cube", "share that leaks", bound=1e-6, unit="of them", heavy=True)
+@cases("10 million rays at edges of a cube", "share that leaks", bound=1e-6, unit="of them", heavy=True,
+       broken="Embree without its robust flag: 0.052")
 def leaks_of_a_cube() -> float:
     box, lost = shapes.box(2.0, edge=0.25), 0
     scene, origins = scene_of(("box", box, METAL)), np.random.default_rng(6).uniform(-0.8, 0.8, (10, 3))
@@ -29,7 +30,8 @@ def leaks_of_a_cube() -> float:
     return lost / 1e7
 
 
-@cases("10 million triangles", "a plate of 10 million triangles has the level of two", bound=0.02, unit="dB", heavy=True)
+@cases("10 million triangles", "a plate of 10 million triangles has the level of two", bound=0.02, unit="dB", heavy=True,
+       broken="the area of the triangle instead of that of the ray's cell: 134 dB")
 def ten_million_triangles() -> float:
     edge = 0.1 / np.sqrt(10e6 / 2)
     fine = shapes.plate(0.1, 0.1, edge=edge)
@@ -38,7 +40,8 @@ def ten_million_triangles() -> float:
 
 
 @cases("100 million hits", "a rough box traced from inside by 100 million rays: hits that are not in the record, and its "
-       "power beside the integral over the walls", bound=1e-3, unit="relative", heavy=True)
+       "power beside the integral over the walls", bound=1e-3, unit="relative", heavy=True,
+       broken="every 500th block of rays lost: 2.1e-3")
 def hundred_million_hits() -> float:
     count, reflectivity, place, size = 100_000_000, 0.5, np.array([0.3, 0.2, 0.1]), np.array([8.0, 6.0, 4.0])
     scene = scene_of(("box", shapes.box(tuple(size)), ep.Material(reflectivity=reflectivity, scattering=1.0)))
@@ -63,7 +66,8 @@ def _walls(place, size, count: int = 400) -> float:
 
 
 @cases("1 000 traces", "traces, replays and signals in a loop: growth of the resident memory over the last 800", bound=8.0,
-       unit="MiB", heavy=True)
+       unit="MiB", heavy=True,
+       broken="Embree's scene not released: 200 MiB")
 def thousand_traces() -> float:
     scene, radar = small_street(4)
     settled = 0.0
@@ -84,14 +88,16 @@ def resident() -> int:
 
 
 @cases("a second ray tracer", "20 random scenes, a million random rays each, against Embree 4 of embreex: share with "
-       "another first hit, rays within single precision of an edge apart", bound=1e-5, unit="of the rays", heavy=True)
+       "another first hit, rays within single precision of an edge apart", bound=1e-5, unit="of the rays", heavy=True,
+       broken="surfaces of one side: 0.061 (one scene)")
 def second_tracer() -> float:
     return max(disagreement(seed, 1_000_000) for seed in range(20))
 
 
 @cases("shadows of a second ray tracer", "the same scenes: share of segments that only one of the two finds free",
        bound=1e-5,
-       unit="of the segments", heavy=True)
+       unit="of the segments", heavy=True,
+       broken="shadow rays that end 1 % early: 5.2e-4 (one scene)")
 def second_shadows() -> float:
     return max(shadow_disagreement(seed, 1_000_000) for seed in range(20))
 

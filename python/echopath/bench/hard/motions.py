@@ -8,7 +8,7 @@ from echopath import _core
 
 from ...actors import shapes
 from .case import Cases
-from .scenes import METAL, ROUGH, make_radar, scene_of, traced, traced_quietly
+from .scenes import METAL, POWER, ROUGH, make_radar, scene_of, traced, traced_quietly
 
 cases = Cases("Motion")
 C = ep.speed_of_light
@@ -26,7 +26,8 @@ def cube_error(paths, **settings) -> float:
                                       **settings) - exact_cube).max() / np.abs(exact_cube).max())
 
 
-@cases("static scene", "all chirps hold the same bits: largest difference between them", bound=0.0, unit="sqrt(W)")
+@cases("static scene", "all chirps hold the same bits: largest difference between them", bound=0.0, unit="sqrt(W)",
+       broken="what is at rest interpolated like what moves: 5.5e-17")
 def static_scene() -> float:
     scene = scene_of(("ball", shapes.sphere(0.4), ROUGH, {"position": (6.0, 0.5, 0.2)}),
                      ("plate", shapes.plate(1.0, 1.0), METAL,
@@ -39,7 +40,8 @@ def static_scene() -> float:
 
 
 @cases("velocity jumps", "linear keyframes with kinks in chirps: polynomials are cut there (error beside the exact replay)",
-       bound=3e-5, unit="of the signal")
+       bound=3e-5, unit="of the signal",
+       broken="polynomials across the jumps, their tails not looked at: 2.0")
 def velocity_jumps() -> float:
     times = np.array([-1e-3, 0.41e-3, 0.4137e-3, 1.333e-3, 4e-3])
     points = np.array([[10.0, 0, 0], [10.03, 0, 0], [10.03, 0, 0], [9.99, 0.01, 0], [10.08, 0, 0.01]])
@@ -47,7 +49,8 @@ def velocity_jumps() -> float:
     return cube_error(traced(moving_patch(motion, 0.05), make_radar(num_chirps=64), 4000))
 
 
-@cases("phases through a velocity jump", "lengths at any time are twice the distance of the keyframes", bound=1e-9, unit="m")
+@cases("phases through a velocity jump", "lengths at any time are twice the distance of the keyframes", bound=1e-9, unit="m",
+       broken="splines through linear keyframes: 0.060 m")
 def lengths_through_jump() -> float:
     times, x = np.array([-1.0, 1e-3, 5e-3]), np.array([10.0, 10.02, 9.9])
     motion = ep.KeyframeMotion(times=times, translations=np.column_stack([x, 0 * x, 0 * x]), interpolation="linear")
@@ -58,7 +61,8 @@ def lengths_through_jump() -> float:
 
 @cases("interpenetrating meshes",
        "two bodies that move through each other: hits are those of a brute-force search at that time (rays)",
-       bound=0.0, unit="rays")
+       bound=0.0, unit="rays",
+       broken="the pose of time 0 at all times: 2487 rays")
 def interpenetrating() -> float:
     scene = scene_of(("box", shapes.box(0.6), METAL, {"motion": ep.LinearMotion(velocity=(10.0, 0, 0)), "position": (4.0,
                                                                                                                      0.0,
@@ -96,7 +100,8 @@ def brute_force(scene, directions, time: float):
 
 @cases("parts of moving bodies in each other", "the parts of two bodies that move through each other add up to the whole",
        bound=1e-12,
-       unit="of the signal")
+       unit="of the signal",
+       broken="one group of paths left out: 0.88")
 def interpenetrating_parts() -> float:
     scene = scene_of(("box", shapes.box(0.6), ep.Material(reflectivity=0.5, scattering=0.7),
                       {"motion": ep.LinearMotion(velocity=(10.0, 0, 0)), "position": (4.0, 0.0, 0.0)}),
@@ -108,23 +113,26 @@ def interpenetrating_parts() -> float:
     return float(np.abs(sum(parts.values()) - whole).max() / np.abs(whole).max())
 
 
-@cases("a body that drives through the radar", "samples that are not finite while a plate passes both antennas", bound=0.0,
-       unit="samples")
+@cases("a body that drives through the radar", "a rough and a metal plate pass both antennas: largest sample beside "
+       "the field that is sent", bound=1.0, unit="of the field",
+       broken="contributions beside the antennas kept: 14")
 def through_the_radar() -> float:
-    bad = 0
+    worst = 0.0
     for start in (-0.0005, -0.00048, -0.02):
         motion = ep.LinearMotion(velocity=(1.0, 0.0, 0.0))
         scene = scene_of(("plate", shapes.plate(0.3, 0.3), ROUGH, {"position": (start, 0.0, 0.0), "motion": motion}),
                          ("metal", shapes.plate(0.2, 0.2), METAL, {"position": (0.3 + start, 0.0, 0.0), "motion": motion}))
         paths = traced_quietly(scene, make_radar(num_chirps=32), 4000)
         for settings in ({}, {"evaluate": "chirps"}, {"replay": "fermat"}, {"retrace": "invalid", "keyframes": 4}):
-            bad += int(np.sum(~np.isfinite(ep.synthesize(paths, paths.radar, **settings))))
-    return float(bad)
+            largest = float(np.abs(ep.synthesize(paths, paths.radar, **settings)).max()) / np.sqrt(POWER)
+            worst = max(worst, largest) if np.isfinite(largest) else np.inf
+    return worst
 
 
 @cases("a plate that turns edge-on", "its echo goes through zero when it shows the radar its edge: beside the exact replay",
        bound=3e-4,
-       unit="of the signal")
+       unit="of the signal",
+       broken="tails of the polynomials not looked at: 0.088")
 def edge_on() -> float:
     motion = ep.LinearMotion(angular_velocity=(0.0, 0.0, 0.3 / 2e-3))
     scene = ep.Scene()
@@ -133,7 +141,8 @@ def edge_on() -> float:
     return cube_error(traced(scene, make_radar(num_chirps=64), 4000))
 
 
-@cases("a motion that ends too soon", "refused, naming the object", bound=0.0, unit="accepted")
+@cases("a motion that ends too soon", "refused, naming the object", bound=0.0, unit="accepted",
+       broken="times not checked: accepted")
 def too_short() -> float:
     motion = ep.KeyframeMotion(times=[0.0, 1e-6], translations=[[5.0, 0, 0], [6.0, 0, 0]], interpolation="linear")
     try:
@@ -145,7 +154,8 @@ def too_short() -> float:
 
 @cases("a frame at a late start", "the same motion one hour later, around the same place: relative change of the signal",
        bound=1e-5,
-       unit="of the signal")
+       unit="of the signal",
+       broken="times in single precision: 1.35")
 def late_start() -> float:
     hour, speed = 3600.0, -8.0
     cubes = []
@@ -158,7 +168,8 @@ def late_start() -> float:
     return float(np.linalg.norm(cubes[0] - cubes[1]) / np.linalg.norm(cubes[0]))
 
 
-@cases("one chirp, one sample, one ray", "a frame of the smallest size is finite", bound=0.0, unit="values not finite")
+@cases("one chirp, one sample, one ray", "a frame of the smallest size is finite", bound=0.0, unit="values not finite",
+       broken="no guard of windows of one sample: 1")
 def smallest_frame() -> float:
     radar = make_radar(num_chirps=1, num_samples=1, bandwidth=1e6)
     frame = ep.simulate(scene_of(("ball", shapes.sphere(0.4), ROUGH, {"position": (6.0, 0.0, 0.0)})), radar, num_rays=1)

@@ -37,11 +37,11 @@ def power() -> float:
 if (TESTS / "support" / "reference_scenes.py").exists():
     cases("fields of 20 random scenes",
           "up to three moving smooth plates of metal or dielectrics, in each other's shadow, beside a large "
-          "plane: complex field at mid-frame, currents summed over a grid", bound=0.02, unit="of the field",
-          heavy=True)(field)
+          "plane: complex field at mid-frame, currents summed over a grid", bound=0.01, unit="of the field",
+          broken="no shadow rays: 0.25; the other root of a lossy permittivity: 0.12", heavy=True)(field)
     cases("IF samples of 20 random scenes", "the same with the delays of the equations at every sample, three chirps",
-          bound=0.005,
-          unit="of the signal", heavy=True)(samples)
+          bound=0.005, unit="of the signal",
+          broken="no shadow rays: 0.30; the other root of a lossy permittivity: 0.051", heavy=True)(samples)
     cases("diffuse powers of 20 random scenes",
           "rough plates, all pairs of legs with one phase a point: mean power, beyond 1 %", bound=4.0,
-          unit="standard errors", heavy=True)(power)
+          unit="standard errors", broken="no shadow rays: 8.7", heavy=True)(power)

@@ -5,9 +5,10 @@ HEAD = """# Hard cases
 
 What is known to break a ray tracer or a coherent sum, what must hold there, and what `echopath bench hard` measured
 ({machine}).
+The last column says how each case was seen to fail: what was taken out of the program, and the value that came out.
 {count} cases, {holding} hold.
 """
-COLUMNS = "| case | expected | bound | measured | verdict |\n|---|---|---|---|---|"
+COLUMNS = "| case | expected | bound | measured | verdict | seen to fail |\n|---|---|---|---|---|---|"
 
 
 def page(results: list, machine: str) -> str:
@@ -23,8 +24,8 @@ def row(result) -> str:
     """One case as a row of the table, no cell empty."""
     case = result.case
     measured = result.error or f"{result.value:.5g} {case.unit}".rstrip()
-    return "| " + " | ".join(_cell(text) for text in (case.name, case.expected, case.bound_text, measured,
-                                                      "holds" if result.holds else "**fails**")) + " |"
+    verdict = "holds" if result.holds else "**fails**"
+    return "| " + " | ".join(map(_cell, (case.name, case.expected, case.bound_text, measured, verdict, case.broken))) + " |"
 
 
 def _cell(text: str) -> str:

@@ -8,7 +8,7 @@ import echopath as ep
 from ...actors import shapes
 from .. import closed_forms as exact
 from .case import Cases
-from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, make_radar, plate_at, rcs_of, scene_of, traced,
+from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, field, make_radar, plate_at, rcs_of, scene_of, traced,
                      traced_quietly)
 
 cases = Cases("Places and materials")
@@ -21,7 +21,8 @@ def not_finite(paths) -> int:
 
 
 @cases("radar inside a closed mesh", "every ray meets the wall, and the power is that of an integrating sphere", bound=0.05,
-       unit="dB")
+       unit="dB",
+       broken="rays aimed at what is around the radar: NaN directions, which Embree refuses")
 def inside_closed() -> float:
     radius, reflectivity = 3.0, 0.3
     scene = scene_of(("sphere", shapes.sphere(radius, subdivisions=40),
@@ -35,7 +36,8 @@ def inside_closed() -> float:
     return abs(decibels(float(np.sum(np.abs(paths.amplitude[one_bounce]) ** 2)) / expected))
 
 
-@cases("radar inside metal", "it sees nothing of the world outside", bound=0.0, unit="paths")
+@cases("radar inside metal", "it sees nothing of the world outside", bound=0.0, unit="paths",
+       broken="surfaces of one side: 16 260 paths")
 def inside_metal() -> float:
     scene = scene_of(("shell", shapes.sphere(0.5), METAL), plate_at(10.0, 1.0))
     paths = traced(scene, make_radar(), 30_000)
@@ -45,7 +47,8 @@ def inside_metal() -> float:
 
 @cases("radar exactly on a surface",
        "neither before nor behind it: all that meets it is dropped and counted (rays not accounted for)",
-       bound=0.0, unit="rays")
+       bound=0.0, unit="rays",
+       broken="contributions beside the antennas kept: 3847 rays")
 def on_surface() -> float:
     paths = traced_quietly(scene_of(("bumper", shapes.plate(1.0, 1.0), ROUGH), plate_at(20.0)), make_radar(), 2 ** 15)
     counts = paths.frame.statistics
@@ -55,7 +58,8 @@ def on_surface() -> float:
 
 @cases("radar a hair off a surface", "contributions within 1 mm of an antenna are dropped and counted, all else is finite",
        bound=0.0,
-       unit="values not finite")
+       unit="values not finite",
+       broken="contributions beside the antennas kept: none is counted as dropped")
 def beside_surface() -> float:
     bad = 0
     for gap in (1e-9, 1e-6, 5e-4, 1e-3):
@@ -66,7 +70,8 @@ def beside_surface() -> float:
     return float(bad)
 
 
-@cases("radar under the ground", "it sees the ground from below and nothing above it", bound=0.0, unit="paths")
+@cases("radar under the ground", "it sees the ground from below and nothing above it", bound=0.0, unit="paths",
+       broken="surfaces of one side: 16 027 paths")
 def under_ground() -> float:
     scene = scene_of(("ground", shapes.ground(400.0), ep.Material(permittivity=5 - 0.3j, mirror=True, scattering=0.3)),
                      ("plate", shapes.plate(1.0, 1.0), METAL, {"position": (10.0, 0.0, 1.0)}))
@@ -76,7 +81,8 @@ def under_ground() -> float:
 
 
 @cases("receiver behind a screen", "paths of a rough plate, in full view of the transmitter, that reach it through metal",
-       bound=0.0, unit="paths")
+       bound=0.0, unit="paths",
+       broken="no shadow rays: 5269 paths")
 def behind_a_screen() -> float:
     screen = ("screen", shapes.plate(2.0, 2.0), METAL, {"position": (1.0, 3.0, 0.0)})
     paths = traced(scene_of(("plate", shapes.plate(1.0, 1.0), ROUGH, {"position": (10.0, 3.0, 0.0)}), screen),
@@ -85,44 +91,76 @@ def behind_a_screen() -> float:
     return float(np.sum(np.asarray(paths.mesh_id)[paths.offsets] == 0))
 
 
+def mirror_straight_at(radar, placement: str) -> np.ndarray:
+    """[2] amplitudes over a flagged metal plane 5 m away, met exactly along its normal: scalar, with vectors."""
+    plane = {"ahead": ("wall", shapes.plate(4.0, 4.0), {"position": (5.0, 0.0, 0.0)}),
+             "above": ("ceiling", shapes.ground(4.0, z=5.0), {})}[placement]
+    scene = scene_of((plane[0], plane[1], ep.Material.metal(mirror=True), plane[2]))
+    made = [traced(scene, radar, 100, max_bounces=1, polarization=model) for model in ("scalar", "jones")]
+    return np.array([np.sum(paths.amplitude) for paths in made])
+
+
 @cases("antenna on the normal of a hit",
-       "incidence along the normal has no plane of incidence: level in both polarisation models",
-       bound=0.05, unit="dB")
+       "incidence along the normal, to the last bit, has no plane of incidence: level of a mirror's image and of a plate in "
+       "both polarisation models", bound=0.05, unit="dB",
+       broken="no plane chosen where none is given: NaN")
 def on_the_normal() -> float:
-    levels = []
+    image = np.sqrt(POWER) * exact.WAVELENGTH / (4 * np.pi * 10.0)
+    levels = [abs(decibels(abs(one / image) ** 2)) for one in mirror_straight_at(make_radar(), "ahead")]
     for model in ("scalar", "jones"):
         paths = traced(scene_of(plate_at(200.0)), make_radar(), 2 ** 14, max_bounces=1, polarization=model)
-        assert not_finite(paths) == 0
         levels.append(abs(decibels(rcs_of(paths, 200.0) / broadside_rcs(0.1, 200.0))))
-    return max(levels)
+    return float(np.max(levels))  # NaN where one is
 
 
-@cases("antenna along its polarisation", "a dipole-less direction: a plate above an upright field stays finite", bound=0.0,
-       unit="values not finite")
+@cases("antenna along its polarisation", "a mirror straight above an upright field, where neither horizontal nor "
+       "vertical has a meaning: finite, and nothing from field vectors", bound=0.0, unit="sqrt(W) or NaN",
+       broken="no axis chosen where none is given: NaN")
 def along_polarization() -> float:
-    scene = scene_of(("above", shapes.ground(1.0, z=5.0), METAL), ("below", shapes.ground(1.0, z=-5.0), ROUGH))
-    return float(sum(not_finite(traced(scene, make_radar(), 20_000, polarization=model)) for model in ("scalar", "jones")))
+    scalar, vectors = mirror_straight_at(make_radar(), "above")
+    return float(abs(vectors)) if np.isfinite(scalar) else np.nan
 
 
-@cases("antenna in the plane of a plate", "seen edge-on it returns nothing", bound=0.0, unit="sqrt(W)")
+@cases("antenna in the plane of a plate", "seen edge-on, in any attitude, or by 1 mm in 5 m beside that, it returns nothing",
+       bound=0.0, unit="sqrt(W)",
+       broken="grazing hits kept: 1.2e-10")
 def in_the_plane() -> float:
-    scene = scene_of(("metal", shapes.ground(1.0), METAL, {"position": (5.0, 0.0, 0.0)}),
-                     ("rough", shapes.ground(1.0), ROUGH, {"position": (-5.0, 0.0, 0.0)}))
-    paths = traced(scene, make_radar(), 30_000)
-    amplitude = np.abs(np.asarray(paths.amplitude))
-    return float(amplitude.max()) if len(amplitude) else 0.0
+    random, worst = np.random.default_rng(4), 0.0
+    for material, beside in ((METAL, 0.0), (ROUGH, 0.0), (METAL, 1e-3), (ROUGH, 1e-3)):
+        for _ in range(5):
+            placement = np.eye(4)
+            placement[:3, :3] = np.linalg.qr(random.normal(size=(3, 3)))[0]
+            placement[:3, 3] = placement[:3, :3] @ [beside, 5.0, 0.0]  # shapes.plate lies across its x axis
+            scene = scene_of(("plate", shapes.plate(1.0, 1.0), material, {"transform": placement}))
+            paths = traced(scene, make_radar(), 5000)
+            worst = max(worst, float(np.abs(paths.amplitude).max(initial=0.0)))
+    return worst
 
 
-@cases("antennas 1 mm apart and far apart", "amplitudes stay finite from a baseline of 0 to one of 1 km", bound=0.0,
-       unit="values not finite")
+def bistatic_field(side: float, distance: float, baseline: float) -> float:
+    """Physical optics of a square plate at `distance` m, broadside to the transmitter, at a receiver `baseline` m aside."""
+    nodes, weights = np.polynomial.legendre.leggauss(32)
+    y, w = 0.5 * side * nodes[:, None], 0.25 * side ** 2 * weights[:, None] * weights[None, :]
+    z = 0.5 * side * nodes[None, :]
+    out, back = np.sqrt(distance ** 2 + y ** 2 + z ** 2), np.sqrt(distance ** 2 + (y - baseline) ** 2 + z ** 2)
+    phase = exact.WAVENUMBER * ((out - distance) + (back - np.hypot(distance, baseline)))
+    return np.sqrt(POWER) / (4 * np.pi) * abs(np.sum(w * (distance / out) * np.exp(-1j * phase) / (out * back)))
+
+
+@cases("antennas 1 mm apart and far apart", "physical optics of a small plate at a receiver 0 to 1 km aside", bound=0.1,
+       unit="dB",
+       broken="spreading to the transmitter instead of the receiver: 34 dB")
 def baselines() -> float:
-    scene = scene_of(plate_at(20.0, 1.0), ("ground", shapes.ground(200.0, z=-1.0), ROUGH))
-    return float(sum(not_finite(traced(scene, make_radar(baseline=baseline), 10_000))
-                     for baseline in (0.0, 1e-12, 1e-3, 1e3)))
+    worst = 0.0
+    for baseline in (0.0, 1e-12, 1e-3, 1.0, 1e3):
+        paths = traced(scene_of(plate_at(20.0, 3e-3)), make_radar(baseline=baseline), 2 ** 13, max_bounces=1)
+        worst = max(worst, abs(decibels((abs(np.sum(field(paths))) / bistatic_field(3e-3, 20.0, baseline)) ** 2)))
+    return worst
 
 
-@cases("a null of a plate", "depth below broadside with 2^16 rays of a Fibonacci set, first order or no filter", bound=60.0,
-       unit="dB", at_least=True)
+@cases("a null of a plate", "depth below broadside with 2^16 rays of a Fibonacci set, first order or no filter (as many "
+       "random rays leave 48 dB)", bound=60.0, unit="dB", at_least=True,
+       broken="lengths in single precision: 58 dB")
 def plate_null() -> float:
     angle = np.arcsin(exact.WAVELENGTH / 0.2)  # of the first null
     scene, depths = scene_of(("plate", shapes.plate(0.1, 0.1), METAL)), []
@@ -133,8 +171,10 @@ def plate_null() -> float:
     return min(depths)
 
 
-@cases("a null of the default method", "depth below broadside with 2^16 rays of the lattice", bound=40.0, unit="dB",
-       at_least=True)
+@cases("a null of the default method", "depth below broadside with 2^16 rays of the lattice (as many random rays leave 48 "
+       "dB)",
+       bound=60.0, unit="dB", at_least=True,
+       broken="lengths in single precision: 59.4 dB")
 def default_null() -> float:
     angle, scene = np.arcsin(exact.WAVELENGTH / 0.2), scene_of(("plate", shapes.plate(0.1, 0.1), METAL))
     levels = [ep.rcs(scene, frequency=exact.FREQUENCY, incidence=(-np.cos(turn), np.sin(turn), 0.0), num_rays=2 ** 16,
@@ -158,19 +198,22 @@ def fresnel_power(permittivity: complex) -> float:
 
 @cases("permittivities from 1e-9 to 1e18",
        "huge, tiny, lossless, negative: power reflectivity beside Fresnel's at normal incidence",
-       bound=1e-3, unit="of full reflection")
+       bound=1e-3, unit="of full reflection",
+       broken="the other root of a lossy permittivity: 0.040")
 def permittivities() -> float:
     values = (1e18 - 1e18j, 1e18, 1e-9, 1e-9 - 1e-12j, 4 - 1e-15j, 4.0, 4 - 4e9j, -4 - 0.1j, -4 - 1e-12j, 2.0)
     return max(abs(reflectivity_of(ep.Material(permittivity=value)) - fresnel_power(value)) for value in values)
 
 
-@cases("permittivity 1", "what is like air does not reflect", bound=1e-20, unit="of metal")
+@cases("permittivity 1", "what is like air does not reflect", bound=1e-30, unit="of metal",
+       broken="Fresnel's root in single precision: 3.6e-21")
 def like_air() -> float:
     return reflectivity_of(ep.Material(permittivity=1.0))
 
 
 @cases("a dielectric sphere", "both polarisations meet at its middle: level of pi a^2 times Fresnel's reflectivity",
-       bound=0.1, unit="dB")
+       bound=0.1, unit="dB",
+       broken="TM not turned where waves turn back: 30 dB")
 def dielectric_sphere() -> float:
     ball = ("ball", shapes.sphere(0.3, subdivisions=40), ep.Material(permittivity=4 - 0.2j),
             {"position": (200.0, 0.0, 0.0), "smooth": True})
@@ -191,7 +234,8 @@ def corner_of(floor, wall, angle: float) -> ep.Scene:
 
 @cases("a corner of earth and metal",
        "both orders of the double bounce add up in the scalar model as they do with field vectors",
-       bound=0.1, unit="dB")
+       bound=0.1, unit="dB",
+       broken="the sign of the last bounce alone: 42 dB")
 def mixed_corner() -> float:
     earth, worst = ep.Material(permittivity=4 - 0.2j), 0.0
     for angle in np.radians([20.0, 45.0, 60.0]):
@@ -203,7 +247,8 @@ def mixed_corner() -> float:
     return worst
 
 
-@cases("bad materials", "permittivity 0, NaN, of gain; scattering above 1: refused by name", bound=0.0, unit="accepted")
+@cases("bad materials", "permittivity 0, NaN, of gain; scattering above 1: refused by name", bound=0.0, unit="accepted",
+       broken="no validation: 8")
 def bad_materials() -> float:
     wrong = [("permittivity", dict(permittivity=0.0)), ("permittivity", dict(permittivity=complex(np.nan, 0))),
              ("permittivity", dict(permittivity=4 + 1j)), ("permittivity", dict(permittivity=np.inf)),
@@ -220,7 +265,8 @@ def bad_materials() -> float:
     return float(accepted)
 
 
-@cases("an empty scene", "no paths, zeros exactly, noise alone where it is asked for", bound=0.0, unit="sqrt(W)")
+@cases("an empty scene", "no paths, zeros exactly, noise alone where it is asked for", bound=0.0, unit="sqrt(W)",
+       broken="a sum that begins at 1e-20 instead of 0: 1e-20")
 def empty_scene() -> float:
     frame = ep.simulate(ep.Scene(), make_radar(num_chirps=4), num_rays=1000, noise_seed=None)
     return float(max(np.abs(frame.cube).max(), np.abs(frame.spectrum.values).max(), frame.paths.num_paths))

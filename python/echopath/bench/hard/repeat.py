@@ -52,7 +52,8 @@ def differences(one, two) -> int:
 
 
 @cases("threads", "record, signal, parts, maps with noise, validity, power: results whose bits differ between 1, 2, 3 and 7 "
-       "threads", bound=0.0, unit="results")
+       "threads", bound=0.0, unit="results",
+       broken="as many partial sums as threads: 4; random numbers in the order of their calls: 8")
 def threads() -> float:
     before = ep.num_threads()
     try:
@@ -91,7 +92,8 @@ def _bytes_of(value) -> bytes:
 
 
 @cases("a labelled frame", "partitions, labels with errors, detections and checks: results whose bits differ between 1, 2, 3 "
-       "and 7 threads, at a second run, or in a file", bound=0.0, unit="results")
+       "and 7 threads, at a second run, or in a file", bound=0.0, unit="results",
+       broken="TO MEASURE")
 def a_labelled_frame() -> float:
     before = ep.num_threads()
     try:
@@ -108,12 +110,14 @@ def a_labelled_frame() -> float:
     return float(max(sum(a != b for a, b in zip(first, other, strict=True)) for other in others))
 
 
-@cases("again", "the same, run twice in one process", bound=0.0, unit="results")
+@cases("again", "the same, run twice in one process", bound=0.0, unit="results",
+       broken="random numbers in the order of their calls: 8")
 def again() -> float:
     return float(differences(outcome(), outcome()))
 
 
-@cases("another seed", "other rays: share of weights that are the same", bound=0.01, unit="of them")
+@cases("another seed", "other rays: share of weights that are the same", bound=0.01, unit="of them",
+       broken="the seed left out: 1")
 def another_seed() -> float:
     scene, radar = small_street()
     one, two = (traced(scene, radar, 4000, seed=seed) for seed in (1, 2))
@@ -121,7 +125,8 @@ def another_seed() -> float:
     return float(np.mean(np.asarray(one.weight)[:count] == np.asarray(two.weight)[:count]))
 
 
-@cases("after save and load", "record, signal and map of a file have the bits of the original", bound=0.0, unit="results")
+@cases("after save and load", "record, signal and map of a file have the bits of the original", bound=0.0, unit="results",
+       broken="weights rounded once more on their way: 2")
 def after_a_file() -> float:
     scene, radar = small_street()
     frame = ep.simulate(scene, radar, num_rays=8000, seed=5, noise_seed=9, parts={"ball": "T .* 'ball' .* R"})
@@ -135,7 +140,8 @@ def after_a_file() -> float:
                              cube in frame.parts["parts"].items()))
 
 
-@cases("seeds in files", "files of records and frames that do not tell the seeds of rays and noise", bound=0.0, unit="files")
+@cases("seeds in files", "files of records and frames that do not tell the seeds of rays and noise", bound=0.0, unit="files",
+       broken="seeds not written: 2")
 def seeds_in_files() -> float:
     scene, radar = small_street(4)
     frame = ep.simulate(scene, radar, num_rays=500, seed=123457, noise_seed=98765)

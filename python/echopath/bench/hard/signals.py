@@ -1,6 +1,7 @@
 """Coherent sums at the end of their digits: phases, tones, tiny and huge levels, edges of what can be measured."""
 from __future__ import annotations
 
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -51,7 +52,8 @@ def highest_side_lobe(samples, window_db: float) -> float:
 
 @cases("carrier phase at 300 m",
        "delays stay in double precision and whole cycles go before the sine (single precision: 0.13 rad)",
-       bound=1e-8, unit="rad")
+       bound=1e-8, unit="rad",
+       broken="delays in single precision: 0.054 rad")
 def carrier_phase() -> float:
     chirps, worst = waveform(bandwidth=2.4e8, num_chirps=1), 0.0
     samples = [0, 1, 255, 511]
@@ -62,7 +64,8 @@ def carrier_phase() -> float:
 
 
 @cases("phase of the default method at 300 m", "the non-uniform FFT keeps to its tolerance of 1e-7",
-       bound=6e-7, unit="of the amplitude")
+       bound=6e-7, unit="of the amplitude",
+       broken="a kernel of 4 cells instead of 8: 1.8e-5")
 def default_phase() -> float:
     chirps = waveform(bandwidth=2.4e8, num_chirps=1)
     ranges = np.linspace(299.0, 300.0, 200)
@@ -72,7 +75,8 @@ def default_phase() -> float:
 
 
 @cases("Doppler spurs of a slow target", "lengths rounded to single precision would make spurs at -48 dBc (100 m, 0.5 m/s)",
-       bound=-140.0, unit="dBc")
+       bound=-140.0, unit="dBc",
+       broken="delays in single precision: -47 dBc")
 def doppler_spurs() -> float:
     chirps = waveform(bandwidth=6e8, num_chirps=512)
     starts = np.arange(512) * chirps.chirp_interval
@@ -80,20 +84,24 @@ def doppler_spurs() -> float:
     return highest_side_lobe(samples[:, 256], 160.0)
 
 
-@cases("100 dB of clutter", "a target 100 dB below another, 20 cells away, keeps its level under a 150 dB window",
-       bound=0.1, unit="dB")
+@cases("120 dB of clutter", "a target 120 dB below each of 300 others, 30 cells behind the last, keeps its level under a "
+       "200 dB window", bound=0.1, unit="dB",
+       broken="a grid in single precision: 0.17 dB; a window: 0.18 dB")
 def weak_beside_strong() -> float:
-    chirps = waveform(num_chirps=1)
+    chirps, random = waveform(num_chirps=1), np.random.default_rng(8)
     cell = chirps.range_resolution
-    both = tones(chirps, [100.3 * cell, 120.5 * cell], [1.0, 1e-5], method="nufft")[0]
-    alone = tones(chirps, [120.5 * cell], [1e-5], method="direct")[0]
-    taper = _core.window("chebyshev", 512, 150.0)
+    clutter, target = random.uniform(10.0, 350.0, 300), 380.5
+    phases = np.exp(2j * np.pi * random.random(300))
+    both = tones(chirps, cell * np.append(clutter, target), np.append(phases, 1e-6), method="nufft")[0]
+    alone = tones(chirps, [target * cell], [1e-6], method="direct")[0]
+    taper = _core.window("chebyshev", 512, 200.0)
     spectra = [np.abs(np.fft.fft(samples * taper, 4096)) for samples in (both, alone)]
     peak = int(spectra[1].argmax())
     return float(abs(20 * np.log10(spectra[0][peak] / spectra[1][peak])))
 
 
-@cases("windows at -160 dB", "every side lobe of a tone stays where the window puts it", bound=-159.5, unit="dB")
+@cases("windows at -160 dB", "every side lobe of a tone stays where the window puts it", bound=-159.5, unit="dB",
+       broken="phasors in single precision: -155.6 dB; a window: -157.2 dB")
 def deep_window() -> float:
     chirps = waveform(num_chirps=1)
     worst = -np.inf
@@ -104,7 +112,8 @@ def deep_window() -> float:
 
 
 @cases("drift of the recurrence", "powers of one phasor over 65 536 samples (double precision leaves 4e-12)", bound=1e-11,
-       unit="of the amplitude")
+       unit="of the amplitude",
+       broken="steps of the phasor in single precision: 1.5e-5")
 def recurrence_drift() -> float:
     worst = 0.0
     for count in (512, 4096, 65536):
@@ -116,7 +125,8 @@ def recurrence_drift() -> float:
 
 
 @cases("non-uniform FFT at every tolerance", "rms error over the tolerance asked for, 1e-2 to 1e-12", bound=1.0,
-       unit="of the tolerance")
+       unit="of the tolerance",
+       broken="a kernel 2 cells narrower: 5.1")
 def nufft_tolerances() -> float:
     chirps, random = waveform(num_chirps=1), np.random.default_rng(4)
     ranges = random.uniform(0.0, chirps.max_range, 300)
@@ -131,7 +141,8 @@ def nufft_tolerances() -> float:
 
 @cases("non-uniform FFT at the rim of its grid",
        "tones at both ends of the band, on grid points and half-way wrap round right, within the tolerance of 1e-7",
-       bound=1e-7, unit="of the amplitude")
+       bound=1e-7, unit="of the amplitude",
+       broken="ends of the grid not wrapped round: 0.90")
 def nufft_rim() -> float:
     chirps, worst = waveform(num_chirps=1), 0.0
     cell = chirps.range_resolution
@@ -142,20 +153,23 @@ def nufft_rim() -> float:
     return float(worst)
 
 
-@cases("one path", "each method gives the exact phase of the equations", bound=6e-7, unit="of the amplitude")
+@cases("one path", "each method gives the exact phase of the equations", bound=6e-7, unit="of the amplitude",
+       broken="delays in single precision: 2.2e-5")
 def one_path() -> float:
     chirps = waveform(num_chirps=1)
     exact = exact_samples(chirps, 2 * 33.3 / C, range(512))
     return max(float(np.abs(tones(chirps, [33.3], method=method)[0] - exact).max()) for method in STATIC)
 
 
-@cases("no paths", "zeros, exactly", bound=0.0, unit="sqrt(W)")
+@cases("no paths", "zeros, exactly", bound=0.0, unit="sqrt(W)",
+       broken="a sum that begins at 1e-20 instead of 0: 1e-20")
 def no_paths() -> float:
     return max(float(np.abs(_core.synthesize_echoes(waveform(), np.zeros((1, 0)), np.zeros((1, 0)), method=method)).max())
                for method in STATIC)
 
 
-@cases("all amplitudes zero", "zeros, exactly, and a map of zeros", bound=0.0, unit="sqrt(W)")
+@cases("all amplitudes zero", "zeros, exactly, and a map of zeros", bound=0.0, unit="sqrt(W)",
+       broken="rows that begin at 1e-20: 6.5e-18")
 def zero_amplitudes() -> float:
     chirps = waveform()
     ranges = np.linspace(1.0, 70.0, 300)
@@ -164,17 +178,31 @@ def zero_amplitudes() -> float:
     return float(max(np.abs(values).max() for values in [*cubes, *maps]))
 
 
-@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN and nothing larger than their sum", bound=1.0,
-       unit="of the sum")
+@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN, nothing larger than their sum, and take no longer than "
+       "others (processor time over that of amplitudes of 1)", bound=2.0, unit="times",
+       broken="denormals not flushed: 4.0")
 def denormals() -> float:
-    ranges, worst = np.linspace(1.0, 70.0, 300), 0.0
+    ranges, worst = np.linspace(1.0, 70.0, 3000), 0.0
     for method in STATIC:
-        made = tones(waveform(), ranges, np.full(300, 1e-310), method=method)
-        worst = max(worst, float(np.abs(made).max() / (300 * 1e-310)) if np.isfinite(made).all() else np.inf)
+        made = tones(waveform(), ranges, np.full(3000, 1e-310), method=method)
+        assert np.isfinite(made).all() and np.abs(made).max() <= 3000 * 1e-310
+        worst = max(worst, _times_slower(ranges, 1e-310, method))
     return worst
 
 
-@cases("levels from 1e-280 to 1e280", "the signal is linear in the amplitudes", bound=1e-12, unit="relative")
+def _times_slower(ranges, amplitude: float, method: str) -> float:
+    """Processor time of synthesis over that with amplitudes of 1: medians of five turns."""
+    seconds = {amplitude: [], 1.0: []}
+    for _ in range(5):
+        for level, spent in seconds.items():
+            amplitudes, began = np.full(len(ranges), level), time.process_time()
+            tones(waveform(), ranges, amplitudes, method=method)
+            spent.append(time.process_time() - began)
+    return float(np.median(seconds[amplitude]) / np.median(seconds[1.0]))
+
+
+@cases("levels from 1e-280 to 1e280", "the signal is linear in the amplitudes", bound=1e-12, unit="relative",
+       broken="amplitudes in single precision: 1")
 def levels() -> float:
     ranges, worst = np.linspace(1.0, 70.0, 300), 0.0
     for method in STATIC:
@@ -186,7 +214,8 @@ def levels() -> float:
 
 
 @cases("a chirp of one sample, one chirp", "one number: the carrier's phase; its map is that number", bound=1e-7,
-       unit="of the amplitude")
+       unit="of the amplitude",
+       broken="delays in single precision: 5.1e-3")
 def one_sample() -> float:
     chirps, worst = waveform(num_samples=1, bandwidth=1e6, num_chirps=1), 0.0
     distance = 0.3 * chirps.max_range
@@ -200,7 +229,8 @@ def one_sample() -> float:
 
 
 @cases("beyond the Nyquist range", "what lies outside the band is removed, not folded to a near range", bound=0.0,
-       unit="sqrt(W)")
+       unit="sqrt(W)",
+       broken="no anti-alias filter: 2.0")
 def beyond_nyquist_range() -> float:
     chirps = waveform()
     return max(float(np.abs(tones(chirps, [1.0001 * chirps.max_range, 1.7 * chirps.max_range], method=method)).max())
@@ -208,7 +238,8 @@ def beyond_nyquist_range() -> float:
 
 
 @cases("a target that crosses the Nyquist range", "full level before, nothing behind, nothing in between",
-       bound=1e-6, unit="of the amplitude")
+       bound=1e-6, unit="of the amplitude",
+       broken="no anti-alias filter: 1")
 def across_nyquist_range() -> float:
     chirps, speed = waveform(num_chirps=128), 30.0
     middle = np.arange(128) * chirps.chirp_interval + chirps.window_centre
@@ -225,7 +256,8 @@ def across_nyquist_range() -> float:
 @cases("a target that crosses zero range",
        "the phases of the equations before and behind the antenna, within the error of the model, 2 pi slope taudot "
        "(Tc/2)^2 = 1.34e-3",
-       bound=1.4e-3, unit="of the amplitude")
+       bound=1.4e-3, unit="of the amplitude",
+       broken="no motion within a chirp: 0.21")
 def across_zero_range() -> float:
     chirps, start, speed = waveform(num_chirps=64, chirp_interval=1e-3), 0.16, -5.0
     begins, t = np.arange(64) * chirps.chirp_interval, np.arange(512) / chirps.sampling_rate
@@ -241,7 +273,8 @@ def across_zero_range() -> float:
     return worst
 
 
-@cases("a target beyond the Nyquist speed", "it stands where its Doppler folds to: v - 2 v_max", bound=0.1, unit="cells")
+@cases("a target beyond the Nyquist speed", "it stands where its Doppler folds to: v - 2 v_max", bound=0.1, unit="cells",
+       broken="a velocity axis of the start frequency: 0.36; its sign: 97")
 def beyond_nyquist_speed() -> float:
     chirps, speed = waveform(num_chirps=128, chirp_interval=30e-6), 40.0
     middle = np.arange(128) * chirps.chirp_interval + chirps.window_centre
@@ -255,7 +288,8 @@ def beyond_nyquist_speed() -> float:
 
 
 @cases("exactly between two cells", "both cells show the same level, the loss of the Hann window (1.42 dB)", bound=0.005,
-       unit="dB")
+       unit="dB",
+       broken="a symmetric instead of a periodic window: 0.0056")
 def between_cells() -> float:
     chirps = waveform(num_chirps=1)
     samples = tones(chirps, [100.5 * chirps.range_resolution], method="direct")

@@ -89,8 +89,10 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
 
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
   const double along = polarization.dot(direction);
+  const double along_behind = along - 2.0 * direction.dot(normal) * polarization.dot(normal);  // after the bounce
   const Vec3 te_axis = direction.cross(normal);
-  const double te_squared = te_axis.squaredNorm(), across_squared = polarization.squaredNorm() - along * along;
+  const double te_squared = te_axis.squaredNorm();
+  const double across_squared = polarization.squaredNorm() - 0.5 * (along * along + along_behind * along_behind);
   if (te_squared < kNormalIncidence * kNormalIncidence) return PolarizationMode::kTe;  // both are the same
   if (across_squared < kAlongTravel * kAlongTravel) return PolarizationMode::kTm;
   const double te = polarization.dot(te_axis);  // the axis lies across the direction

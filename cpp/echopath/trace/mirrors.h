@@ -27,6 +27,8 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
 // Decides between TE and TM at a hit by the transmit polarisation (scalar mode): TE where the part of `polarization`
 // across `direction` lies within 45 degrees of the normal of the plane of incidence. TM where the field would lie
 // along the direction of travel: only bounces in the plane of the field turn a ray that way.
+// How much lies across is the mean (of squares) before and behind the bounce: both ways through it are of one mode, so that a
+// ray over a mirror and a leg that is searched from its other end have the same coefficient.
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal);
 
 }  // namespace echopath

@@ -36,6 +36,16 @@ Mirror mirror_of(const Rectangle& r) {
   return mirror;
 }
 
+// A ray over a mirror and the leg that is searched from its other end take one coefficient.
+TEST(Trace, ABounceIsOfOneModeBothWays) {
+  const Vec3 slanted = Vec3(0, 1, 1).normalized();  // 45 degrees, as car radars have it
+  for (uint64_t i = 0; i < 20000; ++i) {
+    const Vec3 direction = random_vector(2 * i).normalized(), normal = random_vector(2 * i + 1).normalized();
+    const Vec3 back = -(direction - 2.0 * direction.dot(normal) * normal);
+    EXPECT_EQ(polarization_mode(slanted, direction, normal), polarization_mode(slanted, back, normal)) << i;
+  }
+}
+
 // Distance inside its rectangle (negative: outside) of the least safe bounce between `point` and `antenna` over `sequence`,
 // in m; bounces must lie between what they join, on one side of their mirror.
 double margin_of(const Vec3& antenna, const std::vector<int>& sequence, const Vec3& point,

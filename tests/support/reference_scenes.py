@@ -5,6 +5,7 @@ import numpy as np
 
 import echopath as ep
 
+from .polarized_reference import PolarizedReference
 from .reference import Reference
 
 SPACING = 1e-3        # m, of the reference's cells: edges of shadows fall between them, a percent of a plate of 0.1 m
@@ -74,9 +75,24 @@ def _placed(at, yaw, pitch):
 def coherent_deviation(seed):
     """Field at mid-frame and all samples of a random scene of smooth plates."""
     scene, radar = random_scene(seed, rough=False)
-    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3)
+    return _coherent(scene, radar, Reference, "scalar")
+
+
+def polarized_deviation(seed):
+    """The same with field vectors and antennas of any two linear polarisations."""
+    scene, radar = random_scene(seed, rough=False)
+    random = np.random.default_rng(seed + 500)
+    axes = random.normal(size=(2, 3)) * [0.3, 1.0, 1.0]
+    antennas = [ep.Antenna(tuple(antenna.position), pattern=antenna.pattern, polarization=tuple(axis / np.linalg.norm(axis)))
+                for antenna, axis in zip((radar.transmitters[0], radar.receivers[0]), axes)]
+    radar = ep.Radar(radar.waveform, transmitters=antennas[:1], receivers=antennas[1:], transmit_power=radar.transmit_power)
+    return _coherent(scene, radar, PolarizedReference, "jones")
+
+
+def _coherent(scene, radar, kind, model):
+    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3, polarization=model)
     time = paths.frame.trace_time
-    reference = Reference(scene, radar, spacing=SPACING, trace_time=time)
+    reference = kind(scene, radar, spacing=SPACING, trace_time=time)
     turns = np.asarray(paths.lengths([time]))[0] / reference.wavelength
     found, expected = np.sum(np.asarray(paths.amplitude) * np.exp(-2j * np.pi * np.mod(turns,
                                                                                        1.0))), reference.coherent_field(time)

@@ -18,7 +18,8 @@ def _deviations(kind: str) -> tuple:
         sys.path.append(str(TESTS))
     from support import reference_scenes
 
-    measure = {"coherent": reference_scenes.coherent_deviation, "diffuse": reference_scenes.diffuse_deviation}[kind]
+    measure = {"coherent": reference_scenes.coherent_deviation, "polarized": reference_scenes.polarized_deviation,
+               "diffuse": reference_scenes.diffuse_deviation}[kind]
     return tuple(measure(seed) for seed in range(NUM_SCENES))
 
 
@@ -28,6 +29,10 @@ def field() -> float:
 
 def samples() -> float:
     return max(one.cube for one in _deviations("coherent"))
+
+
+def polarized() -> float:
+    return max(max(one.field, one.cube) for one in _deviations("polarized"))
 
 
 def power() -> float:
@@ -42,6 +47,9 @@ if (TESTS / "support" / "reference_scenes.py").exists():
     cases("IF samples of 20 random scenes", "the same with the delays of the equations at every sample, three chirps",
           bound=0.005, unit="of the signal",
           broken="no shadow rays: 0.30; the other root of a lossy permittivity: 0.051", heavy=True)(samples)
+    cases("field vectors of 20 random scenes",
+          "the same between antennas of any two linear polarisations: field and IF samples", bound=0.01, unit="of either",
+          broken="the other root of a lossy permittivity: 1.2", heavy=True)(polarized)
     cases("diffuse powers of 20 random scenes",
           "rough plates, all pairs of legs with one phase a point: mean power, beyond 1 %", bound=4.0,
           unit="standard errors", broken="no shadow rays: 8.7", heavy=True)(power)

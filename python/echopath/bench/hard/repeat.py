@@ -91,8 +91,8 @@ def _bytes_of(value) -> bytes:
     return value.tobytes() if is_numbers else repr(value.tolist() if isinstance(value, np.ndarray) else value).encode()
 
 
-@cases("a labelled frame", "partitions, labels with errors, detections and checks: results whose bits differ between 1, 2, 3 "
-       "and 7 threads, at a second run, or in a file", bound=0.0, unit="results",
+@cases("a labelled frame", "partitions, labels with errors, detections and checks: results whose bits differ between 1, 2, "
+       "3 and 7 threads, at a second run, or in a file", bound=0.0, unit="results",
        broken="as many partial sums as threads: 30")
 def a_labelled_frame() -> float:
     before = ep.num_threads()

@@ -1,0 +1,108 @@
+"""The slow reference with field vectors: coherent echoes of smooth surfaces, directly or over flagged planes.
+
+    E_r = Gamma_TE (E.s) s + Gamma_TM (E.p_i) p_r,  s = k_i x n/|k_i x n|,  p_i = s x k_i,  p_r = s x k_r
+    radiated along o: -1/2 o x [n x (E_i + E_r) - o x (n x (k_i x E_i + k_r x E_r))],  in the place of Gamma cos_in
+An antenna launches and receives along the unit part of its polarisation that lies across the direction.
+"""
+import numpy as np
+
+from .reference import Cells, Reference, _unit
+
+
+class PolarizedReference(Reference):
+    """As Reference, for trace(polarization="jones"); no rough surfaces."""
+
+    def pairs(self, time):
+        cells = self.cells(time)
+        legs = self.legs(cells, self.receiver, time, to_receiver=True)
+        receive = [(leg, self._seen_from_cells(leg, time)) for leg in legs]
+        out = []
+        for one in self.legs(cells, self.transmitter, time, to_receiver=False):
+            incident = self._launched(one, time)
+            facing = np.einsum("ij,ij->i", cells.normals, one.toward)
+            normals = cells.normals * np.where(facing < 0, -1.0, 1.0)[:, None]
+            for two, received in receive:
+                lit = np.einsum("ij,ij->i", normals, two.toward) > 0
+                field = self._radiated(incident, -one.toward, normals, two.toward, cells.mesh)
+                ways = (one.gain != 0) * (two.gain != 0) * lit * cells.areas / (one.length * two.length)
+                ways = ways * np.sqrt(self.gain(0, one.leaving) * self.gain(1, two.leaving))
+                sent = 1j * np.sqrt(self.radar.transmit_power) / (4 * np.pi)
+                amplitude = sent * ways * np.einsum("ij,ij->i", field, received)
+                out.append((one.length + two.length, amplitude, np.zeros(len(lit))))
+        return cells, out
+
+    def planes_alone(self, time):
+        corners, owner = self.triangles(time)
+        at = Cells(self.receiver[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
+        out = []
+        for mesh in np.flatnonzero([material.mirror for material in self.materials]):
+            leg = self._over(at, self.transmitter, corners, owner, mesh)
+            arriving = np.einsum("ij,ij->i", self._launched(leg, time), self._axis(1, -leg.toward))
+            gains = np.sqrt(self.radar.transmit_power * self.gain(0, leg.leaving) * self.gain(1, leg.toward))
+            out.append((leg.length, (leg.gain != 0) * arriving * self.wavelength * gains / (4 * np.pi * leg.length)))
+        return out
+
+    def modes(self, mesh, cosine):
+        """Gamma_TE and Gamma_TM along p_i and p_r, complex [M]."""
+        material = self.materials[mesh]
+        if self.is_metal(mesh):
+            size = np.full(len(cosine), np.sqrt(material.reflectivity or 1.0), complex)
+            return -size, size
+        root = np.sqrt(material.permittivity - (1 - cosine ** 2) + 0j)
+        root = np.where(root.imag > 0, -root, root)
+        epsilon = material.permittivity
+        return (cosine - root) / (cosine + root), (epsilon * cosine - root) / (epsilon * cosine + root)
+
+    def _axis(self, side, direction):
+        """Unit polarisation [M, 3] of the transmitter (side 0) or receiver across directions of travel [M, 3]."""
+        antenna = (self.radar.transmitters if side == 0 else self.radar.receivers)[0]
+        polarization = np.asarray(antenna.polarization, float)
+        return _unit(polarization - (direction @ polarization)[:, None] * direction)
+
+    def _plane_normal(self, mesh, time):
+        corners, owner = self.triangles(time)
+        a, b, c = corners[np.flatnonzero(owner == mesh)[0]]
+        return _unit(np.cross(b - a, c - a))
+
+    def _launched(self, leg, time):
+        """Fields [M, 3] at the cells of a unit launch over a leg from the transmitter."""
+        field = self._axis(0, leg.leaving).astype(complex)
+        if leg.plane < 0:
+            return field
+        return self._mirrored(field, leg.leaving, leg.plane, self._plane_normal(leg.plane, time))
+
+    def _seen_from_cells(self, leg, time):
+        """Along which field [M, 3] the receiver sees: by reciprocity what its own axis becomes on the way to the cells."""
+        axis = self._axis(1, leg.leaving).astype(complex)
+        if leg.plane < 0:
+            return axis
+        return self._mirrored(axis, leg.leaving, leg.plane, self._plane_normal(leg.plane, time))
+
+    def _mirrored(self, field, direction, mesh, normal):
+        cosine = np.abs(direction @ normal)
+        reflected, _ = reflect(field, direction, np.broadcast_to(normal, direction.shape), self.modes(mesh, cosine))
+        return reflected * self.shares(mesh, cosine)[0][:, None]
+
+    def _radiated(self, incident, direction, normals, out, meshes):
+        """Fields [M, 3] that the cells radiate along `out` [M, 3], without spreading."""
+        cosine = np.abs(np.einsum("ij,ij->i", direction, normals))
+        te, tm = np.zeros(len(cosine), complex), np.zeros(len(cosine), complex)
+        for mesh in np.unique(meshes):
+            at = meshes == mesh
+            te[at], tm[at] = (mode * self.shares(mesh, cosine[at])[0] for mode in self.modes(mesh, cosine[at]))
+        reflected, behind = reflect(incident, direction, normals, (te, tm))
+        electric = np.cross(normals, incident + reflected)
+        magnetic = np.cross(normals, np.cross(direction, incident) + np.cross(behind, reflected))
+        return -0.5 * np.cross(out, electric - np.cross(out, magnetic))
+
+
+def reflect(field, direction, normals, modes):
+    """Reflected field and direction [M, 3] at planes of normals [M, 3]; modes: (TE, TM) [M]."""
+    across = np.cross(direction, normals)
+    sine = np.linalg.norm(across, axis=1)
+    anywhere = np.cross(direction, [0.3, 0.5, 0.8])  # at normal incidence any plane will do
+    te = _unit(np.where((sine > 1e-9)[:, None], across, anywhere))
+    behind = direction - 2 * np.einsum("ij,ij->i", direction, normals)[:, None] * normals
+    along_te = modes[0] * np.einsum("ij,ij->i", te, field)
+    along_tm = modes[1] * np.einsum("ij,ij->i", np.cross(te, direction), field)
+    return along_te[:, None] * te + along_tm[:, None] * np.cross(te, behind), behind

@@ -10,8 +10,6 @@ namespace {
 
 // Chirps whose echoes at a vector of nodes fit into the registers.
 constexpr int kChirpsAtOnce = kLanes == 8 ? 4 : 2;
-// Of them, those whose carriers are found together.
-constexpr int kCarriersAtOnce = 4;
 // Terms of a polynomial whose moments do, real and imaginary.
 constexpr int kTermsAtOnce = kLanes == 8 ? 12 : 5;
 // Echoes in one cell from which their moments are quicker than a kernel for each, for kernels of one vector or two.
@@ -23,34 +21,36 @@ constexpr int kCellsOfTile = 128;
 constexpr int kStreams = 8;
 
 template <int kCount>
-struct Carriage {
+struct States {
+  Vecs<kCount> delay, rate, re, im;
+};
+template <int kCount>
+struct Tones {
   Vecs<kCount> frequency, re, im;
 };
 
 // The phase model of carrier.h, in half turns.
-template <int kCount>
-ECHOPATH_INLINE Carriage<kCount> carriers_of(const CarrierModel& model, const Vec* tau, const Vec* rate, const Vec* re, const Vec* im) {
+template <PhasorError kError, int kCount>
+ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<kCount>& states) {
   const double centre = 2.0 * model.centre_frequency, rest = 2.0 * model.centre_frequency_rest;
-  const double swept_share = model.slope * model.sample_interval, centre_share = model.centre_frequency * model.sample_interval;
-  const double offset = 2.0 * model.reference_offset;
-#define EACH(value) each<kCount>([&](int i) __attribute__((always_inline)) { return value; })
-  const Vecs<kCount> swept = EACH(tau[i] * swept_share);
-  const Vecs<kCount> frequency = EACH(multiply_add(rate[i], centre_share - swept.of[i], swept.of[i]));
-  const Vecs<kCount> beside = EACH(tau[i] * (rest - model.slope * tau[i]) + frequency.of[i] * offset);
-  const Vecs<kCount> turns = EACH((all(centre) * tau[i] + beside.of[i]) + kRoundingShift);
-  const Vecs<kCount> left = EACH(exact_multiply_add(all(centre), tau[i], kRoundingShift - turns.of[i]) + beside.of[i]);
-  const PhasorOf<Vecs<kCount>> phasor = phasor_of_half_turns<Vecs<kCount>>(left);
-  Carriage<kCount> out;
+  const Vecs<kCount>& tau = states.delay;
+  const Vecs<kCount> swept = tau * (model.slope * model.sample_interval);
+  const Vecs<kCount> frequency = states.rate * (model.centre_frequency * model.sample_interval - swept) + swept;
+  const Vecs<kCount> beside = tau * (rest - tau * model.slope) + frequency * (2.0 * model.reference_offset);
+  const Vecs<kCount> turns = (tau * centre + beside) + kRoundingShift;
+  const Vecs<kCount> left = exact_multiply_add(tau, centre, kRoundingShift - turns) + beside;
+  const PhasorOf<Vecs<kCount>> phasor = phasor_of_half_turns<kError>(left);
+  Tones<kCount> out;
 #pragma GCC unroll 8
   for (int i = 0; i < kCount; ++i) {
     const Mask sign = bits(turns.of[i]) << 63;  // of an odd number of half turns
     const Vec c = from_bits(bits(phasor.re.of[i]) ^ sign), s = from_bits(bits(phasor.im.of[i]) ^ sign);
-    const Mask kept = (frequency.of[i] >= 0.0) & (frequency.of[i] < model.highest_frequency);
-    out.frequency.of[i] = kept ? frequency.of[i] : Vec{};
-    out.re.of[i] = kept ? re[i] * c + im[i] * s : Vec{};
-    out.im.of[i] = kept ? re[i] * s - im[i] * c : Vec{};
+    const Vec f = frequency.of[i], re = states.re.of[i], im = states.im.of[i];
+    const Mask kept = (f >= 0.0) & (f < model.highest_frequency);
+    out.frequency.of[i] = kept ? f : Vec{};
+    out.re.of[i] = kept ? re * c + im * s : Vec{};
+    out.im.of[i] = kept ? re * s - im * c : Vec{};
   }
-#undef EACH
   return out;
 }
 
@@ -61,11 +61,10 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
       re[lane] = states.amplitude[2 * (p + lane)];
       im[lane] = states.amplitude[2 * (p + lane) + 1];
     }
-    const Vec delay = load(states.delay + p), rate = load(states.rate + p);
-    const Carriage<1> carrier = carriers_of<1>(model, &delay, &rate, &re, &im);
-    store(out.frequency + p, carrier.frequency.of[0]);
-    store(out.re + p, carrier.re.of[0]);
-    store(out.im + p, carrier.im.of[0]);
+    const Tones<1> tones = tones_of<PhasorError::kRounding>(model, States<1>{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}});
+    store(out.frequency + p, tones.frequency.of[0]);
+    store(out.re + p, tones.re.of[0]);
+    store(out.im + p, tones.im.of[0]);
   }
 }
 
@@ -345,8 +344,18 @@ void spread(const Spreading& spreading, const Carriers& carriers, Rows rows) {
   kSpreadAny[spreading.width - NufftKernel::kMinWidth](spreading, places, carriers.count, carriers.group, rows);
 }
 
-// Places of a tile at kChirps chirps from `chirp`, which interpolate between the same nodes.
 template <int kChirps>
+ECHOPATH_INLINE void store_places(const Spreading& spreading, const Tones<kChirps>& tones, int p, Places* places) {
+#pragma GCC unroll 4
+  for (int c = 0; c < kChirps; ++c) {
+    locate(spreading, tones.frequency.of[c], p, places[c]);
+    store(places[c].re + p, tones.re.of[c]);
+    store(places[c].im + p, tones.im.of[c]);
+  }
+}
+
+// Places of a tile at kChirps chirps from `chirp`, which interpolate between the same nodes.
+template <PhasorError kError, int kChirps>
 ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, int chirp,
                                 Places* places) {
   constexpr int kRow = 3 * TileAtChirps::kLanes;  // doubles of one node
@@ -356,29 +365,19 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
     const int vector = p / TileAtChirps::kLanes;
     const double* node = tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_node[chirp]) * kRow +
                          p % TileAtChirps::kLanes;
-    Vec delay[kChirps] = {}, rate[kChirps] = {}, re[kChirps] = {}, im[kChirps] = {};
+    States<kChirps> states = {};
     for (int k = 0; k < tile.order; ++k, node += kRow) {
       const Vec d = load(node), r = load(node + TileAtChirps::kLanes), i = load(node + 2 * TileAtChirps::kLanes);
 #pragma GCC unroll 4
       for (int c = 0; c < kChirps; ++c) {
         const Vec weight = all(value[c * tile.order + k]);
-        delay[c] = multiply_add(weight, d, delay[c]);
-        rate[c] = multiply_add(all(slope[c * tile.order + k]), d, rate[c]);
-        re[c] = multiply_add(weight, r, re[c]);
-        im[c] = multiply_add(weight, i, im[c]);
+        states.delay.of[c] = multiply_add(weight, d, states.delay.of[c]);
+        states.rate.of[c] = multiply_add(all(slope[c * tile.order + k]), d, states.rate.of[c]);
+        states.re.of[c] = multiply_add(weight, r, states.re.of[c]);
+        states.im.of[c] = multiply_add(weight, i, states.im.of[c]);
       }
     }
-    constexpr int kTogether = kChirps < kCarriersAtOnce ? kChirps : kCarriersAtOnce;
-#pragma GCC unroll 4
-    for (int c = 0; c < kChirps; c += kTogether) {
-      const Carriage<kTogether> carriers = carriers_of<kTogether>(model, delay + c, rate + c, re + c, im + c);
-#pragma GCC unroll 4
-      for (int i = 0; i < kTogether; ++i) {
-        locate(spreading, carriers.frequency.of[i], p, places[c + i]);
-        store(places[c + i].re + p, carriers.re.of[i]);
-        store(places[c + i].im + p, carriers.im.of[i]);
-      }
-    }
+    store_places(spreading, tones_of<kError>(model, states), p, places);
   }
 }
 
@@ -389,18 +388,26 @@ bool same_nodes(const TileAtChirps& tile, int chirp, int count) {
   return true;
 }
 
-void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
-              int64_t chirp_stride) {
-  Places places[TileAtChirps::kMaxChirps];
+template <PhasorError kError>
+void place_tile_at_all(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, Places* places) {
   for (int chirp = 0; chirp < tile.num_chirps;) {
     if (chirp + kChirpsAtOnce <= tile.num_chirps && same_nodes(tile, chirp, kChirpsAtOnce)) {
-      place_tile<kChirpsAtOnce>(model, spreading, tile, chirp, places + chirp);
+      place_tile<kError, kChirpsAtOnce>(model, spreading, tile, chirp, places + chirp);
       chirp += kChirpsAtOnce;
     } else {
-      place_tile<1>(model, spreading, tile, chirp, places + chirp);
+      place_tile<kError, 1>(model, spreading, tile, chirp, places + chirp);
       ++chirp;
     }
   }
+}
+
+void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
+              int64_t chirp_stride) {
+  Places places[TileAtChirps::kMaxChirps];
+  // Far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
+  if (spreading.width <= 4) place_tile_at_all<PhasorError::k7em6>(model, spreading, tile, places);
+  else if (spreading.width <= 8) place_tile_at_all<PhasorError::k3em10>(model, spreading, tile, places);
+  else place_tile_at_all<PhasorError::kRounding>(model, spreading, tile, places);
   for (int chirp = 0; chirp < tile.num_chirps; ++chirp) {
     kSpreadTile[spreading.width - NufftKernel::kMinWidth](spreading, places[chirp], tile.count, rows + chirp * chirp_stride);
   }

@@ -19,26 +19,50 @@ struct PhasorOf {
 };
 using Phasor = PhasorOf<double>;
 
-// e^{j pi x} for |x| <= 1/2. Absolute error below 5e-16: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen
-// 2013, chapter 8), off by 4e-18 (cosine) and 2e-16 (sine) before rounding.
-template <class Real>
+// How far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
+enum class PhasorError { kRounding, k3em10, k7em6 };
+
+// e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At kRounding
+// off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
+template <PhasorError kError = PhasorError::kRounding, class Real>
 ECHOPATH_INLINE PhasorOf<Real> phasor_of_half_turns(Real x) {
   const Real y = x * x;
-  Real c = y * 4.149564353942586e-06 - 0.00010456655338748738;
-  c = c * y + 0.0019295562724817132;
-  c = c * y - 0.025806888737002202;
-  c = c * y + 0.23533063012953284;
-  c = c * y - 1.335262768843447;
-  c = c * y + 4.058712126416497;
-  c = c * y - 4.934802200544676;
-  c = c * y + 1.0;
-  Real s = y * -2.113362735205297e-05 + 0.0004659870158043378;
-  s = s * y - 0.0073703643265304155;
-  s = s * y + 0.08214587881631043;
-  s = s * y - 0.599264528825224;
-  s = s * y + 2.5501640398618677;
-  s = s * y - 5.1677127800497855;
-  s = s * y + 3.1415926535897927;
+  Real c, s;
+  if constexpr (kError == PhasorError::kRounding) {
+    c = y * 4.149564353942586e-06 - 0.00010456655338748738;
+    c = c * y + 0.0019295562724817132;
+    c = c * y - 0.025806888737002202;
+    c = c * y + 0.23533063012953284;
+    c = c * y - 1.335262768843447;
+    c = c * y + 4.058712126416497;
+    c = c * y - 4.934802200544676;
+    c = c * y + 1.0;
+    s = y * -2.113362735205297e-05 + 0.0004659870158043378;
+    s = s * y - 0.0073703643265304155;
+    s = s * y + 0.08214587881631043;
+    s = s * y - 0.599264528825224;
+    s = s * y + 2.5501640398618677;
+    s = s * y - 5.1677127800497855;
+    s = s * y + 3.1415926535897927;
+  } else if constexpr (kError == PhasorError::k3em10) {
+    c = y * -0.024395932097550446 + 0.2349370685950865;
+    c = c * y - 1.3352119493905503;
+    c = c * y + 4.058709154763134;
+    c = c * y - 4.934802136928946;
+    c = c * y + 0.999999999779154;
+    s = y * -0.007028303855203096 + 0.08205035020147247;
+    s = s * y - 0.599252186531583;
+    s = s * y + 2.550163317938427;
+    s = s * y - 5.167712764593;
+    s = s * y + 3.141592653536132;
+  } else {
+    c = y * -1.22193646439004 + 4.041212337116102;
+    c = c * y - 4.933931310725943;
+    c = c * y + 0.9999932021003466;
+    s = y * -0.5594350008334862 + 2.5440002161871855;
+    s = s * y - 5.167405766362026;
+    s = s * y + 3.1415902567479046;
+  }
   return {c, s * x};
 }
 

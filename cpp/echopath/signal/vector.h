@@ -83,12 +83,28 @@ ECHOPATH_INLINE Vecs<kCount> operator*(const Vecs<kCount>& a, double b) {
   return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] * b; });
 }
 template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator+(const Vecs<kCount>& a, const Vecs<kCount>& b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] + b.of[i]; });
+}
+template <int kCount>
 ECHOPATH_INLINE Vecs<kCount> operator+(const Vecs<kCount>& a, double b) {
   return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] + b; });
 }
 template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator-(const Vecs<kCount>& a, const Vecs<kCount>& b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] - b.of[i]; });
+}
+template <int kCount>
 ECHOPATH_INLINE Vecs<kCount> operator-(const Vecs<kCount>& a, double b) {
   return each<kCount>([&](int i) __attribute__((always_inline)) { return a.of[i] - b; });
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> operator-(double a, const Vecs<kCount>& b) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return a - b.of[i]; });
+}
+template <int kCount>
+ECHOPATH_INLINE Vecs<kCount> exact_multiply_add(const Vecs<kCount>& a, double b, const Vecs<kCount>& c) {
+  return each<kCount>([&](int i) __attribute__((always_inline)) { return exact_multiply_add(a.of[i], all(b), c.of[i]); });
 }
 
 // Lane i of the result is the sum of all lanes of x[i].

@@ -406,7 +406,7 @@ void add_tile(const CarrierModel& model, const Spreading& spreading, const TileA
   Places places[TileAtChirps::kMaxChirps];
   // Far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
   if (spreading.width <= 4) place_tile_at_all<PhasorError::k7em6>(model, spreading, tile, places);
-  else if (spreading.width <= 8) place_tile_at_all<PhasorError::k3em10>(model, spreading, tile, places);
+  else if (spreading.width <= 8) place_tile_at_all<PhasorError::k1em12>(model, spreading, tile, places);
   else place_tile_at_all<PhasorError::kRounding>(model, spreading, tile, places);
   for (int chirp = 0; chirp < tile.num_chirps; ++chirp) {
     kSpreadTile[spreading.width - NufftKernel::kMinWidth](spreading, places[chirp], tile.count, rows + chirp * chirp_stride);

@@ -20,7 +20,7 @@ struct PhasorOf {
 using Phasor = PhasorOf<double>;
 
 // How far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
-enum class PhasorError { kRounding, k3em10, k7em6 };
+enum class PhasorError { kRounding, k1em12, k7em6 };
 
 // e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At kRounding
 // off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
@@ -44,17 +44,19 @@ ECHOPATH_INLINE PhasorOf<Real> phasor_of_half_turns(Real x) {
     s = s * y + 2.5501640398618677;
     s = s * y - 5.1677127800497855;
     s = s * y + 3.1415926535897927;
-  } else if constexpr (kError == PhasorError::k3em10) {
-    c = y * -0.024395932097550446 + 0.2349370685950865;
-    c = c * y - 1.3352119493905503;
-    c = c * y + 4.058709154763134;
-    c = c * y - 4.934802136928946;
-    c = c * y + 0.999999999779154;
-    s = y * -0.007028303855203096 + 0.08205035020147247;
-    s = s * y - 0.599252186531583;
-    s = s * y + 2.550163317938427;
-    s = s * y - 5.167712764593;
-    s = s * y + 3.141592653536132;
+  } else if constexpr (kError == PhasorError::k1em12) {
+    c = y * 0.001839989437269404 - 0.02577631642731586;
+    c = c * y + 0.2353254365877112;
+    c = c * y - 1.33526231526157;
+    c = c * y + 4.0587121075374375;
+    c = c * y - 4.93480220024985;
+    c = c * y + 0.9999999999992479;
+    s = y * 0.0004474920849077101 - 0.007364005472115722;
+    s = s * y + 0.08214479467064854;
+    s = s * y - 0.5992644339357286;
+    s = s * y + 2.550164035906745;
+    s = s * y - 5.167712779987959;
+    s = s * y + 3.141592653589635;
   } else {
     c = y * -1.22193646439004 + 4.041212337116102;
     c = c * y - 4.933931310725943;

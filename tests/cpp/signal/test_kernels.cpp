@@ -7,6 +7,7 @@
 #include "echopath/signal/echo_tiles.h"
 #include "echopath/signal/kernels.h"
 #include "echopath/signal/nufft_kernel.h"
+#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace kernels_baseline { extern const SignalKernels kKernels; }
@@ -14,6 +15,26 @@ namespace kernels_baseline { extern const SignalKernels kKernels; }
 namespace {
 
 constexpr double kRounding = 1e-13;  // of sums of a thousand numbers in another order
+
+template <PhasorError kError>
+double worst_phasor_error() {
+  double worst = 0.0;
+  for (int i = -1000; i <= 1000; ++i) {
+    const double x = i / 2000.0;
+    const Phasor phasor = phasor_of_half_turns<kError>(x);
+    const long double angle = std::numbers::pi_v<long double> * x;
+    const double error = static_cast<double>(std::hypot(phasor.re - std::cos(angle), phasor.im - std::sin(angle)));
+    worst = std::max(worst, error);
+  }
+  return worst;
+}
+
+// Against cosine and sine in extended precision.
+TEST(Kernels, PhasorsAreAsExactAsTheirNames) {
+  EXPECT_LT(worst_phasor_error<PhasorError::kRounding>(), 5e-16);
+  EXPECT_LT(worst_phasor_error<PhasorError::k1em12>(), 1e-12);
+  EXPECT_LT(worst_phasor_error<PhasorError::k7em6>(), 7e-6);
+}
 
 // Leaves not-a-numbers where the next call has its local arrays.
 [[gnu::noinline]] void spoil_stack() {

@@ -77,6 +77,11 @@ def test_parts_are_disjoint_complete_and_add_up(paths, chosen):
     parts = {f"part {k}": pair[0] for k, pair in enumerate(chosen)}
     split = paths.partition(parts)
     assert sum(part.num_paths for part in split.values()) == paths.num_paths
+    earlier = []
+    for name, selection in parts.items():  # the first that takes a path has it
+        left = reduce(lambda a, b: a & ~b, earlier, selection)
+        assert split[name].num_paths == paths.select(left).num_paths
+        earlier.append(selection)
     taken = reduce(lambda a, b: a | b, parts.values())
     assert split["other"].num_paths == paths.select(~taken).num_paths
     whole = ep.synthesize(paths)

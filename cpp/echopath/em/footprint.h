@@ -2,20 +2,11 @@
 // The footprint of one ray on a surface: what the phase does across the launch cell that the ray stands for.
 #include <complex>
 
+#include "echopath/em/footprint_formula.h"
+
 namespace echopath {
 
-enum class Footprint {
-  kNone,         // every ray is a point: sums alias where phases turn faster than rays are spaced
-  kFirstOrder,   // linear phase across the cell
-  kSecondOrder,  // quadratic phase: few rays suffice on curved surfaces
-  kEdges,        // the same, flatter: far fewer rays where the edges of a curved surface make the echo
-};
-
-// Phase of the path across the footprint, g.x + x.h.x / 2, with x in units of launch cells along the two footprint axes.
-struct FootprintPhase {
-  double g1 = 0.0, g2 = 0.0;              // rad per cell
-  double h11 = 0.0, h12 = 0.0, h22 = 0.0;  // rad per cell^2
-};
+using FootprintPhase = FootprintPhaseOf<double>;
 
 // First order: F = exp(-(g1^2 + g2^2) / 24), the Gaussian fit of a square cell's shape factor sinc(g1/2) sinc(g2/2)
 // (ray-tube integration of Ling, Chou, Lee 1989). In (0, 1].

@@ -2,7 +2,9 @@
 // The patch of surface that one coherent ray stands for, carried along with its triangle, and what it does to the echo.
 // Source of the second order: quadratic phase over the cell from ray differentials (Igehy 1999), curvature of wave front,
 // receive sphere and surface.
-#include "echopath/em/footprint.h"
+#include <array>
+
+#include "echopath/replay/cell_formula.h"
 #include "echopath/replay/path_geometry.h"
 
 namespace echopath {
@@ -18,11 +20,9 @@ struct HitGeometry {
 // Tube area per launch solid angle, square root, m / sqrt(sr): the unfolded length on flat chains.
 double root_tube_area(const LaunchCell& cell, const HitGeometry& geometry);
 
-struct CellFilter {
-  double wavenumber = 0.0;  // rad/m
-  double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
-  Footprint order = Footprint::kSecondOrder;
-};
+using CellTangents = std::array<Vec3, 2>;  // T_a on the surface at the hit, world axes, m
+CellTangents cell_tangents(const LaunchCell& cell, const PosedHit& hit);
+CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTangents& tangents);
 
 // Footprint filter F of the cell, |F| <= 1.
 //   first order:  g_a = k T_a.(u - s)

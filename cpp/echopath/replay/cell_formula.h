@@ -1,0 +1,95 @@
+#pragma once
+// The footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles: Math as in base/scalar_math.h.
+#include "echopath/em/footprint_formula.h"
+
+namespace echopath {
+
+// Flatness is a property of the surface, not of the cell: a filter that changed its kind where cells grow (toward grazing)
+// would draw an edge across the surface, and the edge would radiate.
+enum class Flatness { kFlat, kFlatOneWay, kCurved };
+
+struct CellFilter {
+  double wavenumber = 0.0;  // rad/m
+  double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
+  Footprint order = Footprint::kSecondOrder;
+};
+
+// A cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. Does not change while its mesh moves rigidly.
+struct CellShape {
+  bool is_known = false;           // else the filter is off
+  bool is_curved = false;          // behind a curved specular bounce: `turn` is that of the trace
+  Flatness flatness = Flatness::kFlat;
+  double product[3] = {0, 0, 0};   // T_a.T_b, m^2
+  double turn[3] = {0, 0, 0};      // T_a.U_b, m
+  double bend[3] = {0, 0, 0};      // II(T_a, T_b) about the normal of the triangle, m
+  double across[2] = {1, 0};       // of kFlatOneWay: unit, in cells, toward the curvature
+};
+
+// A cell as waves meet and leave it.
+template <class Real>
+struct CellWaves {
+  Real cos_in, cos_out;                          // positive
+  Real side;                                     // 1 where the wave arrives from the normal's side, else -1
+  Real inverse_in, inverse_out;                  // 1/m, of the unfolded lengths
+  Real along_arrival[2], along_departure[2];     // of unit directions of travel, T_a.u and T_a.s, m
+};
+
+// Matrix h of the cell, in rad per cell^2.
+template <class Real>
+ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const CellShape& cell, const CellWaves<Real>& at, double wavenumber) {
+  FootprintPhaseOf<Real> phase;
+  Real* const h[3] = {&phase.h11, &phase.h12, &phase.h22};
+  const Real bends = at.side * (at.cos_in + at.cos_out);
+  for (int i = 0; i < 3; ++i) {
+    const int a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
+    const Real on_arrival = (cell.product[i] - at.along_arrival[a] * at.along_arrival[b]) * at.inverse_in;
+    const Real on_departure = (cell.product[i] - at.along_departure[a] * at.along_departure[b]) * at.inverse_out;
+    *h[i] = wavenumber * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
+  }
+  phase.g1 = wavenumber * (at.along_arrival[0] - at.along_departure[0]);
+  phase.g2 = wavenumber * (at.along_arrival[1] - at.along_departure[1]);
+  return phase;
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+  return filter.order == Footprint::kEdges ? edges_footprint_of<Math>(phase, filter.spread)
+                                           : second_order_footprint_of<Math>(phase, filter.spread);
+}
+
+// Flat-top where the phase is nearly linear, else quadratic.
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+  constexpr double kFlatPhase = 0.05;  // rad: quadratic phase (spread^2 h) below which a flat facet is flat-top
+  const Real largest = Math::larger(Math::larger(Math::magnitude(phase.h11), Math::magnitude(phase.h22)), Math::magnitude(phase.h12));
+  const auto is_bent = largest * (filter.spread * filter.spread) >= kFlatPhase;
+  const Real flat = flat_top_of<Math>(phase.g1) * flat_top_of<Math>(phase.g2);
+  if (!Math::any(is_bent)) return {flat, flat * 0.0};
+  const ComplexOf<Real> bent = quadratic_footprint<Math>(phase, filter);
+  return {is_bent ? bent.re : flat, is_bent ? bent.im : flat * 0.0};
+}
+
+// Along the axis of a cylinder the facets are as long as the cylinder: flat-top there, second order across.
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+  const double x = cell.across[0], y = cell.across[1];
+  FootprintPhaseOf<Real> across{};
+  across.g1 = x * phase.g1 + y * phase.g2;
+  across.h11 = x * x * phase.h11 + 2.0 * x * y * phase.h12 + y * y * phase.h22;
+  const Real flat = flat_top_of<Math>(x * phase.g2 - y * phase.g1);
+  const ComplexOf<Real> bent = quadratic_footprint<Math>(across, filter);
+  return {flat * bent.re, flat * bent.im};
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
+  const Real zero = at.cos_in * 0.0;
+  if (filter.order == Footprint::kNone || !cell.is_known) return {zero + 1.0, zero};
+  const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter.wavenumber);
+  if (filter.order == Footprint::kFirstOrder) return {first_order_footprint_of<Math>(phase), zero};
+  if (cell.is_curved || cell.flatness == Flatness::kCurved) return quadratic_footprint<Math>(phase, filter);
+  if (cell.flatness == Flatness::kFlat) return flat_cell_filter<Math>(phase, filter);
+  return cylinder_cell_filter<Math>(cell, phase, filter);
+}
+
+}  // namespace echopath

@@ -31,11 +31,12 @@ double diffuse_factor(const LocalPath& path, const PosedHit* hits, const Diffuse
   const double cos_in = -hits[path.first_material].normal.dot(in.travel), cos_out = hits[path.last_material].normal.dot(out.travel);
   const double start = between.begins_specular
                            ? specular_leg(std::sqrt(in.gain.power), in.length, between.to_first, between.root_cos_first)
-                           : diffuse_leg(std::sqrt(in.gain.power), cos_in, in.length);
-  const double end = diffuse_leg(std::sqrt(out.gain.power), cos_out, out.length);
-  const double product = between.is_single ? diffuse_product(start, end, between.factor)
-                                           : diffuse_product(start, end, between.factor, between.first_sign, between.last_sign);
-  return diffuse_scale(radio) * product;
+                           : diffuse_leg<ScalarMath>(std::sqrt(in.gain.power), cos_in, in.length);
+  const double end = diffuse_leg<ScalarMath>(std::sqrt(out.gain.power), cos_out, out.length);
+  const double product = between.is_single
+                             ? diffuse_product<ScalarMath>(start, end)
+                             : diffuse_product<ScalarMath>(start, end, between.first_sign, between.last_sign);
+  return diffuse_scale(radio) * product * between.factor;
 }
 
 // What the polarisations of two antennas make of a path: receive components, matrix, transmit components.

@@ -47,9 +47,10 @@ class ChainPlanner {
     Ends ends;
     for (int k = 0; k < hits.count; ++k) {
       if (!is_image(hits, k)) {
+        // Hits between others slide, and no others.
+        if (slides_ && ends.last >= 0 && !hits.is_diffuse(ends.last)) return {};
         if (ends.first < 0) ends.first = k;
         ends.last = k;
-        if (slides_ && !hits.is_diffuse(k)) return {};
       } else if (!localise_.is_plane(hits.hit(k).mesh_id)) {
         return {};
       }
@@ -59,31 +60,33 @@ class ChainPlanner {
 
   bool add_chain(size_t place, int64_t path) {
     const auto p = static_cast<size_t>(path);
-    if (paths_.diffuse[p] == 0 || !paths_.jones.empty()) return false;
+    if (!paths_.jones.empty()) return false;
     const TracedHits hits{paths_.hits_of(path), paths_.num_bounces[p], paths_.diffuse[p], (paths_.flags[p] & kReversedPath) != 0};
     const std::optional<Ends> ends = ends_of(hits);
-    if (!ends) return false;
-    plan_.chains.push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
-                            std::complex<double>(paths_.weight[p])});
+    if (!ends || ends->first < 0) return false;
+    const bool is_coherent = paths_.diffuse[p] == 0;
+    if (is_coherent && localise_.may_stretch(hits.hit(ends->last).mesh_id)) return false;
+    (is_coherent ? plan_.coherent : plan_.chains)
+        .push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
+                    std::complex<double>(paths_.weight[p])});
     return true;
   }
 
   // Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
   uint32_t start_leg(const TracedHits& hits, int first) {
-    uint32_t& known = leg_of_(hits.run(0, first), first + 1, leg_kind(hits.is_reversed, hits.is_diffuse(first)));
+    uint32_t& known = leg_of_(hits.run(0, first), first + 1, hits.is_reversed);
     if (known != SegmentIds::kNone) return known;
     uint32_t image = 0;
     for (int k = 0; k < first; ++k) image = image_in(image, hits.hit(k));
-    return known = leg(image, hits, first, hits.is_reversed);
+    return known = leg(image, hits.hit(first), hits.is_reversed);
   }
   uint32_t end_leg(const TracedHits& hits, int last) {
-    uint32_t& known = leg_of_(hits.run(last, hits.count - 1), hits.count - last, leg_kind(!hits.is_reversed, hits.is_diffuse(last)));
+    uint32_t& known = leg_of_(hits.run(last, hits.count - 1), hits.count - last, !hits.is_reversed);
     if (known != SegmentIds::kNone) return known;
     uint32_t image = 0;
     for (int k = hits.count; --k > last;) image = image_in(image, hits.hit(k));
-    return known = leg(image, hits, last, !hits.is_reversed);
+    return known = leg(image, hits.hit(last), !hits.is_reversed);
   }
-  static uint64_t leg_kind(bool of_receivers, bool is_diffuse) { return uint64_t{of_receivers} << 1 | uint64_t{is_diffuse}; }
 
   uint32_t image_in(uint32_t parent, const Hit& hit) {
     const uint32_t mirror = mirror_ids_(pair_key(hit.mesh_id, hit.triangle_id));
@@ -100,11 +103,10 @@ class ChainPlanner {
     return id;
   }
 
-  uint32_t leg(uint32_t image, const TracedHits& hits, int k, bool of_receivers) {
-    const bool is_diffuse = hits.is_diffuse(k);
-    const uint32_t at = point(hits.hit(k));
-    const uint32_t id = leg_ids_(pair_key(image, at), uint64_t{of_receivers} << 1 | uint64_t{is_diffuse});
-    if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers, is_diffuse});
+  uint32_t leg(uint32_t image, const Hit& hit, bool of_receivers) {
+    const uint32_t at = point(hit);
+    const uint32_t id = leg_ids_(pair_key(image, at), of_receivers);
+    if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers});
     return id;
   }
 

@@ -21,7 +21,7 @@ struct ChainPlan {
   // From the images of all transmitters or of all receivers to a point.
   struct Leg {
     uint32_t image, point;
-    bool of_receivers, is_diffuse;  // the point scatters diffusely
+    bool of_receivers;
   };
   // What lies between the first and the last material point of a path: hits [begin, end) of `inner_points`.
   struct Inner {
@@ -44,10 +44,12 @@ struct ChainPlan {
   std::vector<uint32_t> inner_points;
   std::vector<Inner> inner;
   std::vector<Chain> chains;          // diffuse paths
+  std::vector<Chain> coherent;        // paths with a launch cell, at the point of their last leg
   std::vector<size_t> others;         // places of the paths that are evaluated one by one
 };
 
-// For the paths of these indices. Paths stand among `others` that are coherent, polarised, or have sliding hits that move.
+// For the paths of these indices. Paths stand among `others` that are polarised, are made of mirrors alone, have sliding hits
+// that move, or a launch cell on a mesh that may stretch.
 ChainPlan plan_chains(const Paths& paths, const Localiser& localise, SpecularPoints specular, std::span<const int64_t> indices);
 
 // All of them stand among `others`.

@@ -1,49 +1,33 @@
 #include "echopath/replay/chain_tables.h"
 
+#include <algorithm>
 #include <cmath>
-#include <deque>
 
-#include "echopath/base/simd.h"
 #include "echopath/replay/diffuse_chain.h"
 
 namespace echopath {
 namespace {
 
-void store(const Vec3& vector, NodeRows& rows, size_t entry, size_t first_row, size_t node) {
-  for (int axis = 0; axis < 3; ++axis) rows.row(entry, first_row + static_cast<size_t>(axis))[node] = vector[axis];
-}
+constexpr int kMostExponent = 16;  // of gains that are products of cosines
 
-Vec3 load(const NodeRows& rows, size_t entry, size_t first_row, size_t node) {
-  return {rows.row(entry, first_row)[node], rows.row(entry, first_row + 1)[node], rows.row(entry, first_row + 2)[node]};
-}
-
-// Rows [normal x, y, z, offset]: the points x with normal.x = offset, m.
-NodeRows pose_mirrors(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants) {
-  NodeRows planes(plan.mirrors.size(), 4, instants.size());
+void find_mirrors(const ChainPlan& plan, const Localiser& localise, const LevelView& level, NodeRows& planes) {
+  planes.resize(plan.mirrors.size(), 4, level.instants.size());
   for (size_t mirror = 0; mirror < plan.mirrors.size(); ++mirror) {
     const LocalHit local = localise.hit(plan.mirrors[mirror]);
-    for (size_t node = 0; node < instants.size(); ++node) {
+    for (size_t node = 0; node < level.instants.size(); ++node) {
       PosedHit posed;
-      pose_hit(local, instants[node], false, posed);
+      pose_hit(local, level.instants[node], false, posed);
       store(posed.normal, planes, mirror, 0, node);
       planes.row(mirror, 3)[node] = posed.normal.dot(posed.point);
     }
   }
-  return planes;
 }
 
-const std::vector<PosedAntenna>& antennas_of(const Instant& instant, bool of_receivers) {
-  return of_receivers ? instant.receivers : instant.transmitters;
-}
-
-// Of the antennas themselves.
-void store_antennas(std::span<const Instant> instants, bool of_receivers, AntennaImages& images) {
+// Of the antennas themselves, as axes that tables of gains need.
+void store_axes(std::span<const Instant> instants, bool of_receivers, AntennaImages& images) {
   for (size_t node = 0; node < instants.size(); ++node) {
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      const PosedAntenna& posed = antennas_of(instants[node], of_receivers)[antenna];
-      store(posed.position, images.rows, antenna, AntennaImages::kPosition, node);
-      store(posed.boresight, images.rows, antenna, AntennaImages::kBoresight, node);
-      if (!images.antenna_from_image.empty()) images.antenna_from_image[antenna * instants.size() + node] = posed.antenna_from_world;
+      images.antenna_from_image[antenna * instants.size() + node] = antennas_of(instants[node], of_receivers)[antenna].antenna_from_world;
     }
   }
 }
@@ -53,161 +37,201 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
   const size_t num_nodes = images.rows.num_nodes();
   for (size_t node = 0; node < num_nodes; ++node) {
     const Vec3 normal = load(planes, mirror, 0, node);
-    const Vec3 position = load(images.rows, from, AntennaImages::kPosition, node);
-    const Vec3 boresight = load(images.rows, from, AntennaImages::kBoresight, node);
+    const Vec3 position = load(images.rows, from, LegToMeasure::kImagePosition, node);
+    const Vec3 boresight = load(images.rows, from, LegToMeasure::kBoresight, node);
     const double behind = normal.dot(position) - planes.row(mirror, 3)[node];
-    store(position - 2.0 * behind * normal, images.rows, to, AntennaImages::kPosition, node);
-    store(boresight - 2.0 * normal.dot(boresight) * normal, images.rows, to, AntennaImages::kBoresight, node);
+    store(position - 2.0 * behind * normal, images.rows, to, LegToMeasure::kImagePosition, node);
+    store(boresight - 2.0 * normal.dot(boresight) * normal, images.rows, to, LegToMeasure::kBoresight, node);
     if (images.antenna_from_image.empty()) continue;
     const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
     images.antenna_from_image[to * num_nodes + node] = images.antenna_from_image[from * num_nodes + node] * reflection;
   }
+  pad(images.rows, to, LegToMeasure::kNumImageRows);
 }
 
-// From the image of an antenna to a point. Pointers to the first of three rows where those are vectors.
-struct LegRows {
-  const double *image, *boresight, *point, *normal;
-  double *length, *cos_point, *cos_boresight;
-};
-
-ECHOPATH_INLINE void measure(LegRows leg, size_t num_nodes) {
-  const double *ix = leg.image, *iy = ix + num_nodes, *iz = iy + num_nodes;
-  const double *bx = leg.boresight, *by = bx + num_nodes, *bz = by + num_nodes;
-  const double *px = leg.point, *py = px + num_nodes, *pz = py + num_nodes;
-  const double *nx = leg.normal, *ny = nx + num_nodes, *nz = ny + num_nodes;
-  double *__restrict length = leg.length, *__restrict cos_point = leg.cos_point, *__restrict cos_boresight = leg.cos_boresight;
-  for (size_t node = 0; node < num_nodes; ++node) {
-    const double x = px[node] - ix[node], y = py[node] - iy[node], z = pz[node] - iz[node];
-    const double distance = std::sqrt(x * x + y * y + z * z), inverse = 1.0 / distance;
-    length[node] = distance;
-    cos_point[node] = -inverse * (nx[node] * x + ny[node] * y + nz[node] * z);
-    cos_boresight[node] = inverse * (bx[node] * x + by[node] * y + bz[node] * z);
-  }
+// Whole exponents that kernels can do, else LegToMeasure::kNoExponent.
+int exponent_of(const AntennaPattern& pattern) {
+  if (pattern.kind == AntennaPattern::Kind::kIsotropic) return 0;
+  if (pattern.kind == AntennaPattern::Kind::kTable || pattern.exponent > kMostExponent) return LegToMeasure::kNoExponent;
+  const int whole = static_cast<int>(pattern.exponent);
+  // Behind the antenna there is no gain even where the exponent is 0, which the kernel takes as a gain in all directions.
+  return whole == pattern.exponent && whole > 0 ? whole : LegToMeasure::kNoExponent;
 }
 
-// Gains over the cosines of the boresight, in place; of tables over the directions from the image to the point.
-void find_root_gains(const AntennaImages& images, size_t entry, const double* point, double* gain) {
+// Turns the cosines that the kernel left into gains and factors.
+void finish_leg(const AntennaImages& images, size_t entry, const double* point, double* out, size_t stride) {
   const size_t num_nodes = images.rows.num_nodes();
   const AntennaPattern& pattern = *images.pattern[entry % images.num_antennas];
-  if (pattern.kind != AntennaPattern::Kind::kTable) {
-    for (size_t node = 0; node < num_nodes; ++node) gain[node] = std::sqrt(pattern.gain(gain[node]));
-    return;
-  }
+  const bool is_table = pattern.kind == AntennaPattern::Kind::kTable;
+  const double* length = out + LegToMeasure::kLength * stride;
+  double *factor = out + LegToMeasure::kFactor * stride, *gain = out + LegToMeasure::kGain * stride;
   for (size_t node = 0; node < num_nodes; ++node) {
-    const Vec3 at(point[node], point[num_nodes + node], point[2 * num_nodes + node]);
-    const Vec3 direction = (at - load(images.rows, entry, AntennaImages::kPosition, node)).normalized();
-    gain[node] = std::sqrt(pattern.toward(images.antenna_from_image[entry * num_nodes + node] * direction).power);
+    if (is_table) {
+      const Vec3 at(point[node], point[stride + node], point[2 * stride + node]);
+      const Vec3 direction = (at - load(images.rows, entry, LegToMeasure::kImagePosition, node)).normalized();
+      gain[node] = std::sqrt(pattern.toward(images.antenna_from_image[entry * num_nodes + node] * direction).power);
+    } else {
+      gain[node] = std::sqrt(pattern.gain(gain[node]));
+    }
+    factor[node] = diffuse_leg<ScalarMath>(gain[node], factor[node], length[node]);
   }
-}
-
-ECHOPATH_INLINE void find_factors(const double* root_gain, const double* cosine, const double* length, size_t num_nodes,
-                                double* __restrict factor) {
-  for (size_t node = 0; node < num_nodes; ++node) factor[node] = diffuse_leg(root_gain[node], cosine[node], length[node]);
 }
 
 }  // namespace
 
 PosedHit PosedPoints::at(size_t point, size_t node) const {
   PosedHit hit;
-  hit.point = load(rows, point, kPosition, node);
-  hit.normal = load(rows, point, kNormal, node);
-  hit.area_ratio = rows.row(point, kAreaRatio)[node];
+  hit.point = load(rows, point, PointToPose::kPosition, node);
+  hit.normal = load(rows, point, PointToPose::kNormal, node);
+  hit.area_ratio = rows.row(point, PointToPose::kAreaRatio)[node];
   return hit;
 }
 
-PosedPoints pose_points(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants) {
-  PosedPoints points{NodeRows(plan.points.size(), PosedPoints::kNumRows, instants.size())};
-  std::deque<std::array<Vec3, 3>> normals;
-  for (size_t point = 0; point < plan.points.size(); ++point) {
-    const LocalHit local = localise.hit(plan.points[point], normals);
-    for (size_t node = 0; node < instants.size(); ++node) {
-      PosedHit posed;
-      pose_hit(local, instants[node], false, posed);
-      store(posed.point, points.rows, point, PosedPoints::kPosition, node);
-      store(posed.normal, points.rows, point, PosedPoints::kNormal, node);
-      points.rows.row(point, PosedPoints::kAreaRatio)[node] = posed.area_ratio;
-    }
-  }
-  return points;
+PosedHit PosedPoints::at_trace(size_t point) const {
+  PosedHit hit;
+  hit.point = traced[point].position;
+  hit.normal = traced[point].normal;
+  hit.is_smooth = traced[point].curvature != nullptr;
+  if (hit.is_smooth) hit.curvature = *traced[point].curvature;
+  return hit;
 }
 
-AntennaImages pose_images(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants, bool of_receivers) {
-  AntennaImages images;
-  const std::vector<PosedAntenna>& antennas = antennas_of(instants.front(), of_receivers);
-  images.num_antennas = antennas.size();
+void PosedPoints::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
+  rows.resize(plan.points.size(), PointToPose::kNumRows, level.instants.size());
+  traced.resize(plan.points.size());
+  normals.clear();
+  curvatures.clear();
+  for (size_t point = 0; point < plan.points.size(); ++point) {
+    const LocalHit hit = localise.hit(plan.points[point], normals);
+    if (localise.may_stretch(hit.mesh_id)) pose_stretched(hit, localise, level, point);
+    else pose_rigid(hit, localise, level, point);
+  }
+}
+
+// What is smooth is so in the frame of its mesh: the point off its facet and the normal there move as any other.
+void PosedPoints::pose_rigid(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
+  const Instant& trace = localise.trace_instant();
+  const Mat3& mesh_from_trace = localise.mesh_from_trace(hit.mesh_id);
+  PosedHit posed;
+  pose_hit(hit, trace, false, posed);
+  Vec3 position = hit.point;
+  traced[point] = {posed.point, posed.normal, nullptr};
+  if (posed.is_smooth) {
+    traced[point].curvature = &curvatures.emplace_back(posed.curvature);
+    position = mesh_from_trace * (posed.point - trace.translation(hit.mesh_id));
+  }
+  const Vec3 normal = mesh_from_trace * posed.normal;
+  PointToPose to;
+  to.mesh = level.poses.meshes.row(hit.mesh_id, 0);
+  std::copy_n(position.data(), 3, to.position);
+  std::copy_n(normal.data(), 3, to.normal);
+  to.out = rows.row(point, 0);
+  chain_kernels(rows.stride()).pose(to, rows.stride());
+}
+
+void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
+  PosedHit posed;
+  pose_hit(hit, localise.trace_instant(), false, posed);
+  traced[point] = {posed.point, posed.normal, nullptr};
+  for (size_t node = 0; node < level.instants.size(); ++node) {
+    pose_hit(hit, level.instants[node], false, posed);
+    store(posed.point, rows, point, PointToPose::kPosition, node);
+    store(posed.normal, rows, point, PointToPose::kNormal, node);
+    rows.row(point, PointToPose::kAreaRatio)[node] = posed.area_ratio;
+  }
+  pad(rows, point, PointToPose::kNumRows);
+}
+
+void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers) {
+  const std::vector<PosedAntenna>& antennas = antennas_of(level.instants.front(), of_receivers);
+  const NodeRows& own = level.poses.antennas[of_receivers];
+  num_antennas = antennas.size();
+  pattern.clear();
   bool has_table = false;
   for (const PosedAntenna& antenna : antennas) {
-    images.pattern.push_back(antenna.pattern);
+    pattern.push_back(antenna.pattern);
     has_table = has_table || antenna.pattern->kind == AntennaPattern::Kind::kTable;
   }
-  const size_t num_entries = plan.images.size() * images.num_antennas;
-  images.rows = NodeRows(num_entries, AntennaImages::kNumRows, instants.size());
-  if (has_table) images.antenna_from_image.resize(num_entries * instants.size());
-  store_antennas(instants, of_receivers, images);
-  const NodeRows planes = pose_mirrors(plan, localise, instants);
+  const size_t num_entries = plan.images.size() * num_antennas;
+  rows.resize(num_entries, LegToMeasure::kNumImageRows, level.instants.size());
+  antenna_from_image.resize(has_table ? num_entries * level.instants.size() : 0);
+  if (has_table) store_axes(level.instants, of_receivers, *this);
+  for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
+    std::copy_n(own.row(antenna, 0), LegToMeasure::kNumImageRows * rows.stride(), rows.row(antenna, 0));
+  }
   for (size_t image = 1; image < plan.images.size(); ++image) {
-    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      store_image(planes, plan.images[image].mirror, plan.images[image].parent * images.num_antennas + antenna,
-                  image * images.num_antennas + antenna, images);
+    for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
+      store_image(mirrors, plan.images[image].mirror, plan.images[image].parent * num_antennas + antenna,
+                  image * num_antennas + antenna, *this);
     }
   }
-  return images;
 }
 
-ChainLegs measure_legs(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters,
-                       const AntennaImages& receivers) {
-  const size_t num_nodes = points.rows.num_nodes();
-  ChainLegs legs;
-  legs.stride = std::max(transmitters.num_antennas, receivers.num_antennas);
-  legs.rows = NodeRows(plan.legs.size() * legs.stride, ChainLegs::kNumRows, num_nodes);
-  std::vector<double> cosine(num_nodes), root_gain(num_nodes);
+void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters,
+                     const AntennaImages& receivers) {
+  stride = std::max(transmitters.num_antennas, receivers.num_antennas);
+  rows.resize(plan.legs.size() * stride, LegToMeasure::kNumRows, points.rows.num_nodes());
+  const ChainKernels& kernels = chain_kernels(rows.stride());
   for (size_t id = 0; id < plan.legs.size(); ++id) {
     const ChainPlan::Leg& leg = plan.legs[id];
     const AntennaImages& images = leg.of_receivers ? receivers : transmitters;
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      const size_t image = leg.image * images.num_antennas + antenna, to = id * legs.stride + antenna;
-      const double* point = points.rows.row(leg.point, PosedPoints::kPosition);
-      double* length = legs.rows.row(to, ChainLegs::kLength);
-      double* factor = legs.rows.row(to, ChainLegs::kFactor);
-      double* gain = leg.is_diffuse ? root_gain.data() : factor;
-      const LegRows rows{images.rows.row(image, AntennaImages::kPosition), images.rows.row(image, AntennaImages::kBoresight), point,
-                         points.rows.row(leg.point, PosedPoints::kNormal), length, cosine.data(), gain};
-      run_simd<measure>(rows, num_nodes);
-      find_root_gains(images, image, point, gain);
-      if (leg.is_diffuse) run_simd<find_factors>(gain, cosine.data(), length, num_nodes, factor);
+      const size_t image = leg.image * images.num_antennas + antenna;
+      const AntennaPattern& pattern = *images.pattern[antenna];
+      const LegToMeasure measured{images.rows.row(image, 0), points.rows.row(leg.point, 0), exponent_of(pattern),
+                                  std::sqrt(pattern.peak_gain), rows.row(id * stride + antenna, 0)};
+      kernels.measure(measured, rows.stride());
+      if (measured.exponent == LegToMeasure::kNoExponent) finish_leg(images, image, measured.point, measured.out, rows.stride());
     }
   }
-  return legs;
 }
 
-ChainInner measure_inner(const ChainPlan& plan, const PosedPoints& points) {
-  const size_t num_nodes = points.rows.num_nodes();
-  ChainInner out{std::vector<uint8_t>(plan.inner.size()), std::vector<uint8_t>(plan.inner.size()),
-                 NodeRows(plan.inner.size(), ChainInner::kNumRows, num_nodes)};
-  std::vector<PosedHit> hits(64);  // a path has no more
+LocalPath path_of(const ChainPlan::Inner& inner) {
+  LocalPath path;
+  path.count = static_cast<int>(inner.end - inner.begin);
+  path.diffuse = inner.diffuse;
+  path.image = inner.image;
+  path.first_material = 0;
+  path.last_material = path.count - 1;
+  return path;
+}
+
+void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
+  begins_specular.assign(plan.inner.size(), 0);
+  is_single.assign(plan.inner.size(), 0);
+  rows.resize(plan.inner.size(), InnerRows::kNumRows, points.rows.num_nodes());
+  std::array<PosedHit, 64> hits;  // a path has no more
   for (size_t id = 0; id < plan.inner.size(); ++id) {
     const ChainPlan::Inner& inner = plan.inner[id];
-    LocalPath path;
-    path.count = static_cast<int>(inner.end - inner.begin);
-    path.diffuse = inner.diffuse;
-    path.image = inner.image;
-    path.first_material = 0;
-    path.last_material = path.count - 1;
-    for (size_t node = 0; node < num_nodes; ++node) {
+    const LocalPath path = path_of(inner);
+    for (size_t node = 0; node < rows.num_nodes(); ++node) {
       for (size_t k = inner.begin; k < inner.end; ++k) hits[k - inner.begin] = points.at(plan.inner_points[k], node);
       const InnerPart part = inner_part(path, hits.data());
+      const auto set = [&](size_t row, double value) { rows.row(id, row)[node] = value; };
+      set(InnerRows::kLength, part.length);
+      if (path.diffuse == 0) {
+        store(part.last_arrival, rows, id, InnerRows::kArrival, node);
+        continue;
+      }
       const DiffuseInner found = diffuse_inner(path, hits.data(), part);
-      out.begins_specular[id] = found.begins_specular;
-      out.is_single[id] = found.is_single;
-      out.rows.row(id, ChainInner::kLength)[node] = part.length;
-      out.rows.row(id, ChainInner::kToFirst)[node] = found.to_first;
-      out.rows.row(id, ChainInner::kRootCosFirst)[node] = found.root_cos_first;
-      out.rows.row(id, ChainInner::kFactor)[node] = found.factor;
-      out.rows.row(id, ChainInner::kFirstSign)[node] = found.first_sign;
-      out.rows.row(id, ChainInner::kLastSign)[node] = found.last_sign;
+      begins_specular[id] = found.begins_specular;
+      is_single[id] = found.is_single;
+      set(InnerRows::kToFirst, found.to_first);
+      set(InnerRows::kRootCosFirst, found.root_cos_first);
+      set(InnerRows::kFactor, found.factor);
+      set(InnerRows::kFirstSign, found.first_sign);
+      set(InnerRows::kLastSign, found.last_sign);
     }
+    pad(rows, id, InnerRows::kNumRows);
   }
-  return out;
+}
+
+void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
+  points.find(plan, localise, level);
+  find_mirrors(plan, localise, level, mirrors);
+  for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
+  legs.find(plan, points, images[false], images[true]);
+  inner.find(plan, points);
 }
 
 }  // namespace echopath

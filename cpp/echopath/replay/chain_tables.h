@@ -1,50 +1,81 @@
 #pragma once
-// Everything that the paths of a block share, at all nodes: posed points, images of antennas, legs, inner parts.
+// Everything that the paths of a block share, at all nodes: posed points, images of antennas, legs, inner parts. Tables keep their
+// memory from block to block.
+#include <deque>
 #include <span>
 
 #include "echopath/replay/amplitude.h"
 #include "echopath/replay/chain_plan.h"
-#include "echopath/replay/node_rows.h"
+#include "echopath/replay/node_poses.h"
 
 namespace echopath {
 
-// Distinct points of a block; rows by node.
+// A level as the tables see it.
+struct LevelView {
+  std::span<const Instant> instants;
+  const NodePoses& poses;
+};
+
+// Distinct points of a block.
 struct PosedPoints {
-  enum Row { kPosition, kNormal = 3, kAreaRatio = 6, kNumRows = 7 };  // three rows each of the vectors: m; unit
-  NodeRows rows;
+  // At the trace.
+  struct Traced {
+    Vec3 position, normal;        // m, relative to the origin; unit
+    const Mat3* curvature;        // PosedHit::curvature; null where the surface is flat or may stretch
+  };
+  NodeRows rows;                  // PointToPose::Row
+  std::vector<Traced> traced;     // [point]
+  std::deque<std::array<Vec3, 3>> normals;
+  std::deque<Mat3> curvatures;
 
   PosedHit at(size_t point, size_t node) const;
+  PosedHit at_trace(size_t point) const;
+  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+
+ private:
+  void pose_rigid(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point);
+  void pose_stretched(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point);
 };
-PosedPoints pose_points(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants);
 
 // Antennas of one end as they are seen over mirrors: a leg is a straight line from one of them.
 struct AntennaImages {
-  enum Row { kPosition, kBoresight = 3, kNumRows = 6 };  // m, relative to the origin; unit
   size_t num_antennas = 0;
   std::vector<const AntennaPattern*> pattern;  // [antenna]
-  NodeRows rows;                               // of image * num_antennas + antenna
+  NodeRows rows;                               // of image * num_antennas + antenna, LegToMeasure::ImageRow
   // Directions toward the image -> axes of the antenna, [image, antenna, node]; empty where no pattern needs it.
   std::vector<Mat3> antenna_from_image;
+
+  // mirrors: rows [normal x, y, z, offset] of the planes normal.x = offset, m.
+  void find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers);
 };
-AntennaImages pose_images(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants, bool of_receivers);
 
 // All legs of a block, to each antenna of their end.
 struct ChainLegs {
-  // Length in m. Of legs to diffuse points the factor of the amplitude (diffuse_chain.h), signed as the cosine there; of
-  // others the root of the gain.
-  enum Row { kLength, kFactor, kNumRows };
   size_t stride = 0;  // antennas of the end that has more of them
-  NodeRows rows;      // of leg * stride + antenna
-};
-ChainLegs measure_legs(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters,
-                       const AntennaImages& receivers);
+  NodeRows rows;      // of leg * stride + antenna, LegToMeasure::Row
 
-// Inner parts (DiffuseInner); rows by node.
-struct ChainInner {
-  enum Row { kLength, kToFirst, kRootCosFirst, kFactor, kFirstSign, kLastSign, kNumRows };
-  std::vector<uint8_t> begins_specular, is_single;  // [inner]
-  NodeRows rows;
+  void find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters, const AntennaImages& receivers);
 };
-ChainInner measure_inner(const ChainPlan& plan, const PosedPoints& points);
+
+// Inner parts (DiffuseInner).
+struct ChainInner {
+  std::vector<uint8_t> begins_specular, is_single;  // [inner]
+  NodeRows rows;                                    // InnerRows::Row
+
+  void find(const ChainPlan& plan, const PosedPoints& points);
+};
+
+// An inner part as a path of its own, over the hits of `plan.inner_points`.
+LocalPath path_of(const ChainPlan::Inner& inner);
+
+struct ChainTables {
+  PosedPoints points;
+  NodeRows mirrors;
+  AntennaImages images[2];  // of transmitters, of receivers
+  ChainLegs legs;
+  ChainInner inner;
+
+  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+};
 
 }  // namespace echopath

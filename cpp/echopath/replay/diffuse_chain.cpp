@@ -1,5 +1,9 @@
 #include "echopath/replay/diffuse_chain.h"
 
+#include <cmath>
+
+#include "echopath/base/constants.h"
+
 namespace echopath {
 namespace {
 

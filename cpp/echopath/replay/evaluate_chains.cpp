@@ -1,89 +1,94 @@
 #include "echopath/replay/evaluate_chains.h"
 
-#include "echopath/replay/chain_tables.h"
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
 #include "echopath/replay/diffuse_chain.h"
+#include "echopath/replay/trace_cells.h"
 
 namespace echopath {
 namespace {
-
-struct LegValues {
-  const double *length, *factor;  // [node]
-};
-
-ECHOPATH_INLINE void combine(LegValues start, LegValues end, size_t num_nodes, double* __restrict length,
-                           double* __restrict amplitude) {
-  for (size_t node = 0; node < num_nodes; ++node) {
-    length[node] = start.length[node] + end.length[node];
-    amplitude[node] = diffuse_product(start.factor[node], end.factor[node], 1.0);
-  }
-}
-
-// Of one block: tables, and the paths that are made of them.
-class ChainEvaluation {
- public:
-  ChainEvaluation(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants, const RadioConstants& radio)
-      : num_nodes_(instants.size()), num_transmitters_(instants.front().transmitters.size()),
-        num_receivers_(instants.front().receivers.size()), plan_(plan), scale_(diffuse_scale(radio)) {
-    const PosedPoints points = pose_points(plan, localise, instants);
-    inner_ = measure_inner(plan, points);
-    legs_ = measure_legs(plan, points, pose_images(plan, localise, instants, false), pose_images(plan, localise, instants, true));
-  }
-
-  void write(size_t num_paths, std::span<const ChannelNodes> channels) const {
-    std::vector<double> length(num_nodes_), amplitude(num_nodes_);
-    for (const ChainPlan::Chain& chain : plan_.chains) {
-      const std::complex<double> weight = scale_ * chain.weight;
-      for (size_t channel = 0; channel < channels.size(); ++channel) {
-        const size_t transmitter = channel / num_receivers_, receiver = channel % num_receivers_;
-        const LegValues start = leg(chain.start, chain.is_reversed ? receiver : transmitter);
-        const LegValues end = leg(chain.end, chain.is_reversed ? transmitter : receiver);
-        if (chain.inner == ChainPlan::kNone) run_simd<combine>(start, end, num_nodes_, length.data(), amplitude.data());
-        else combine_over(chain.inner, start, end, length.data(), amplitude.data());
-        for (size_t node = 0; node < num_nodes_; ++node) {
-          channels[channel].length[node * num_paths + chain.place] = length[node];
-          channels[channel].amplitude[node * num_paths + chain.place] = weight * amplitude[node];
-        }
-      }
-    }
-  }
-
- private:
-  LegValues leg(uint32_t id, size_t antenna) const {
-    const size_t entry = id * legs_.stride + antenna;
-    return {legs_.rows.row(entry, ChainLegs::kLength), legs_.rows.row(entry, ChainLegs::kFactor)};
-  }
-
-  void combine_over(uint32_t inner, const LegValues& start, const LegValues& end, double* length, double* amplitude) const {
-    const auto row = [&](ChainInner::Row r) { return inner_.rows.row(inner, r); };
-    const double *between = row(ChainInner::kLength), *to_first = row(ChainInner::kToFirst);
-    const double *root_cos_first = row(ChainInner::kRootCosFirst), *factor = row(ChainInner::kFactor);
-    const double *first_sign = row(ChainInner::kFirstSign), *last_sign = row(ChainInner::kLastSign);
-    for (size_t node = 0; node < num_nodes_; ++node) {
-      length[node] = start.length[node] + between[node] + end.length[node];
-      const double first = inner_.begins_specular[inner]
-                               ? specular_leg(start.factor[node], start.length[node], to_first[node], root_cos_first[node])
-                               : start.factor[node];
-      amplitude[node] = inner_.is_single[inner]
-                            ? diffuse_product(first, end.factor[node], factor[node])
-                            : diffuse_product(first, end.factor[node], factor[node], first_sign[node], last_sign[node]);
-    }
-  }
-
-  size_t num_nodes_, num_transmitters_, num_receivers_;
-  const ChainPlan& plan_;
-  double scale_;
-  ChainInner inner_;
-  ChainLegs legs_;
-};
 
 bool has_phase(const Antenna& antenna) { return antenna.pattern.table && !antenna.pattern.table->phase().empty(); }
 
 }  // namespace
 
-void evaluate_chains(const ChainPlan& plan, const Localiser& localise, std::span<const Instant> instants,
-                     const RadioConstants& radio, size_t num_paths, std::span<const ChannelNodes> channels) {
-  if (plan.chains.empty()) return;
-  ChainEvaluation(plan, localise, instants, radio).write(num_paths, channels);
+void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+                                 size_t num_paths, std::span<const ChannelNodes> channels) {
+  if (plan.chains.empty() && plan.coherent.empty()) return;
+  num_receivers_ = level.instants.front().receivers.size();
+  tables_.find(plan, localise, level);
+  values_.resize(1, PathToCombine::kNumRows, level.instants.size());
+  write_diffuse(plan, diffuse_scale(radio), num_paths, channels);
+  write_coherent(plan, localise, level, radio, num_paths, channels);
+}
+
+ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, size_t channel) const {
+  const size_t transmitter = channel / num_receivers_, receiver = channel % num_receivers_;
+  return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
+}
+
+PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale) {
+  const ChainLegs& legs = tables_.legs;
+  const double* inner = chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
+  return {legs.rows.row(chain.start * legs.stride + ends.start, 0), legs.rows.row(chain.end * legs.stride + ends.end, 0), inner,
+          scale * chain.weight.real(), scale * chain.weight.imag(), values_.row(0, 0)};
+}
+
+void ChainEvaluation::write_diffuse(const ChainPlan& plan, double scale, size_t num_paths, std::span<const ChannelNodes> channels) {
+  const ChainKernels& kernels = chain_kernels(values_.stride());
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    const bool has_inner = chain.inner != ChainPlan::kNone;
+    const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
+    const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
+    for (size_t channel = 0; channel < channels.size(); ++channel) {
+      kernels.combine({path_of(chain, ends_of(chain, channel), scale), begins_specular, is_single}, values_.stride());
+      put(chain.place, num_paths, channels[channel]);
+    }
+  }
+}
+
+const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const {
+  const AntennaImages& images = tables_.images[plan.legs[leg].of_receivers];
+  return images.rows.row(plan.legs[leg].image * images.num_antennas + antenna, 0);
+}
+
+void ChainEvaluation::write_coherent(const ChainPlan& plan, const Localiser& localise, const LevelView& level,
+                                     const RadioConstants& radio, size_t num_paths, std::span<const ChannelNodes> channels) {
+  if (plan.coherent.empty()) return;
+  const ChainKernels& kernels = chain_kernels(values_.stride());
+  const TraceCells cell_of(plan, localise, tables_.points);
+  const double scale = std::sqrt(radio.transmit_power) / (4.0 * kPi);
+  CoherentPath path;
+  path.filter = {radio.wavenumber, radio.spread, radio.footprint};
+  for (const ChainPlan::Chain& chain : plan.coherent) {
+    const RigidCell cell = cell_of(chain);
+    const uint32_t point = plan.legs[chain.end].point;
+    path.cell = cell.shape;
+    path.root_area = cell.root_area;
+    for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
+    path.point = tables_.points.rows.row(point, 0);
+    path.mesh = level.poses.meshes.row(plan.points[point].mesh_id, 0);
+    for (size_t channel = 0; channel < channels.size(); ++channel) {
+      const Ends ends = ends_of(chain, channel);
+      path.path = path_of(chain, ends, scale);
+      path.start_image = image_of(plan, chain.start, ends.start);
+      path.end_image = image_of(plan, chain.end, ends.end);
+      kernels.reflect(path, values_.stride());
+      put(chain.place, num_paths, channels[channel]);
+    }
+  }
+}
+
+// The values of one path to their places.
+void ChainEvaluation::put(size_t place, size_t num_paths, const ChannelNodes& to) const {
+  const double *length = values_.row(0, PathToCombine::kLength), *re = values_.row(0, PathToCombine::kRe);
+  const double* im = values_.row(0, PathToCombine::kIm);
+  for (size_t node = 0; node < values_.num_nodes(); ++node) {
+    to.length[node * num_paths + place] = length[node];
+    to.amplitude[node * num_paths + place] = {re[node], im[node]};
+  }
 }
 
 bool has_phase(const Radar& radar) {

@@ -1,6 +1,7 @@
 #include "echopath/replay/launch_cell.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace echopath {
@@ -30,6 +31,15 @@ void find_across(const CellShape& cell, double* across) {
 }
 
 }  // namespace
+
+LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density) {
+  LaunchCell cell;
+  cell.ray_density = ray_density;
+  cell.is_curved = cell.is_known = true;
+  for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[static_cast<size_t>(2 * a)], record[static_cast<size_t>(2 * a + 1)]};
+  std::copy(record.begin() + 4, record.end(), cell.turn);
+  return cell;
+}
 
 CellTangents cell_tangents(const LaunchCell& cell, const PosedHit& hit) {
   CellTangents tangents;

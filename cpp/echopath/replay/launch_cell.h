@@ -20,6 +20,9 @@ struct HitGeometry {
 // Tube area per launch solid angle, square root, m / sqrt(sr): the unfolded length on flat chains.
 double root_tube_area(const LaunchCell& cell, const HitGeometry& geometry);
 
+// The cell behind a curved specular bounce, from Paths::curved_cell.
+LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density);
+
 using CellTangents = std::array<Vec3, 2>;  // T_a on the surface at the hit, world axes, m
 CellTangents cell_tangents(const LaunchCell& cell, const PosedHit& hit);
 CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTangents& tangents);

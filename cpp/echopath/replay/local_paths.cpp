@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "echopath/replay/launch_cell.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
@@ -27,6 +28,7 @@ Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
     mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
     mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
     mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
+    mesh_from_trace_.push_back(trace_instant_.rotation(id).inverse());
     smooth_normals_.push_back(normals_at_trace(id));
   }
 }
@@ -127,13 +129,10 @@ void Localiser::add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& 
   const auto p = static_cast<size_t>(index);
   const size_t stratum = paths_.stratum[p];
   if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
-  LaunchCell& cell = path.cell;
-  cell.ray_density = paths_.frame.lattice_density(stratum);
+  const double density = paths_.frame.lattice_density(stratum);
+  path.cell.ray_density = density;
   if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
-    const std::array<float, 7>& record = paths_.curved_cell[p];
-    cell.is_curved = cell.is_known = true;
-    for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[2 * a], record[2 * a + 1]};
-    std::copy(record.begin() + 4, record.end(), cell.turn);
+    path.cell = recorded_cell(paths_.curved_cell[p], density);
     return;
   }
   if (paths_.frame.footprint != Footprint::kNone) set_flat_cell(path, scratch);

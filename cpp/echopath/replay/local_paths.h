@@ -42,6 +42,10 @@ class Localiser {
   // trace, and then zero outside of its patch.
   const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }
+  const Instant& trace_instant() const { return trace_instant_; }
+  // Undoes the matrix of the instant of the trace.
+  const Mat3& mesh_from_trace(uint32_t mesh_id) const { return mesh_from_trace_[mesh_id]; }
+  const Paths& paths() const { return paths_; }
 
  private:
   std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
@@ -53,6 +57,7 @@ class Localiser {
   std::vector<SurfacePatch> patches_;                         // by mesh ID
   std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;    // by mesh ID
   Instant trace_instant_;
+  std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;
 };
 

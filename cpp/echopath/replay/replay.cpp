@@ -33,6 +33,15 @@ double order_for(double tolerance, double tail, double first, int order) {
 struct Replayer::Level {
   FrameNodes nodes;
   std::vector<Instant> instants;
+  NodePoses poses;
+
+  LevelView view() const { return {instants, poses}; }
+  void find_poses(const Scene& scene) { poses = node_poses(instants, static_cast<uint32_t>(scene.meshes().size())); }
+};
+
+// Memory of one block, kept for the next.
+struct Replayer::Workspace {
+  ChainEvaluation evaluate_chains;
 };
 
 namespace {
@@ -119,8 +128,22 @@ const Replayer::Level& Replayer::level(size_t index) const {
     Instant& posed = made->instants.emplace_back(instant(time));
     if (index > shapes_.size()) posed.transmitters = {posed.transmitters[index - shapes_.size() - 1]};
   }
+  made->find_poses(*paths_.scene);
   slot = std::move(made);
   return *slot;
+}
+
+std::unique_ptr<Replayer::Workspace> Replayer::take_workspace() const {
+  const std::lock_guard lock(workspaces_mutex_);
+  if (workspaces_.empty()) return std::make_unique<Workspace>();
+  std::unique_ptr<Workspace> last = std::move(workspaces_.back());
+  workspaces_.pop_back();
+  return last;
+}
+
+void Replayer::give_back(std::unique_ptr<Workspace> workspace) const {
+  const std::lock_guard lock(workspaces_mutex_);
+  workspaces_.push_back(std::move(workspace));
 }
 
 // Lengths in m in the place of delays.
@@ -138,7 +161,9 @@ std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const Lev
     to.push_back({echoes.delay.data(), echoes.amplitude.data()});
   }
   const ChainPlan plan = antennas_have_phase_ ? unshared(paths.size()) : plan_chains(paths_, localise_, settings_.specular, paths);
-  evaluate_chains(plan, localise_, level.instants, radio_, paths.size(), to);
+  std::unique_ptr<Workspace> workspace = take_workspace();
+  workspace->evaluate_chains(plan, localise_, level.view(), radio_, paths.size(), to);
+  give_back(std::move(workspace));
   evaluate_one_by_one(paths, plan.others, level.instants, out);
   return out;
 }
@@ -258,6 +283,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
   constexpr size_t kBlock = 8192;
   Level single;
   single.instants.push_back(instant(time));
+  single.find_poses(*paths_.scene);
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
   amplitudes.resize(channels * indices.size());

@@ -63,6 +63,7 @@ class Replayer {
 
  private:
   struct Level;
+  struct Workspace;
   struct LevelShape {
     int order;                                // nodes per piece
     const std::vector<double>* cuts;          // between pieces, s
@@ -74,6 +75,8 @@ class Replayer {
   Instant instant(double time) const;
   size_t exact_level(int transmitter) const { return 1 + shapes_.size() + static_cast<size_t>(transmitter); }
   const Level& level(size_t index) const;
+  std::unique_ptr<Workspace> take_workspace() const;
+  void give_back(std::unique_ptr<Workspace> workspace) const;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const Level& level) const;
   void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, std::span<const Instant> instants,
                            std::vector<Echoes>& lengths) const;
@@ -95,6 +98,8 @@ class Replayer {
   mutable std::vector<int> mesh_level_;   // by mesh ID: the first that follows its motion
   mutable std::mutex levels_mutex_;
   mutable std::vector<std::unique_ptr<const Level>> levels_;
+  mutable std::mutex workspaces_mutex_;
+  mutable std::vector<std::unique_ptr<Workspace>> workspaces_;  // not in use
 };
 
 }  // namespace echopath

@@ -1,0 +1,22 @@
+#include "echopath/replay/chain_kernels.h"
+
+#include "echopath/base/simd.h"
+
+namespace echopath {
+
+namespace chain_kernels_baseline { extern const ChainKernels kKernels, kKernelsOfOne; }
+#ifdef ECHOPATH_X86_KERNELS
+namespace chain_kernels_avx2 { extern const ChainKernels kKernels, kKernelsOfOne; }
+namespace chain_kernels_avx512 { extern const ChainKernels kKernels, kKernelsOfOne; }
+#endif
+
+const ChainKernels& chain_kernels(size_t stride) {
+  const bool is_one = stride == 1;
+#ifdef ECHOPATH_X86_KERNELS
+  if (instruction_set() == InstructionSet::kAvx512) return is_one ? chain_kernels_avx512::kKernelsOfOne : chain_kernels_avx512::kKernels;
+  if (instruction_set() == InstructionSet::kAvx2) return is_one ? chain_kernels_avx2::kKernelsOfOne : chain_kernels_avx2::kKernels;
+#endif
+  return is_one ? chain_kernels_baseline::kKernelsOfOne : chain_kernels_baseline::kKernels;
+}
+
+}  // namespace echopath

@@ -1,0 +1,232 @@
+// The inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
+// ECHOPATH_LANES set (no include guard).
+#include "echopath/replay/chain_formula.h"
+#include "echopath/replay/chain_kernels.h"
+#include "echopath/signal/phasor.h"
+#include "echopath/signal/vector.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+namespace {
+
+constexpr double kMostNegativeExponent = -708.0;  // e^x below is taken as 0
+
+struct LaneMath {
+  using Real = Vec;
+  static constexpr size_t kCount = kLanes;
+  static ECHOPATH_INLINE Vec load(const double* from) { return ECHOPATH_KERNELS::load(from); }
+  static ECHOPATH_INLINE void store(double* to, Vec x) { ECHOPATH_KERNELS::store(to, x); }
+
+  static ECHOPATH_INLINE Vec root(Vec x) {
+#if ECHOPATH_LANES == 8
+    return _mm512_maskz_sqrt_pd(0xFF, x);  // the plain one warns of its own undefined lanes
+#elif ECHOPATH_LANES == 4
+    return _mm256_sqrt_pd(x);
+#else
+    return Vec{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
+#endif
+  }
+  static constexpr int64_t kSignBit = int64_t{-1} ^ int64_t{0x7FFFFFFFFFFFFFFF};
+  static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
+  static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
+  static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
+  static ECHOPATH_INLINE bool any(Mask x) {
+    int64_t found = 0;
+    for (int lane = 0; lane < kLanes; ++lane) found |= x[lane];
+    return found != 0;
+  }
+
+  // e^x for x <= 0, relative error 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
+  static ECHOPATH_INLINE Vec exp(Vec x) {
+    constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
+    const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
+    const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
+    Vec sum = rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0;  // 1/13!, 1/12!
+    sum = sum * rest + 1.0 / 39916800.0;
+    sum = sum * rest + 1.0 / 3628800.0;
+    sum = sum * rest + 1.0 / 362880.0;
+    sum = sum * rest + 1.0 / 40320.0;
+    sum = sum * rest + 1.0 / 5040.0;
+    sum = sum * rest + 1.0 / 720.0;
+    sum = sum * rest + 1.0 / 120.0;
+    sum = sum * rest + 1.0 / 24.0;
+    sum = sum * rest + 1.0 / 6.0;
+    sum = sum * rest + 0.5;
+    sum = sum * rest + 1.0;
+    sum = sum * rest + 1.0;
+    const Vec power = from_bits(bits(sum) + (bits(shifted) << 52));
+    return x < kMostNegativeExponent ? Vec{} : power;
+  }
+
+  static ECHOPATH_INLINE ComplexOf<Vec> cis(Vec x) {
+    constexpr double kPerPi = 0.3183098861837907, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
+    const Vec shifted = x * kPerPi + kRoundingShift, half_turns = shifted - kRoundingShift;
+    const Vec rest = exact_multiply_add(half_turns, all(-kPiHigh), x) - half_turns * kPiLow;
+    const PhasorOf<Vec> phasor = phasor_of_half_turns<Vec>(rest * kPerPi);
+    const Mask sign = bits(shifted) << 63;
+    return {from_bits(bits(phasor.re) ^ sign), from_bits(bits(phasor.im) ^ sign)};
+  }
+};
+
+// One node.
+struct OneMath : ScalarMath {
+  static constexpr size_t kCount = 1;
+  static ECHOPATH_INLINE double load(const double* from) { return *from; }
+  static ECHOPATH_INLINE void store(double* to, double x) { *to = x; }
+};
+
+template <class Real>
+struct Vector {
+  Real x, y, z;
+};
+
+template <class Real>
+ECHOPATH_INLINE Vector<Real> operator-(const Vector<Real>& a, const Vector<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+ECHOPATH_INLINE Vector<Real> operator*(Real factor, const Vector<Real>& a) {
+  return {factor * a.x, factor * a.y, factor * a.z};
+}
+template <class Real>
+ECHOPATH_INLINE Real dot(const Vector<Real>& a, const Vector<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Rows at some neighbouring nodes.
+template <class Math>
+struct At {
+  using Real = typename Math::Real;
+  size_t node, stride;
+
+  ECHOPATH_INLINE Real value(const double* rows, int row) const { return Math::load(rows + static_cast<size_t>(row) * stride + node); }
+  ECHOPATH_INLINE Vector<Real> vector(const double* rows, int row) const {
+    return {value(rows, row), value(rows, row + 1), value(rows, row + 2)};
+  }
+  ECHOPATH_INLINE void set(double* rows, int row, Real x) const { Math::store(rows + static_cast<size_t>(row) * stride + node, x); }
+  ECHOPATH_INLINE void set(double* rows, int row, const Vector<Real>& v) const {
+    set(rows, row, v.x);
+    set(rows, row + 1, v.y);
+    set(rows, row + 2, v.z);
+  }
+  // A vector of a mesh's frame in the world.
+  ECHOPATH_INLINE Vector<Real> turned(const double* mesh, const double* v) const {
+    const auto along = [&](int axis) {
+      return value(mesh, 3 * axis) * v[0] + value(mesh, 3 * axis + 1) * v[1] + value(mesh, 3 * axis + 2) * v[2];
+    };
+    return {along(0), along(1), along(2)};
+  }
+};
+
+template <class Math>
+void pose(const PointToPose& point, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto turned = at.turned(point.mesh, point.position), moved = at.vector(point.mesh, PointToPose::kTranslation);
+    at.set(point.out, PointToPose::kPosition, {turned.x + moved.x, turned.y + moved.y, turned.z + moved.z});
+    at.set(point.out, PointToPose::kNormal, at.turned(point.mesh, point.normal));
+    at.set(point.out, PointToPose::kAreaRatio, typename Math::Real{} + 1.0);
+  }
+}
+
+// Root of the gain over the cosine of the boresight.
+template <class Math, class Real>
+ECHOPATH_INLINE Real root_gain(const LegToMeasure& leg, Real cosine) {
+  Real power = Real{} + leg.root_peak;
+  if (leg.exponent == 0) return power;
+  for (int i = 0; i < leg.exponent / 2; ++i) power = power * cosine;
+  if (leg.exponent % 2) power = power * Math::root(Math::magnitude(cosine));
+  return cosine > 0.0 ? power : Real{};
+}
+
+template <class Math>
+void measure(const LegToMeasure& leg, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto line = at.vector(leg.point, PointToPose::kPosition) - at.vector(leg.image, LegToMeasure::kImagePosition);
+    const auto length = Math::root(dot(line, line)), inverse = 1.0 / length;
+    const auto cosine = -inverse * dot(at.vector(leg.point, PointToPose::kNormal), line);
+    const auto boresight = inverse * dot(at.vector(leg.image, LegToMeasure::kBoresight), line);
+    at.set(leg.out, LegToMeasure::kLength, length);
+    if (leg.exponent == LegToMeasure::kNoExponent) {
+      at.set(leg.out, LegToMeasure::kFactor, cosine);
+      at.set(leg.out, LegToMeasure::kGain, boresight);
+      continue;
+    }
+    const auto gain = root_gain<Math>(leg, boresight);
+    at.set(leg.out, LegToMeasure::kFactor, diffuse_leg<Math>(gain, cosine, length));
+    at.set(leg.out, LegToMeasure::kGain, gain);
+  }
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_size(const DiffusePath& diffuse, const At<Math>& at, Real start, Real end) {
+  const double* inner = diffuse.path.inner;
+  if (diffuse.begins_specular) {
+    start = specular_leg(at.value(diffuse.path.start, LegToMeasure::kGain), at.value(diffuse.path.start, LegToMeasure::kLength),
+                         at.value(inner, InnerRows::kToFirst), at.value(inner, InnerRows::kRootCosFirst));
+  }
+  const Real product = diffuse.is_single ? diffuse_product<Math>(start, end)
+                                         : diffuse_product<Math>(start, end, at.value(inner, InnerRows::kFirstSign),
+                                                                 at.value(inner, InnerRows::kLastSign));
+  return product * at.value(inner, InnerRows::kFactor);
+}
+
+template <class Math>
+void combine(const DiffusePath& diffuse, size_t stride) {
+  const PathToCombine& path = diffuse.path;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    auto length = at.value(path.start, LegToMeasure::kLength) + at.value(path.end, LegToMeasure::kLength);
+    const auto start = at.value(path.start, LegToMeasure::kFactor), end = at.value(path.end, LegToMeasure::kFactor);
+    auto size = diffuse_product<Math>(start, end);
+    if (path.inner) {
+      length = length + at.value(path.inner, InnerRows::kLength);
+      size = diffuse_size<Math>(diffuse, at, start, end);
+    }
+    at.set(path.out, PathToCombine::kLength, length);
+    at.set(path.out, PathToCombine::kRe, path.re * size);
+    at.set(path.out, PathToCombine::kIm, path.im * size);
+  }
+}
+
+template <class Math>
+void reflect(const CoherentPath& coherent, size_t stride) {
+  using Real = typename Math::Real;
+  const PathToCombine& path = coherent.path;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
+    const Vector<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
+    const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
+    CellWaves<Real> waves;
+    waves.inverse_in = 1.0 / in;
+    waves.inverse_out = 1.0 / out;
+    const Vector<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
+                                            : waves.inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
+    const Vector<Real> departure = waves.inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
+    const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
+    waves.cos_in = Math::magnitude(cos_in);
+    waves.cos_out = Math::magnitude(cos_out);
+    waves.side = Math::with_sign_of(Real{} + 1.0, cos_in);
+    for (int a = 0; a < 2; ++a) {
+      const Vector<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
+      waves.along_arrival[a] = dot(tangent, arrival);
+      waves.along_departure[a] = dot(tangent, departure);
+    }
+    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter);
+    const Real tube = coherent.cell.is_curved ? coherent.root_area * Math::root(waves.cos_in) : in;
+    const Real size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) * waves.cos_in / (tube * out);
+    const auto is_lit = (cos_in * cos_out > 0.0) & (first >= kNearAntenna) & (out >= kNearAntenna);
+    at.set(path.out, PathToCombine::kLength, in + out);
+    at.set(path.out, PathToCombine::kRe, is_lit ? size * (path.re * filter.re - path.im * filter.im) : Real{});
+    at.set(path.out, PathToCombine::kIm, is_lit ? size * (path.re * filter.im + path.im * filter.re) : Real{});
+  }
+}
+
+}  // namespace
+
+extern const ChainKernels kKernels, kKernelsOfOne;
+const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, reflect<LaneMath>};
+const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, reflect<OneMath>};
+
+}  // namespace echopath::ECHOPATH_KERNELS

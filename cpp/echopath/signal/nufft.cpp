@@ -34,8 +34,9 @@ class Nufft : public SpreadMethod {
         grid_size_(grid_size_for(num_samples, width)),
         fft_(grid_size_, FftDirection::kBackward),
         correction_(num_samples) {
+    const std::vector<double> spectrum = kernel_.transform(1.0 / grid_size_, reference_sample() + 1);  // even in the bin
     for (int bin = 0; bin <= reference_sample(); ++bin) {
-      const double correction = 1.0 / kernel_.transform(static_cast<double>(bin) / grid_size_);  // even in the bin
+      const double correction = 1.0 / spectrum[bin];
       correction_[reference_sample() - bin] = correction;
       if (reference_sample() + bin < num_samples) correction_[reference_sample() + bin] = correction;
     }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "echopath/base/simd.h"
+#include "echopath/signal/phasor.h"
+
 namespace echopath {
 namespace {
 
@@ -52,6 +55,10 @@ std::vector<Real> polynomial_through_chebyshev_nodes(const std::vector<Real>& va
   return sum;
 }
 
+ECHOPATH_INLINE void add_cosines(double weight, double cycles, int count, double* sums) {
+  for (int i = 0; i < count; ++i) sums[i] += weight * phasor_of_cycles(cycles * i).re;
+}
+
 }  // namespace
 
 int NufftKernel::width_for(double tolerance) {
@@ -89,10 +96,10 @@ void NufftKernel::set_nodes() {
   }
 }
 
-double NufftKernel::transform(double cycles) const {
-  double sum = 0.0;
-  for (size_t i = 0; i < places_.size(); ++i) sum += weights_[i] * std::cos(2.0 * std::numbers::pi * cycles * places_[i]);
-  return sum;
+std::vector<double> NufftKernel::transform(double step, int count) const {
+  std::vector<double> sums(static_cast<size_t>(count));
+  for (size_t i = 0; i < places_.size(); ++i) run_simd<add_cosines>(weights_[i], step * places_[i], count, sums.data());
+  return sums;
 }
 
 }  // namespace echopath

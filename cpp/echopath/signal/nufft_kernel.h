@@ -19,8 +19,8 @@ struct NufftKernel {
   static int width_for(double tolerance);
 
   explicit NufftKernel(int kernel_width);
-  // Fourier transform at `cycles` per grid cell.
-  double transform(double cycles) const;
+  // Fourier transform at 0, step, 2 step ... cycles per grid cell: [count].
+  std::vector<double> transform(double step, int count) const;
 
   int width;
   double beta;

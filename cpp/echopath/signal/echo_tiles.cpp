@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 #include "echopath/signal/kernels.h"
 
@@ -161,7 +162,10 @@ void EchoTiles::cut(const std::vector<uint64_t>& order) {
     vector += (end - begin + kLanes - 1) / kLanes;
     begin = end;
   }
-  nodes_.resize(std::max(nodes_.size(), static_cast<size_t>(vector) * num_nodes_ * 3 * kLanes));
+  const size_t size = static_cast<size_t>(vector) * num_nodes_ * 3 * kLanes;
+  if (size <= nodes_.size()) return;
+  nodes_ = {};
+  resize_large(nodes_, size);
 }
 
 void EchoTiles::gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/carrier.h"
@@ -189,7 +190,7 @@ void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, J
 
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
   const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
-  rows.moving.resize(chirp_size * waveform_.num_chirps);
+  if (rows.moving.empty()) resize_large(rows.moving, chirp_size * waveform_.num_chirps);
   if (spread_) tiles_.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
     double* const first_row = rows.moving.data() + chirp_size * first;

@@ -59,11 +59,12 @@ std::vector<ViewSet> sort_paths(const Paths& paths, const std::vector<Grouping>&
 // Adds up the groups of a set, in ascending order, to the parts of its views.
 void sum_groups(const CubePass& pass, size_t way, const ViewSet& set, Views& out, Job* job) {
   for (uint32_t group = 0; group < set.combined.num_groups; ++group) {
-    const Cube cube = pass.cube(way, static_cast<int>(group), job);
+    Cube cube = pass.cube(way, static_cast<int>(group), job);
     for (size_t i = 0; i < set.views.size(); ++i) {
       Cube& part = out[set.views[i]][set.combined.part_in(group, i)].cube;
-      if (part.values.empty()) part = cube;
-      else part.add(cube);
+      if (!part.values.empty()) part.add(cube);
+      else if (i + 1 == set.views.size()) part = std::move(cube);
+      else part = cube;
     }
   }
 }

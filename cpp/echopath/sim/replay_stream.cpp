@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 #include "echopath/signal/echo_states.h"
 #include "echopath/signal/echoes.h"
@@ -63,7 +64,7 @@ class PathsByLevel {
       for (size_t level = 0; level < num_levels_; ++level) sizes[level] += std::exchange(places[level], sizes[level]);
     }
     std::vector<std::vector<int64_t>> lists(num_levels_);
-    for (size_t level = 0; level < num_levels_; ++level) lists[level].resize(sizes[level]);
+    for (size_t level = 0; level < num_levels_; ++level) resize_large(lists[level], sizes[level]);
     return lists;
   }
 

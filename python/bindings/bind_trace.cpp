@@ -9,6 +9,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/trace/bare_queries.h"
+#include "echopath/trace/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "error_target.h"
 #include "keywords.h"
@@ -22,7 +23,7 @@ using PathsPtr = std::shared_ptr<Paths>;
 PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
                      uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const py::object& progress, const py::kwargs& unknown) {
+                     int64_t max_rays, const py::object& progress, KeptGeometry* kept, const py::kwargs& unknown) {
   refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
                                     "sampler", "batches", "target_error_db", "max_rays", "progress"});
   const Effort effort = effort_of(num_rays, batches, target_error_db, max_rays, kDefaultRays, 1);
@@ -30,8 +31,8 @@ PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64
                          kFootprint.value_of(footprint), effort.batches};
   settings.sampler = kSampler.value_of(sampler);
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
-    return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job)
-                         : trace(scene, radar, settings, &job);
+    return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job, kept)
+                         : trace(scene, radar, settings, &job, kept);
   }));
   const TraceFrame& frame = paths->frame;
   if (frame.error_db > frame.target_error_db) {
@@ -68,10 +69,15 @@ py::dict time_bare_queries(const Scene& scene, const Radar& radar, int64_t num_r
 }  // namespace
 
 void bind_trace(py::module_& m) {
+  py::class_<KeptGeometry, std::shared_ptr<KeptGeometry>>(m, "KeptGeometry",
+      "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
+      .def(py::init<>());
+
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
+        py::arg("kept") = py::none(),
         R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
 num_rays: rays in all, 1 000 000 unless given; max_bounces: 1 to 64, hits on mirrors count. Between a target
@@ -89,6 +95,8 @@ target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at
 received power is no larger: its standard error and what the last doubling changed. 8 batches unless given; a
 RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
 progress: callable(stage, fraction) or None
+kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for about
+200 bytes a triangle while the scene lives
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
 
   m.def("bare_queries", &time_bare_queries, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),

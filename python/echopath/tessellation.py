@@ -193,9 +193,20 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
             f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")
 
 
+def _geometry_of(scene):
+    """Where the geometry of a scene's traces is kept; None for its first trace: one that is traced once keeps nothing."""
+    state = getattr(scene, "__dict__", None)  # plain scenes of the core have none
+    if state is None:
+        return None
+    if not state.setdefault("_was_traced", False):
+        state["_was_traced"] = True
+        return None
+    return state.setdefault("_geometry", _core.KeptGeometry())
+
+
 def trace(scene, radar, **settings):
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
-    paths = _core.trace(scene, radar, **settings)
+    paths = _core.trace(scene, radar, kept=_geometry_of(scene), **settings)
     warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
     return paths
 

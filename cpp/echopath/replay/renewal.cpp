@@ -32,11 +32,11 @@ Radar carried_radar(const Paths& paths, const Radar& radar) {
 
 class Renewer {
  public:
-  Renewer(const Paths& paths, const Radar& radar, double time, Job* job)
+  Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
       : paths_(paths), radar_(carried_radar(paths, radar)), localise_(paths, whole_patches(*paths.scene)),
         walk_(*paths.scene, localise_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
         origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
-        geometry_(*paths.scene, pose_, origin_, job),
+        loan_(kept, *paths.scene, pose_, origin_, job), geometry_(*loan_),
         instant_(*paths.scene, radar_, localise_.patches(), origin_, time) {}
 
   BlockOutcome renew_block(std::span<const int64_t> indices) const {
@@ -131,7 +131,8 @@ class Renewer {
   double wavenumber_;
   Pose pose_;
   Vec3 origin_;
-  EmbreeScene geometry_;
+  GeometryLoan loan_;
+  const EmbreeScene& geometry_;
   Instant instant_;
 };
 
@@ -168,8 +169,8 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
 
 }  // namespace
 
-Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job) {
-  const Renewer renewer(paths, radar, time, job);
+Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
+  const Renewer renewer(paths, radar, time, job, kept);
   const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsPerBlock - 1) / kPathsPerBlock;
   std::vector<BlockOutcome> blocks(static_cast<size_t>(num_blocks));
   if (job) job->start(num_blocks);

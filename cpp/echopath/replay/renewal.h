@@ -1,6 +1,7 @@
 #pragma once
 // A record brought up to another time of the frame: what was hit is kept, what has become of the ways between is renewed.
 #include "echopath/base/job.h"
+#include "echopath/trace/kept_geometry.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
@@ -16,7 +17,7 @@ struct Renewal {
 // rays of all legs are renewed, and frozen points of reflection are replaced by Fermat's, found by Newton steps over the surface.
 // Material points keep their hits, weights and phases, so that rough surfaces keep their speckle and clutter stays where it is.
 // Surface that came into view has no paths. What a curved bounce makes of the tube (Paths::curved_cell) stays as traced. The same
-// bits for any number of threads. Raises invalid_argument when a motion does not cover the time, DeviceError, Cancelled.
-Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr);
+// bits for any number of threads. Raises invalid_argument when a motion does not cover the time, DeviceError, Cancelled. `kept`: as in `trace`.
+Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

@@ -104,8 +104,9 @@ Views decompose(const Paths& paths, const Radar& radar, const std::vector<Groupi
   const Retrace retrace = settings.keyframes.retrace;
   if (retrace == Retrace::kNever) return decompose_record(paths, radar, views, settings, job);
   Views frame(views.size());
+  KeptGeometry kept;
   for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
-    const Paths record = record_of(paths, stretch, retrace, job);
+    const Paths record = record_of(paths, stretch, retrace, job, &kept);
     if (settings.probe) settings.probe->first_chirp = stretch.first_chirp;
     const Views parts = decompose_record(record, stretch.radar, views, within_stretch(settings), job);
     const bool is_first = stretch.first_chirp == 0;

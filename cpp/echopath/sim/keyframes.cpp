@@ -54,14 +54,14 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
   return std::clamp(std::max(found.keyframes(), is_occluded ? kOcclusionKeyframes : 1), 1, radar.waveform.num_chirps);
 }
 
-Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job) {
+Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job, KeptGeometry* kept) {
   if (retrace == Retrace::kAlways) {
     // A new trace knows nothing of a selection.
     require(paths.num_paths() == paths.frame.statistics.num_paths, "retrace",
             "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
-    return trace(*paths.scene, stretch.radar, settings_of(paths.frame, stretch.start_time), job);
+    return trace(*paths.scene, stretch.radar, settings_of(paths.frame, stretch.start_time), job, kept);
   }
-  Paths record = retrace == Retrace::kInvalid ? renew(paths, stretch.radar, stretch.middle, job).paths : paths;
+  Paths record = retrace == Retrace::kInvalid ? renew(paths, stretch.radar, stretch.middle, job, kept).paths : paths;
   record.frame.start_time = stretch.start_time;
   return record;
 }

@@ -4,6 +4,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/replay/specular_slide.h"
+#include "echopath/trace/kept_geometry.h"
 
 namespace echopath {
 
@@ -37,6 +38,7 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
 inline constexpr int kOcclusionKeyframes = 8;
 
 // The record of a stretch. Its frame starts with the stretch. Raises invalid_argument for kAlways with a selection of paths.
-Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr);
+// `kept`: geometry that goes from stretch to stretch.
+Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

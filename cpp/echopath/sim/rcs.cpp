@@ -113,9 +113,10 @@ TraceSettings tracing_of(const RcsSettings& settings) {
   return tracing;
 }
 
-Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings, Job* job) {
+Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings, Job* job, KeptGeometry* kept) {
   const TraceSettings tracing = tracing_of(settings);
-  return settings.target ? trace_to_error(scene, radar, tracing, *settings.target, job) : trace(scene, radar, tracing, job);
+  return settings.target ? trace_to_error(scene, radar, tracing, *settings.target, job, kept)
+                         : trace(scene, radar, tracing, job, kept);
 }
 
 // `scale`: m^2 per W at the antenna port for 1 W transmitted.
@@ -158,9 +159,10 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   std::vector<RadarCrossSection> out(directions.size() * settings.channels.size());
   const bool is_one = shots.size() == 1;  // its progress is that of its trace, else by shots
   if (job) job->start(static_cast<int64_t>(shots.size()));
+  KeptGeometry kept;
   for (const Shot& shot : shots) {
     Job part(job);
-    const Paths paths = shoot(scene, shot.radar, settings, is_one && job ? job : &part);
+    const Paths paths = shoot(scene, shot.radar, settings, is_one && job ? job : &part, &kept);
     for (size_t i = 0; i < shot.channels.size(); ++i) {
       out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), scale, &part);
     }

@@ -22,17 +22,19 @@ void ErrorTarget::validate() const {
 }
 
 Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
-                     Job* job) {
+                     Job* job, KeptGeometry* kept) {
   target.validate();
   settings.validate();
   require(settings.batches >= 2, "batches", "must be >= 2 for target_error_db", settings.batches);
   require(settings.num_rays <= target.max_rays, "num_rays", "must not exceed max_rays", settings.num_rays);
+  KeptGeometry own;
+  if (!kept) kept = &own;
   TraceSettings launch = settings;
   launch.num_rays = std::max<int64_t>(1, settings.num_rays / 2);
-  ReceivedPower before = received_power(trace(scene, radar, launch, job), job);
+  ReceivedPower before = received_power(trace(scene, radar, launch, job, kept), job);
   launch.num_rays = settings.num_rays;
   for (;;) {
-    Paths paths = trace(scene, radar, launch, job);
+    Paths paths = trace(scene, radar, launch, job, kept);
     const ReceivedPower power = received_power(paths, job);
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = error_db(power, before);

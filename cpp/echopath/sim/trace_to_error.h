@@ -1,5 +1,6 @@
 #pragma once
 // A trace with as many rays as an error asks for.
+#include "echopath/trace/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {
@@ -23,8 +24,8 @@ struct ErrorTarget {
 // one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root only;
 // all traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the outcome. Stops
 // at once where no ray meets anything. The standard error of few batches is itself uncertain, by 1/sqrt(2 (batches -
-// 1)). Raises as trace, and for less than 2 batches.
+// 1)). Raises as trace, and for less than 2 batches. All traces share one geometry: `kept`, as in `trace`, or their own.
 Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
-                     Job* job = nullptr);
+                     Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

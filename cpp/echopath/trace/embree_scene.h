@@ -9,6 +9,7 @@
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
 #include "echopath/trace/paths.h"
+#include "echopath/trace/posed_meshes.h"
 #include "echopath/trace/query_log.h"
 
 namespace echopath {
@@ -39,6 +40,10 @@ class EmbreeScene {
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
+  // As if made anew, with the same answers, but builds only what differs from before: where something moves and meshes overlap
+  // little, trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the constructor; then it
+  // may only be destroyed.
+  void update(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
   // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
@@ -59,14 +64,17 @@ class EmbreeScene {
   Vec3 lifted(const Vec3& point, const Vec3& normal) const;
 
   // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
-  static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near);
+  // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
+  // it is the same for most times, and what is at rest need not be built again.
+  static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near, bool near_moves = false);
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
     const Surface& surface = surfaces_[mesh_id];
     const Triangle& triangle = surface.triangles[triangle_id];
     return {surface.vertices[triangle[0]], surface.vertices[triangle[1]], surface.vertices[triangle[2]]};
   }
-  const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return vertices_[mesh_id]; }
+  // Relative to the origin.
+  const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
 
  private:
   struct Device;
@@ -88,10 +96,8 @@ class EmbreeScene {
   std::unique_ptr<Device> device_;
   QueryLog* log_ = nullptr;
   double reach_ = 0.0;  // m: radius around the origin that holds the scene
-  std::vector<Surface> surfaces_;            // by mesh ID
-
-  std::vector<std::vector<Vec3>> vertices_;  // by mesh ID, relative to the origin
-  std::vector<std::vector<Vec3>> normals_;   // by mesh ID, of vertices; empty where facets are meant
+  PosedMeshes meshes_;
+  std::vector<Surface> surfaces_;  // by mesh ID
 };
 
 }  // namespace echopath

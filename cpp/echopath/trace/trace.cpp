@@ -13,8 +13,8 @@ void TraceSettings::validate() const {
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
 }
 
-Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
-  return Tracer(scene, radar, settings, job).run(job);
+Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
+  return Tracer(scene, radar, settings, job, kept).run(job);
 }
 
 }  // namespace echopath

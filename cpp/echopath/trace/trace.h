@@ -5,6 +5,8 @@
 
 namespace echopath {
 
+class KeptGeometry;  // trace/kept_geometry.h
+
 struct TraceSettings {
   int64_t num_rays = 1000000;
   int max_bounces = 4;          // 1 to 64; hits on mirrors count
@@ -23,7 +25,9 @@ struct TraceSettings {
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
 // Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad
 // settings, a radar without antennas, a mirror that is not flat, or a motion that does not cover the frame;
-// DeviceError; Cancelled.
-Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
+// DeviceError; Cancelled. With `kept`, the geometry of the trace before serves this one where it can, and stays for the next: the
+// same record, sooner, at the price of its memory.
+Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
+            KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

@@ -48,11 +48,11 @@ Paths empty_record(const Scene& scene, const Radar& radar, const TraceSettings& 
 
 }  // namespace
 
-Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job)
+Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept)
     : empty_(empty_record(scene, radar, settings)), pose_(*empty_.scene, empty_.frame.trace_time),
       world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
-      origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter)),
-      geometry_(*empty_.scene, pose_, origin_, job), mirrors_(find_mirrors(*empty_.scene, geometry_)),
+      origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),
+      loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
       plan_(plan_rays(settings)), sbr_(settings_of_rays(settings)),
       shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_) {
   empty_.frame.strata = plan_.strata;

@@ -1,5 +1,6 @@
 #pragma once
 // The steps of a trace: what is made once for all its rays, and the rays in blocks. Internal to the module.
+#include "echopath/trace/kept_geometry.h"
 #include "echopath/trace/sbr.h"
 #include "echopath/trace/trace.h"
 
@@ -8,7 +9,7 @@ namespace echopath {
 class Tracer {
  public:
   // Raises what `trace` raises.
-  Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job);
+  Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept = nullptr);
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
   // Shoots all rays; the same record each time.
@@ -27,7 +28,8 @@ class Tracer {
   Pose pose_;
   Transform world_from_radar_;
   Vec3 origin_;
-  EmbreeScene geometry_;
+  GeometryLoan loan_;
+  EmbreeScene& geometry_;
   std::vector<Mirror> mirrors_;
   LaunchPlan plan_;
   SbrSettings sbr_;

@@ -1,0 +1,48 @@
+#pragma once
+// The meshes of a scene at one time, in coordinates relative to an origin. Brought up to another time, it poses anew only what
+// has changed.
+#include <memory>
+#include <vector>
+
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+class PosedMeshes {
+ public:
+  // Returns the IDs of the meshes that differ from those of the last call, ascending: all where the origin (m, world) or the
+  // number of meshes is another, none where nothing moves.
+  std::vector<uint32_t> update(const Scene& scene, const Pose& pose, const Vec3& origin);
+
+  uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }
+  const std::vector<Triangle>& triangles(uint32_t mesh_id) const { return meshes_[mesh_id].source.mesh->triangles(); }
+  const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_[mesh_id].vertices; }  // m
+  // Unit, of vertices; empty where facets are meant.
+  const std::vector<Vec3>& normals(uint32_t mesh_id) const { return meshes_[mesh_id].normals; }
+  double largest_coordinate() const;  // m, of all vertices by magnitude
+  // In how many bounding boxes of meshes a point of the scene's bounding box lies on average.
+  double mean_cover() const;
+
+ private:
+  // What the vertices follow from: equal sources have equal vertices.
+  struct Source {
+    MeshPtr mesh;
+    std::shared_ptr<const Deformation> deformation;
+    double time = 0.0;  // s, where it deforms
+    Transform world_from_mesh = Transform::Identity();
+    bool smooth = false;
+    bool is_same(const Source& other) const;
+  };
+  struct Posed {
+    Source source;
+    std::vector<Vec3> vertices, normals;
+    Eigen::AlignedBox3d box;
+  };
+  static Source source_of(const Scene& scene, const Pose& pose, uint32_t mesh_id);
+  void place(Posed& posed, const Pose& pose, uint32_t mesh_id) const;
+
+  Vec3 origin_ = Vec3::Zero();
+  std::vector<Posed> meshes_;  // by mesh ID
+};
+
+}  // namespace echopath

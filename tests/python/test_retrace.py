@@ -165,3 +165,20 @@ def test_bad_settings_are_named(keywords, text):
     radar = radar_of(num_chirps=16)
     with pytest.raises(ValueError, match=text):
         ep.synthesize(ep.trace(ep.Scene(), radar, num_rays=10), radar, **keywords)
+
+
+def test_traces_of_a_scene_have_the_bits_of_first_traces():
+    """The geometry that a scene keeps from its second trace on answers as one made for the time."""
+    radar, scene = radar_of(num_chirps=2), hidden_target()
+    for turn in range(4):
+        again, first = (ep.trace(of, radar, num_rays=2000, start_time=2e-3 * turn) for of in (scene, hidden_target()))
+        assert first.num_paths > 500
+        for name in ("offsets", "mesh_id", "triangle_id", "u", "v", "weight"):
+            assert np.array_equal(getattr(again, name), getattr(first, name)), (turn, name)
+
+
+def test_scenes_that_are_traced_once_keep_nothing():
+    scene = hidden_target()
+    for is_kept in (False, True):
+        ep.trace(scene, radar_of(num_chirps=2), num_rays=100)
+        assert ("_geometry" in vars(scene)) == is_kept

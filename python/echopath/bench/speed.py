@@ -11,7 +11,7 @@ from pathlib import Path
 import echopath as ep
 
 from ..files import write_texts
-from . import replay_cases, speed_frames, speed_synthesis, speed_tracer
+from . import replay_cases, speed_frames, speed_retrace, speed_synthesis, speed_tracer
 from .machine import machine
 from .timing import processor_time
 
@@ -36,6 +36,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     tell()
     results["tracer"] = speed_tracer.measure_tracer(quick=quick)
     tell()
+    results["retrace"] = speed_retrace.measure_retrace(quick=quick)
+    tell()
     results["street"] = speed_frames.measure_street(quick=quick)
     tell()
     results["must_reach"] = verdicts(results)
@@ -51,7 +53,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
 def _counter(progress, quick: bool):
     counts = (speed_synthesis.TOLERANCES, speed_frames.QUICK_PATHS if quick else speed_frames.PATHS, speed_frames.CHIRPS,
               speed_frames.ARRAYS, speed_frames.PARTS)
-    steps, done = 3 + sum(map(len, counts)), 0
+    steps, done = 4 + sum(map(len, counts)), 0
 
     def tell():
         nonlocal done
@@ -118,7 +120,8 @@ def describe(results: dict) -> list[str]:
     lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
-             *_tracer_lines(results["tracer"]), *_street_lines(results["street"]), "",
+             *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
+             *_street_lines(results["street"]), "",
              "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import speed, speed_frames, speed_synthesis
+from echopath.bench import speed, speed_frames, speed_retrace, speed_synthesis
 from echopath.cli import main
 
 EXTENDED = 1e-12   # of a sum in extended precision against the direct one
@@ -38,6 +38,11 @@ def test_echoes_of_a_trial_move_as_they_should(scattered):
 def test_records_have_the_paths_that_were_asked_for():
     paths = speed_frames.record_of(speed_frames.street(), 20_000).num_paths
     assert 20_000 <= paths <= 21_000
+
+
+def test_kept_geometry_gives_the_same_hits():
+    rows = speed_retrace.measure_retrace(quick=True)
+    assert len(rows) == 4 and all(row["same_hits"] and row["paths"] > 1000 for row in rows)
 
 
 def test_spread_of_the_cost_per_path_is_seen():

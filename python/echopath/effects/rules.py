@@ -100,7 +100,7 @@ QUANTITIES = {
     "Radar": ("waveform", "transmit_power", "frame_duration"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name"),
     "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "progress", "kept"),
-    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "progress"),
+    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "progress", "probe"),
 }
 
 

@@ -4,7 +4,7 @@ import pytest
 
 import echopath as ep
 from support.reference import Reference, blocked
-from support.reference_scenes import coherent_deviation, diffuse_deviation, polarized_deviation
+from support.reference_scenes import array_deviation, coherent_deviation, diffuse_deviation, polarized_deviation
 from support.shapes import METAL, WAVELENGTH, fields, make_radar, rectangle, scene_of
 
 pytestmark = pytest.mark.hard
@@ -25,6 +25,10 @@ def test_smooth_plates_have_the_field_and_the_samples_of_the_reference(seed):
 def test_field_vectors_are_those_of_the_reference(seed):
     found = polarized_deviation(seed)
     assert found.field < FIELD_SHARE and found.cube < SIGNAL_SHARE
+
+
+def test_all_channels_of_a_moving_radar_have_the_samples_of_the_reference():
+    assert array_deviation(40).cube < SIGNAL_SHARE
 
 
 @pytest.mark.parametrize("seed", range(20, 26))

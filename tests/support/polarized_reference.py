@@ -14,10 +14,10 @@ class PolarizedReference(Reference):
 
     def pairs(self, time):
         cells = self.cells(time)
-        legs = self.legs(cells, self.receiver, time, to_receiver=True)
+        legs = self.legs(cells, self.antenna(1, time), time, to_receiver=True)
         receive = [(leg, self._seen_from_cells(leg, time)) for leg in legs]
         out = []
-        for one in self.legs(cells, self.transmitter, time, to_receiver=False):
+        for one in self.legs(cells, self.antenna(0, time), time, to_receiver=False):
             incident = self._launched(one, time)
             facing = np.einsum("ij,ij->i", cells.normals, one.toward)
             normals = cells.normals * np.where(facing < 0, -1.0, 1.0)[:, None]
@@ -33,10 +33,10 @@ class PolarizedReference(Reference):
 
     def planes_alone(self, time):
         corners, owner = self.triangles(time)
-        at = Cells(self.receiver[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
+        at = Cells(self.antenna(1, time)[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
         out = []
         for mesh in np.flatnonzero([material.mirror for material in self.materials]):
-            leg = self._over(at, self.transmitter, corners, owner, mesh)
+            leg = self._over(at, self.antenna(0, time), corners, owner, mesh)
             arriving = np.einsum("ij,ij->i", self._launched(leg, time), self._axis(1, -leg.toward))
             gains = np.sqrt(self.radar.transmit_power * self.gain(0, leg.leaving) * self.gain(1, leg.toward))
             out.append((leg.length, (leg.gain != 0) * arriving * self.wavelength * gains / (4 * np.pi * leg.length)))

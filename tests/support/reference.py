@@ -48,9 +48,10 @@ class Leg:
 
 
 class Reference:
-    """One scene and one radar with one transmitter and receiver; spacing: of the cells in m."""
+    """One scene and one radar; spacing: of the cells in m; channel: (transmitter, receiver) whose echoes are meant."""
 
-    def __init__(self, scene, radar, *, spacing, trace_time, corners=False):
+    def __init__(self, scene, radar, *, spacing, trace_time, corners=False, channel=(0, 0)):
+        self.channel, self.is_mean = channel, False
         self.scene, self.radar, self.trace_time, self.corners = scene, radar, trace_time, corners
         self.materials = [mesh.material for mesh in scene.meshes]
         self.wavelength = C / radar.waveform.start_frequency
@@ -59,10 +60,20 @@ class Reference:
         rest = self.triangles(trace_time)[0]
         longest = np.linalg.norm(rest - np.roll(rest, 1, axis=1), axis=2).max(axis=1)
         self.pieces = np.maximum(1, np.ceil(longest / spacing)).astype(int)
-        self.transmitter = np.asarray(radar.transmitters[0].position, float)
-        self.receiver = np.asarray(radar.receivers[0].position, float)
 
     # --- geometry ---
+
+    def antenna(self, side, time):
+        """World position [3] of the transmitter (side 0) or receiver of the channel; where `is_mean`, the mean of all."""
+        antennas = (self.radar.transmitters, self.radar.receivers)[side]
+        points = np.array([antenna.position for antenna in antennas])
+        point, motion = points.mean(axis=0) if self.is_mean else points[self.channel[side]], self.radar.motion
+        if motion is None:
+            return point
+        rate = np.linalg.norm(motion.angular_velocity)
+        axis = motion.angular_velocity / rate if rate > 0 else np.array([0.0, 0.0, 1.0])
+        cos, sin = np.cos(rate * time), np.sin(rate * time)  # Rodrigues
+        return cos * point + sin * np.cross(axis, point) + (1 - cos) * (axis @ point) * axis + motion.velocity * time
 
     def triangles(self, time):
         """[F, 3, 3] of all meshes and the mesh of each [F]."""
@@ -184,8 +195,8 @@ class Reference:
         cells = self.cells(time)
         out = []
         antennas = np.sqrt(self.radar.transmit_power) / (4 * np.pi)
-        receive = self.legs(cells, self.receiver, time, to_receiver=True)
-        for one in self.legs(cells, self.transmitter, time, to_receiver=False):
+        receive = self.legs(cells, self.antenna(1, time), time, to_receiver=True)
+        for one in self.legs(cells, self.antenna(0, time), time, to_receiver=False):
             cos_in = np.einsum("ij,ij->i", cells.normals, one.toward)
             side = np.where(cos_in < 0, -1.0, 1.0)
             cos_in = np.abs(cos_in)
@@ -227,10 +238,10 @@ class Reference:
     def planes_alone(self, time):
         """(length [1], amplitude [1]) of the echo of each flagged plane by its image."""
         corners, owner = self.triangles(time)
-        at = Cells(self.receiver[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
+        at = Cells(self.antenna(1, time)[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
         out = []
         for mesh in np.flatnonzero([material.mirror for material in self.materials]):
-            leg = self._over(at, self.transmitter, corners, owner, mesh)
+            leg = self._over(at, self.antenna(0, time), corners, owner, mesh)
             gains = np.sqrt(self.radar.transmit_power * self.gain(0, leg.leaving) * self.gain(1, leg.toward))
             out.append((leg.length, leg.gain * self.wavelength * gains / (4 * np.pi * leg.length)))
         return out
@@ -245,14 +256,15 @@ class Reference:
 
     def cube(self):
         """Coherent IF samples [chirp, sample]: delays at every sample, amplitudes at the middle of each chirp, shadows at
-        the trace time."""
+        the trace time, of the mean antennas. Transmitters take turns."""
         waveform = self.radar.waveform
         t = np.arange(waveform.num_samples) / waveform.sampling_rate
+        self.is_mean = True
         seen = [field != 0 for _, field, _ in self.pairs(self.trace_time)[1]]
-        self.sees_shadows = False
+        self.is_mean = self.sees_shadows = False
         out = np.zeros((waveform.num_chirps, waveform.num_samples), complex)
         for j in range(waveform.num_chirps):
-            begin = j * waveform.chirp_interval
+            begin = (j * len(self.radar.transmitters) + self.channel[0]) * waveform.chirp_interval
             fields = [field * mask for (_, field, _), mask in zip(self.pairs(begin + t.mean())[1], seen)]
             for n, offset in enumerate(t):
                 echoes = [*zip(self._lengths(begin + offset), fields), *self.planes_alone(begin + offset)]
@@ -263,8 +275,8 @@ class Reference:
     def _lengths(self, time):
         """Lengths of all pairs of legs [M] at `time`, whatever is in the way."""
         cells = self.cells(time)
-        one = [self._length(cells, self.transmitter, leg, time) for leg in self._planes(False)]
-        two = [self._length(cells, self.receiver, leg, time) for leg in self._planes(True)]
+        one = [self._length(cells, self.antenna(0, time), leg, time) for leg in self._planes(False)]
+        two = [self._length(cells, self.antenna(1, time), leg, time) for leg in self._planes(True)]
         return [a + b for a in one for b in two]
 
     def _planes(self, to_receiver):

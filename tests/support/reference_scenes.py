@@ -89,6 +89,21 @@ def polarized_deviation(seed):
     return _coherent(scene, radar, PolarizedReference, "jones")
 
 
+def array_deviation(seed):
+    """Samples of all channels of two transmitters and two receivers on a moving, turning radar."""
+    scene, radar = random_scene(seed, rough=False)
+    random = np.random.default_rng(seed + 900)
+    pattern, polarization = radar.transmitters[0].pattern, tuple(radar.transmitters[0].polarization)
+    places = random.uniform(-0.02, 0.02, (4, 3))
+    antennas = [ep.Antenna(tuple(place), pattern=pattern, polarization=polarization) for place in places]
+    motion = ep.LinearMotion(velocity=random.uniform(-10, 10, 3), angular_velocity=random.uniform(-2, 2, 3))
+    radar = ep.Radar(radar.waveform, transmitters=antennas[:2], receivers=antennas[2:], transmit_power=0.1, motion=motion)
+    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3)
+    time = paths.frame.trace_time
+    exact = [[Reference(scene, radar, spacing=SPACING, trace_time=time, channel=(t, r)).cube() for r in (0, 1)] for t in (0, 1)]
+    return Deviation(cube=float(np.linalg.norm(ep.synthesize(paths, radar) - exact) / np.linalg.norm(exact)))
+
+
 def _coherent(scene, radar, kind, model):
     paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3, polarization=model)
     time = paths.frame.trace_time

@@ -126,7 +126,8 @@ def _add_trace_options(parser, default_rays) -> None:
     parser.add_argument("--seed", type=_natural, default=None, metavar="N",
                         help="of the rays (default: that of the scene file)")
     parser.add_argument("--batches", type=_positive, default=None, metavar="N",
-                        help="parts of the rays that give standard errors (default: that of the scene file)")
+                        help="parts of the rays, which give mean powers over the random phases with standard errors, beside "
+                             "those of the one realisation that the maps show (default: that of the scene file)")
 
 
 def _add_part_option(parser) -> None:

@@ -9,7 +9,7 @@ from .case import Cases
 
 cases = Cases("A slow reference of the equations")
 TESTS = Path(__file__).resolve().parents[4] / "tests"
-NUM_SCENES = 20
+NUM_SCENES, NUM_ARRAYS = 20, 8  # each of the latter is four channels
 
 
 @functools.lru_cache
@@ -18,9 +18,8 @@ def _deviations(kind: str) -> tuple:
         sys.path.append(str(TESTS))
     from support import reference_scenes
 
-    measure = {"coherent": reference_scenes.coherent_deviation, "polarized": reference_scenes.polarized_deviation,
-               "diffuse": reference_scenes.diffuse_deviation}[kind]
-    return tuple(measure(seed) for seed in range(NUM_SCENES))
+    measure = getattr(reference_scenes, f"{kind}_deviation")
+    return tuple(measure(seed) for seed in range(NUM_ARRAYS if kind == "array" else NUM_SCENES))
 
 
 def field() -> float:
@@ -33,6 +32,10 @@ def samples() -> float:
 
 def polarized() -> float:
     return max(max(one.field, one.cube) for one in _deviations("polarized"))
+
+
+def channels() -> float:
+    return max(one.cube for one in _deviations("array"))
 
 
 def power() -> float:
@@ -50,6 +53,9 @@ if (TESTS / "support" / "reference_scenes.py").exists():
     cases("field vectors of 20 random scenes",
           "the same between antennas of any two linear polarisations: field and IF samples", bound=0.01, unit="of either",
           broken="the other root of a lossy permittivity: 1.2", heavy=True)(polarized)
+    cases("channels of 8 random scenes",
+          "two transmitters, which take turns, and two receivers on a moving, turning radar: IF samples", bound=0.01,
+          unit="of the signal", broken="all transmitters at the time of the first: 1.4", heavy=True)(channels)
     cases("diffuse powers of 20 random scenes",
           "rough plates, all pairs of legs with one phase a point: mean power, beyond 1 %", bound=4.0,
           unit="standard errors", broken="no shadow rays: 8.7", heavy=True)(power)

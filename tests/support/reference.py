@@ -140,8 +140,16 @@ class Reference:
         leaving = _unit(point - antenna)
         cosine = np.abs(leaving @ normal)
         coefficient, is_tm = self.coefficient(mesh, cosine, leaving, normal)
+        if self.materials[mesh].mirror and not self.is_metal(mesh):
+            coefficient = coefficient * np.where(is_tm, self._tm_sign(leaving, normal), 1.0)
         gain = np.where(ok, coefficient * self.shares(mesh, cosine)[0], 0.0)
         return Leg(length, toward, gain, leaving, is_tm & (not self.materials[mesh].mirror), mesh)
+
+    def _tm_sign(self, direction, normal):
+        """Sign [M] of the field's components along p_i and p_r of a plane."""
+        polarization = np.asarray(self.radar.transmitters[0].polarization, float)
+        axis, behind = np.cross(direction, normal), direction - 2 * (direction @ normal)[:, None] * normal
+        return np.where((np.cross(axis, direction) @ polarization) * (np.cross(axis, behind) @ polarization) < 0, -1.0, 1.0)
 
     def blocked(self, starts, ends, *arguments, **keywords):
         """`blocked`, which nothing is where shadows are not looked at."""

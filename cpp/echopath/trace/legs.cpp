@@ -118,7 +118,8 @@ void LegFinder::set_gain(Leg& leg) const {
     const Mirror& mirror = mirrors_[static_cast<size_t>(bounce.mirror)];
     const PolarizationMode mode = polarization_mode(polarization_, bounce.direction, mirror.normal);
     const SurfaceResponse response = respond(*mirror.material, frequency_, -bounce.direction.dot(bounce.normal), mode);
-    leg.gain *= response.gamma * response.coherent;
+    leg.gain *= response.gamma * response.coherent *
+                mirror_sign(*mirror.material, mode, polarization_, bounce.direction, mirror.normal);
     bounce.specular_share = response.coherent * response.coherent;
     leg.specular_share *= bounce.specular_share;
   }

@@ -122,9 +122,10 @@ class ImageSearch {
     Vec3 direction = departure();
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vec3& normal = mirror(k).normal;
-      const SurfaceResponse response = respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)),
-                                               polarization_mode(settings_.polarization, direction, normal));
-      product *= response.gamma * response.coherent;
+      const PolarizationMode mode = polarization_mode(settings_.polarization, direction, normal);
+      const SurfaceResponse response = respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)), mode);
+      product *= response.gamma * response.coherent *
+                 mirror_sign(*mirror(k).material, mode, settings_.polarization, direction, normal);
       direction = mirror(k).reflect(direction);
     }
     return product;

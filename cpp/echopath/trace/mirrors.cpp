@@ -99,4 +99,11 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
   return te * te >= kTeLimit * kTeLimit * te_squared * across_squared ? PolarizationMode::kTe : PolarizationMode::kTm;
 }
 
+double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
+                   const Vec3& normal) {
+  if (mode == PolarizationMode::kTe || !material.permittivity) return 1.0;
+  const Vec3 te_axis = direction.cross(normal), behind = direction - 2.0 * direction.dot(normal) * normal;
+  return polarization.dot(te_axis.cross(direction)) * polarization.dot(te_axis.cross(behind)) < 0 ? -1.0 : 1.0;
+}
+
 }  // namespace echopath

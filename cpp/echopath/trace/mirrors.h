@@ -31,4 +31,10 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
 // ray over a mirror and a leg that is searched from its other end have the same coefficient.
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal);
 
+// Sign that a flagged mirror's coefficient takes along `polarization` (scalar mode), of a wave that travels along `direction`.
+// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h), of which one may point with the field and the other against
+// it: over a wall at right angles to the field, where TE and TM must meet at normal incidence. +1 for TE and for conductors.
+double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
+                   const Vec3& normal);
+
 }  // namespace echopath

@@ -222,10 +222,14 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probab
   if (settings_.is_polarized) reflect_polarized(ray, surface, ray.polarized);
   if (settings_.is_polarized && !ray.coherent && chain.back) reflect_polarized(ray, surface, chain.fields);
   const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
+  const int mirror = mirror_of_mesh_[point.hit.mesh_id];
+  if (mirror >= 0) {
+    const PolarizationMode mode = polarization_mode(settings_.polarization, ray.direction, point.normal);
+    ray.coefficient *= mirror_sign(*surface.material, mode, settings_.polarization, ray.direction, point.normal);
+  }
   ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
   ray.coefficient *= response.gamma * response.coherent;
   ray.leg_density *= probability;
-  const int mirror = mirror_of_mesh_[point.hit.mesh_id];
   const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
   ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
   ray.last_was_mirror = mirror < 0;

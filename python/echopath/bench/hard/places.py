@@ -113,6 +113,21 @@ def on_the_normal() -> float:
     return float(np.max(levels))  # NaN where one is
 
 
+@cases("a wall straight aside", "a dielectric mirror, met within a degree of its normal with the field across or along the "
+       "plane of incidence: scalar field beside that of vectors", bound=1e-3, unit="of the field",
+       broken="Fresnel's TM coefficient with its own sign: 2")
+def wall_aside() -> float:
+    mirror, worst = ep.Material(permittivity=5 - 0.3j, mirror=True), 0.0
+    wall = ("wall", shapes.plate(4.0, 4.0), mirror, {"position": (5.0, 0.0, 0.0)})
+    for aside in ((0.0, 0.1, 0.0), (0.0, 0.0, 0.1), (0.0, 0.05, -0.05)):
+        receivers = [ep.Antenna(aside)]
+        radar = ep.Radar(make_radar().waveform, transmitters=[ep.Antenna()], receivers=receivers, transmit_power=POWER)
+        scalar, vectors = (np.sum(traced(scene_of(wall), radar, 100, polarization=model).amplitude)
+                           for model in ("scalar", "jones"))
+        worst = max(worst, float(abs(scalar / vectors - 1.0)))
+    return worst
+
+
 @cases("antenna along its polarisation", "a mirror straight above an upright field, where neither horizontal nor "
        "vertical has a meaning: finite, and nothing from field vectors", bound=0.0, unit="sqrt(W) or NaN",
        broken="no axis chosen where none is given: NaN")

@@ -1,16 +1,29 @@
 #include "echopath/replay/chain_plan.h"
 
 #include <bit>
-
-#include "echopath/replay/segment_ids.h"
+#include <cstring>
 
 namespace echopath {
 namespace {
 
 constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high} << 32 | low; }
 
+}  // namespace
+
+void ChainPlan::clear() {
+  points.clear();
+  mirrors.clear();
+  images.assign(1, {0, kNone});
+  legs.clear();
+  inner_points.clear();
+  inner.clear();
+  chains.clear();
+  coherent.clear();
+  others.clear();
+}
+
 // Hits and events of a path in the order in which it was traced.
-struct TracedHits {
+struct ChainPlanner::TracedHits {
   const Hit* recorded;
   int count;
   uint64_t diffuse_bits;
@@ -23,128 +36,131 @@ struct TracedHits {
   bool is_diffuse(int k) const { return diffuse_bits >> index(k) & 1; }
 };
 
-class ChainPlanner {
- public:
-  ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular)
-      : paths_(paths), localise_(localise), slides_(specular != SpecularPoints::kMaterial) {
-    plan_.images.push_back({0, ChainPlan::kNone});
-  }
-
-  void add(size_t place, int64_t path) {
-    if (!add_chain(place, path)) plan_.others.push_back(place);
-  }
-  ChainPlan take() { return std::move(plan_); }
-
- private:
-  struct Ends {
-    int first = -1, last = -1;  // material points
-  };
-
-  bool is_image(const TracedHits& hits, int k) const { return localise_.is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k); }
-
-  // Nothing where this path is none of those that are made of legs.
-  std::optional<Ends> ends_of(const TracedHits& hits) const {
-    Ends ends;
-    for (int k = 0; k < hits.count; ++k) {
-      if (!is_image(hits, k)) {
-        // Hits between others slide, and no others.
-        if (slides_ && ends.last >= 0 && !hits.is_diffuse(ends.last)) return {};
-        if (ends.first < 0) ends.first = k;
-        ends.last = k;
-      } else if (!localise_.is_plane(hits.hit(k).mesh_id)) {
-        return {};
-      }
-    }
-    return ends;
-  }
-
-  bool add_chain(size_t place, int64_t path) {
-    const auto p = static_cast<size_t>(path);
-    if (!paths_.jones.empty()) return false;
-    const TracedHits hits{paths_.hits_of(path), paths_.num_bounces[p], paths_.diffuse[p], (paths_.flags[p] & kReversedPath) != 0};
-    const std::optional<Ends> ends = ends_of(hits);
-    if (!ends || ends->first < 0) return false;
-    const bool is_coherent = paths_.diffuse[p] == 0;
-    if (is_coherent && localise_.may_stretch(hits.hit(ends->last).mesh_id)) return false;
-    (is_coherent ? plan_.coherent : plan_.chains)
-        .push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
-                    std::complex<double>(paths_.weight[p])});
-    return true;
-  }
-
-  // Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
-  uint32_t start_leg(const TracedHits& hits, int first) {
-    uint32_t& known = leg_of_(hits.run(0, first), first + 1, hits.is_reversed);
-    if (known != SegmentIds::kNone) return known;
-    uint32_t image = 0;
-    for (int k = 0; k < first; ++k) image = image_in(image, hits.hit(k));
-    return known = leg(image, hits.hit(first), hits.is_reversed);
-  }
-  uint32_t end_leg(const TracedHits& hits, int last) {
-    uint32_t& known = leg_of_(hits.run(last, hits.count - 1), hits.count - last, !hits.is_reversed);
-    if (known != SegmentIds::kNone) return known;
-    uint32_t image = 0;
-    for (int k = hits.count; --k > last;) image = image_in(image, hits.hit(k));
-    return known = leg(image, hits.hit(last), !hits.is_reversed);
-  }
-
-  uint32_t image_in(uint32_t parent, const Hit& hit) {
-    const uint32_t mirror = mirror_ids_(pair_key(hit.mesh_id, hit.triangle_id));
-    if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back({hit.mesh_id, hit.triangle_id, 0.0f, 0.0f});
-    const uint32_t image = image_ids_(pair_key(parent, mirror)) + 1;
-    if (image == plan_.images.size()) plan_.images.push_back({parent, mirror});
-    return image;
-  }
-
-  uint32_t point(const Hit& hit) {
-    const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id),
-                                   pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)));
-    if (id == plan_.points.size()) plan_.points.push_back(hit);
-    return id;
-  }
-
-  uint32_t leg(uint32_t image, const Hit& hit, bool of_receivers) {
-    const uint32_t at = point(hit);
-    const uint32_t id = leg_ids_(pair_key(image, at), of_receivers);
-    if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers});
-    return id;
-  }
-
-  uint32_t inner(const TracedHits& hits, const Ends& ends) {
-    if (ends.first == ends.last && !localise_.may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
-    const int count = ends.last - ends.first + 1;
-    ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
-    for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);
-    uint32_t& known = inner_of_[hits.is_reversed](hits.run(ends.first, ends.last), count, found.diffuse);
-    if (known != SegmentIds::kNone) return known;
-    for (int k = ends.first; k <= ends.last; ++k) {
-      plan_.inner_points.push_back(point(hits.hit(k)));
-      found.image |= uint64_t{is_image(hits, k)} << (k - ends.first);
-    }
-    plan_.inner.push_back(found);
-    return known = static_cast<uint32_t>(plan_.inner.size() - 1);
-  }
-
-  const Paths& paths_;
-  const Localiser& localise_;
-  bool slides_;
-  ChainPlan plan_;
-  SegmentIds leg_of_, inner_of_[2];  // inner parts: as recorded, reversed
-  DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
+// Material points.
+struct ChainPlanner::Ends {
+  int first = -1, last = -1;
 };
 
-}  // namespace
-
-ChainPlan plan_chains(const Paths& paths, const Localiser& localise, SpecularPoints specular, std::span<const int64_t> indices) {
-  ChainPlanner planner(paths, localise, specular);
-  for (size_t place = 0; place < indices.size(); ++place) planner.add(place, indices[place]);
-  return planner.take();
+bool ChainPlanner::is_same(const Known& known, const Known& run) {
+  return known.count == run.count && known.of_receivers == run.of_receivers &&
+         std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-ChainPlan unshared(size_t num_paths) {
-  ChainPlan plan;
-  for (size_t place = 0; place < num_paths; ++place) plan.others.push_back(place);
-  return plan;
+ChainPlanner::ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular)
+    : paths_(paths), localise_(localise), slides_(specular != SpecularPoints::kMaterial) {}
+
+const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
+  clear();
+  for (size_t place = 0; place < indices.size(); ++place) {
+    if (!add_chain(place, indices[place])) plan_.others.push_back(place);
+  }
+  return plan_;
+}
+
+void ChainPlanner::clear() {
+  plan_.clear();
+  last_start_ = last_end_ = {};
+  leg_of_.clear();
+  for (SegmentIds& ids : inner_of_) ids.clear();
+  for (DenseIds* ids : {&mirror_ids_, &image_ids_, &point_ids_, &leg_ids_}) ids->clear();
+}
+
+bool ChainPlanner::is_image(const TracedHits& hits, int k) const {
+  return localise_.is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
+}
+
+// Nothing where this path is none of those that are made of legs.
+std::optional<ChainPlanner::Ends> ChainPlanner::ends_of(const TracedHits& hits) const {
+  Ends ends;
+  for (int k = 0; k < hits.count; ++k) {
+    if (!is_image(hits, k)) {
+      // Hits between others slide, and no others.
+      if (slides_ && ends.last >= 0 && !hits.is_diffuse(ends.last)) return {};
+      if (ends.first < 0) ends.first = k;
+      ends.last = k;
+    } else if (!localise_.is_plane(hits.hit(k).mesh_id)) {
+      return {};
+    }
+  }
+  return ends;
+}
+
+bool ChainPlanner::add_chain(size_t place, int64_t path) {
+  const auto p = static_cast<size_t>(path);
+  if (!paths_.jones.empty()) return false;
+  const TracedHits hits{paths_.hits_of(path), paths_.num_bounces[p], paths_.diffuse[p], (paths_.flags[p] & kReversedPath) != 0};
+  const std::optional<Ends> ends = ends_of(hits);
+  if (!ends || ends->first < 0) return false;
+  const bool is_coherent = paths_.diffuse[p] == 0;
+  if (is_coherent && localise_.may_stretch(hits.hit(ends->last).mesh_id)) return false;
+  (is_coherent ? plan_.coherent : plan_.chains)
+      .push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
+                  std::complex<double>(paths_.weight[p])});
+  return true;
+}
+
+// Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
+uint32_t ChainPlanner::start_leg(const TracedHits& hits, int first) {
+  const Known run{hits.run(0, first), first + 1, hits.is_reversed};
+  if (is_same(last_start_, run)) return last_start_.leg;
+  uint32_t& known = leg_of_(run.hits, run.count, run.of_receivers);
+  if (known == SegmentIds::kNone) {
+    uint32_t image = 0;
+    for (int k = 0; k < first; ++k) image = image_in(image, hits.hit(k));
+    known = leg(image, hits.hit(first), run.of_receivers);
+  }
+  last_start_ = run;
+  return last_start_.leg = known;
+}
+
+uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
+  const Known run{hits.run(last, hits.count - 1), hits.count - last, !hits.is_reversed};
+  if (is_same(last_end_, run)) return last_end_.leg;
+  uint32_t& known = leg_of_(run.hits, run.count, run.of_receivers);
+  if (known == SegmentIds::kNone) {
+    uint32_t image = 0;
+    for (int k = hits.count; --k > last;) image = image_in(image, hits.hit(k));
+    known = leg(image, hits.hit(last), run.of_receivers);
+  }
+  last_end_ = run;
+  return last_end_.leg = known;
+}
+
+uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
+  const uint32_t mirror = mirror_ids_(pair_key(hit.mesh_id, hit.triangle_id));
+  if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back({hit.mesh_id, hit.triangle_id, 0.0f, 0.0f});
+  const uint32_t image = image_ids_(pair_key(parent, mirror)) + 1;
+  if (image == plan_.images.size()) plan_.images.push_back({parent, mirror});
+  return image;
+}
+
+uint32_t ChainPlanner::point(const Hit& hit) {
+  const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id),
+                                 pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)));
+  if (id == plan_.points.size()) plan_.points.push_back(hit);
+  return id;
+}
+
+uint32_t ChainPlanner::leg(uint32_t image, const Hit& hit, bool of_receivers) {
+  const uint32_t at = point(hit);
+  const uint32_t id = leg_ids_(pair_key(image, at), of_receivers);
+  if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers});
+  return id;
+}
+
+uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends) {
+  if (ends.first == ends.last && !localise_.may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
+  const int count = ends.last - ends.first + 1;
+  ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
+  for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);
+  uint32_t& known = inner_of_[hits.is_reversed](hits.run(ends.first, ends.last), count, found.diffuse);
+  if (known != SegmentIds::kNone) return known;
+  for (int k = ends.first; k <= ends.last; ++k) {
+    plan_.inner_points.push_back(point(hits.hit(k)));
+    found.image |= uint64_t{is_image(hits, k)} << (k - ends.first);
+  }
+  plan_.inner.push_back(found);
+  return known = static_cast<uint32_t>(plan_.inner.size() - 1);
 }
 
 }  // namespace echopath

@@ -6,6 +6,7 @@
 
 #include "echopath/replay/dense_ids.h"
 #include "echopath/replay/local_paths.h"
+#include "echopath/replay/segment_ids.h"
 #include "echopath/replay/specular_slide.h"
 
 namespace echopath {
@@ -46,13 +47,49 @@ struct ChainPlan {
   std::vector<Chain> chains;          // diffuse paths
   std::vector<Chain> coherent;        // paths with a launch cell, at the point of their last leg
   std::vector<size_t> others;         // places of the paths that are evaluated one by one
+
+  void clear();
 };
 
-// For the paths of these indices. Paths stand among `others` that are polarised, are made of mirrors alone, have sliding hits
-// that move, or a launch cell on a mesh that may stretch.
-ChainPlan plan_chains(const Paths& paths, const Localiser& localise, SpecularPoints specular, std::span<const int64_t> indices);
+// Makes plans one after the other, and keeps its memory; for one thread at a time.
+class ChainPlanner {
+ public:
+  // All must outlive it.
+  ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular);
+  // For the paths of these indices; valid until the next call. Paths stand among `others` that are polarised, are made of mirrors
+  // alone, have sliding hits that move, or a launch cell on a mesh that may stretch.
+  const ChainPlan& operator()(std::span<const int64_t> indices);
 
-// All of them stand among `others`.
-ChainPlan unshared(size_t num_paths);
+ private:
+  struct TracedHits;
+  struct Ends;
+  // Runs of hits that were looked for last: most paths share an end with the one before.
+  struct Known {
+    const Hit* hits = nullptr;
+    int count = 0;
+    bool of_receivers = false;
+    uint32_t leg = 0;
+  };
+
+  void clear();
+  static bool is_same(const Known& known, const Known& run);
+  bool is_image(const TracedHits& hits, int k) const;
+  std::optional<Ends> ends_of(const TracedHits& hits) const;
+  bool add_chain(size_t place, int64_t path);
+  uint32_t start_leg(const TracedHits& hits, int first);
+  uint32_t end_leg(const TracedHits& hits, int last);
+  uint32_t image_in(uint32_t parent, const Hit& hit);
+  uint32_t point(const Hit& hit);
+  uint32_t leg(uint32_t image, const Hit& hit, bool of_receivers);
+  uint32_t inner(const TracedHits& hits, const Ends& ends);
+
+  const Paths& paths_;
+  const Localiser& localise_;
+  bool slides_;
+  ChainPlan plan_;
+  Known last_start_, last_end_;
+  SegmentIds leg_of_, inner_of_[2];  // inner parts: as recorded, reversed
+  DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
+};
 
 }  // namespace echopath

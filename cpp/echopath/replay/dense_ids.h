@@ -21,6 +21,11 @@ class DenseIds {
     return slots_[slot];
   }
   size_t size() const { return keys_.size(); }
+  // Forgets all, and keeps the memory.
+  void clear() {
+    keys_.clear();
+    slots_.assign(slots_.size(), kFree);
+  }
 
  private:
   struct Key {

@@ -15,13 +15,13 @@ bool has_phase(const Antenna& antenna) { return antenna.pattern.table && !antenn
 }  // namespace
 
 void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
-                                 size_t num_paths, std::span<const ChannelNodes> channels) {
+                                 const ChannelSpan& channels) {
   if (plan.chains.empty() && plan.coherent.empty()) return;
   num_receivers_ = level.instants.front().receivers.size();
   tables_.find(plan, localise, level);
   values_.resize(1, PathToCombine::kNumRows, level.instants.size());
-  write_diffuse(plan, diffuse_scale(radio), num_paths, channels);
-  write_coherent(plan, localise, level, radio, num_paths, channels);
+  write_diffuse(plan, diffuse_scale(radio), channels);
+  write_coherent(plan, localise, level, radio, channels);
 }
 
 ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, size_t channel) const {
@@ -36,15 +36,15 @@ PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends
           scale * chain.weight.real(), scale * chain.weight.imag(), values_.row(0, 0)};
 }
 
-void ChainEvaluation::write_diffuse(const ChainPlan& plan, double scale, size_t num_paths, std::span<const ChannelNodes> channels) {
+void ChainEvaluation::write_diffuse(const ChainPlan& plan, double scale, const ChannelSpan& channels) {
   const ChainKernels& kernels = chain_kernels(values_.stride());
   for (const ChainPlan::Chain& chain : plan.chains) {
     const bool has_inner = chain.inner != ChainPlan::kNone;
     const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
     const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
-    for (size_t channel = 0; channel < channels.size(); ++channel) {
-      kernels.combine({path_of(chain, ends_of(chain, channel), scale), begins_specular, is_single}, values_.stride());
-      put(chain.place, num_paths, channels[channel]);
+    for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+      kernels.combine({path_of(chain, ends_of(chain, channels.first + channel), scale), begins_specular, is_single}, values_.stride());
+      put(chain.place, channels.nodes[channel]);
     }
   }
 }
@@ -55,7 +55,7 @@ const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, siz
 }
 
 void ChainEvaluation::write_coherent(const ChainPlan& plan, const Localiser& localise, const LevelView& level,
-                                     const RadioConstants& radio, size_t num_paths, std::span<const ChannelNodes> channels) {
+                                     const RadioConstants& radio, const ChannelSpan& channels) {
   if (plan.coherent.empty()) return;
   const ChainKernels& kernels = chain_kernels(values_.stride());
   const TraceCells cell_of(plan, localise, tables_.points);
@@ -70,25 +70,22 @@ void ChainEvaluation::write_coherent(const ChainPlan& plan, const Localiser& loc
     for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
     path.point = tables_.points.rows.row(point, 0);
     path.mesh = level.poses.meshes.row(plan.points[point].mesh_id, 0);
-    for (size_t channel = 0; channel < channels.size(); ++channel) {
-      const Ends ends = ends_of(chain, channel);
+    for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+      const Ends ends = ends_of(chain, channels.first + channel);
       path.path = path_of(chain, ends, scale);
       path.start_image = image_of(plan, chain.start, ends.start);
       path.end_image = image_of(plan, chain.end, ends.end);
       kernels.reflect(path, values_.stride());
-      put(chain.place, num_paths, channels[channel]);
+      put(chain.place, channels.nodes[channel]);
     }
   }
 }
 
 // The values of one path to their places.
-void ChainEvaluation::put(size_t place, size_t num_paths, const ChannelNodes& to) const {
+void ChainEvaluation::put(size_t place, const ChannelNodes& to) const {
   const double *length = values_.row(0, PathToCombine::kLength), *re = values_.row(0, PathToCombine::kRe);
   const double* im = values_.row(0, PathToCombine::kIm);
-  for (size_t node = 0; node < values_.num_nodes(); ++node) {
-    to.length[node * num_paths + place] = length[node];
-    to.amplitude[node * num_paths + place] = {re[node], im[node]};
-  }
+  for (size_t node = 0; node < values_.num_nodes(); ++node) to.set(node, place, length[node], {re[node], im[node]});
 }
 
 bool has_phase(const Radar& radar) {

@@ -6,19 +6,31 @@
 
 namespace echopath {
 
-// Where the values of one channel go, [node, path]: lengths in m, amplitudes in sqrt(W).
+// Where the values of one channel go, [node, num_paths]: lengths in m, amplitudes in sqrt(W).
 struct ChannelNodes {
   double* length;
   std::complex<double>* amplitude;
+  size_t num_paths, first_path;  // places count from there
+
+  void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
+    const size_t at = node * num_paths + first_path + place;
+    length[at] = length_there;
+    amplitude[at] = amplitude_there;
+  }
+};
+
+// Some channels [tx * num_rx + rx] for the antennas of the instants: one after the other from `first` on.
+struct ChannelSpan {
+  size_t first;
+  std::span<const ChannelNodes> nodes;
 };
 
 // Keeps its memory from block to block; for one thread at a time.
 class ChainEvaluation {
  public:
-  // channels [tx * num_rx + rx] for the antennas of the instants; `num_paths` of the block, of which those of the plan are
-  // written that do not stand among its others. The antennas must have no phase (has_phase).
+  // Writes the paths of the plan that do not stand among its others. The antennas must have no phase (has_phase).
   void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
-                  size_t num_paths, std::span<const ChannelNodes> channels);
+                  const ChannelSpan& channels);
 
  private:
   struct Ends {
@@ -27,10 +39,10 @@ class ChainEvaluation {
   Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
   PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale);
   const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
-  void write_diffuse(const ChainPlan& plan, double scale, size_t num_paths, std::span<const ChannelNodes> channels);
+  void write_diffuse(const ChainPlan& plan, double scale, const ChannelSpan& channels);
   void write_coherent(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
-                      size_t num_paths, std::span<const ChannelNodes> channels);
-  void put(size_t place, size_t num_paths, const ChannelNodes& to) const;
+                      const ChannelSpan& channels);
+  void put(size_t place, const ChannelNodes& to) const;
 
   ChainTables tables_;
   NodeRows values_;  // of one path, PathToCombine::Row

@@ -145,6 +145,26 @@ FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int tra
   return nodes;
 }
 
+FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter) {
+  FrameNodes nodes;
+  nodes.is_exact = true;
+  for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) nodes.times.push_back(start_time + radar.chirp_time(transmitter, chirp));
+  return nodes;
+}
+
+TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
+  TimeSampling sampling;
+  sampling.order = derivatives == ChirpDerivatives::kThird ? 4 : 2;
+  sampling.num_nodes = num_chirps * sampling.order;
+  std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
+  for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_nodes), 0.0);
+  for (int chirp = 0; chirp < num_chirps; ++chirp) {
+    sampling.first_node.push_back(chirp * sampling.order);
+    for (int d = 0; d < sampling.order; ++d) (*weights[d])[static_cast<size_t>(chirp * sampling.order + d)] = 1.0;
+  }
+  return sampling;
+}
+
 int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints) {
   return static_cast<int64_t>(pieces_of(start_time, start_time + radar.frame_duration(), breakpoints).size());
 }

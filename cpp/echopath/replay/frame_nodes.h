@@ -31,6 +31,11 @@ FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vec
 // `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle one at the window centre.
 FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter,
                        ChirpDerivatives derivatives = ChirpDerivatives::kThird);
+// One node in each chirp of one transmitter, at its window centre; no sampling.
+FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter);
+// Nodes in the place of those of centre_nodes that hold a value and then its derivatives: 1 of the first kind, 3 of the third.
+// They stand at chirp * (1 + derivatives) of the nodes.
+TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives);
 // Pieces into which breakpoints cut the frame that starts at start_time.
 int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints);
 

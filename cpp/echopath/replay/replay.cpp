@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/simd.h"
 #include "echopath/replay/evaluate_chains.h"
 #include "echopath/replay/motion_knots.h"
 #include "echopath/replay/node_tails.h"
@@ -16,6 +18,10 @@ namespace {
 
 constexpr std::array<int, 10> kOrders = {4, 6, 8, 10, 12, 14, 16, 20, 24, 32};
 constexpr size_t kStaticLevel = 0;
+// Paths whose legs and what these are made of stay in the second-level cache.
+constexpr size_t kPlannedTogether = 2000;
+// Amplitudes in this many chirps cost as much as one more node, with what a level costs that is tried in vain.
+constexpr int64_t kWorthOfANode = 8;
 
 // Coefficients fall about geometrically from these: orders above what that makes of a tail are the next to try.
 constexpr double kFirstPhase = 100.0;     // rad
@@ -41,10 +47,41 @@ struct Replayer::Level {
 
 // Memory of one block, kept for the next.
 struct Replayer::Workspace {
+  ChainPlanner plan_chains;
   ChainEvaluation evaluate_chains;
 };
 
 namespace {
+
+ECHOPATH_INLINE void add_weighted(const double* values, double weight, size_t count, double* __restrict sum) {
+  for (size_t i = 0; i < count; ++i) sum[i] += weight * values[i];
+}
+
+// Echoes at derivative_sampling nodes: with the lengths that a polynomial has at the chirps, and amplitudes that stand there.
+void join_chirps(const Echoes& polynomial, const Echoes& centres, Echoes& out) {
+  const auto count = static_cast<size_t>(polynomial.num_echoes), stride = static_cast<size_t>(out.sampling.order);
+  const TimeSampling& from = polynomial.sampling;
+  const auto order = static_cast<size_t>(from.order);
+  const std::vector<double>* const weights[] = {&from.value, &from.slope, &from.bend, &from.twist};
+  out.num_echoes = polynomial.num_echoes;
+  out.group.clear();
+  out.delay.assign(static_cast<size_t>(out.sampling.num_nodes) * count, 0.0);
+  out.amplitude.assign(out.delay.size(), 0.0);
+  for (size_t chirp = 0; chirp < from.first_node.size(); ++chirp) {
+    std::copy_n(centres.amplitude.data() + chirp * count, count, out.amplitude.data() + chirp * stride * count);
+    const double* first = polynomial.delay.data() + static_cast<size_t>(from.first_node[chirp]) * count;
+    for (size_t d = 0; d < stride; ++d) {
+      double* to = out.delay.data() + (chirp * stride + d) * count;
+      for (size_t k = 0; k < order; ++k) run_simd<add_weighted>(first + k * count, (*weights[d])[chirp * order + k], count, to);
+    }
+  }
+}
+
+std::vector<size_t> all_places(size_t count) {
+  std::vector<size_t> places(count);
+  std::iota(places.begin(), places.end(), size_t{0});
+  return places;
+}
 
 void to_delays(std::vector<Echoes>& lengths) {
   for (Echoes& channel : lengths) {
@@ -64,7 +101,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
   antennas_have_phase_ = has_phase(radar);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) mesh_moves_.push_back(paths.scene->is_moving(id));
   find_shapes();
-  levels_.resize(1 + shapes_.size() + radar.transmitters.size());
+  levels_.resize(1 + shapes_.size() + 2 * radar.transmitters.size());
 }
 
 Replayer::~Replayer() = default;
@@ -107,17 +144,17 @@ Instant Replayer::instant(double time) const {
 }
 
 FrameNodes Replayer::nodes_of(size_t index) const {
-  const ChirpDerivatives derivatives = settings_.per_sample ? ChirpDerivatives::kThird : ChirpDerivatives::kFirst;
   const double start = paths_.frame.start_time;
   if (index == kStaticLevel) return static_nodes(radar_, paths_.frame.trace_time);
-  if (index > shapes_.size()) {
-    return exact_nodes(radar_, start, exact_order(), static_cast<int>(index - shapes_.size() - 1), derivatives);
+  if (index >= centre_level(0)) return centre_nodes(radar_, start, static_cast<int>(index - centre_level(0)));
+  if (index >= exact_level(0)) {
+    return exact_nodes(radar_, start, exact_order(), static_cast<int>(index - exact_level(0)), derivatives());
   }
   const LevelShape& shape = shapes_[index - 1];
-  return chebyshev_nodes(radar_, start, *shape.cuts, shape.order, derivatives);
+  return chebyshev_nodes(radar_, start, *shape.cuts, shape.order, derivatives());
 }
 
-// Behind the polynomials comes a level for each transmitter, which knows that one alone.
+// Behind the polynomials come two levels for each transmitter, which know that one alone.
 const Replayer::Level& Replayer::level(size_t index) const {
   const std::lock_guard lock(levels_mutex_);
   std::unique_ptr<const Level>& slot = levels_[index];
@@ -126,7 +163,9 @@ const Replayer::Level& Replayer::level(size_t index) const {
   made->nodes = nodes_of(index);
   for (const double time : made->nodes.times) {
     Instant& posed = made->instants.emplace_back(instant(time));
-    if (index > shapes_.size()) posed.transmitters = {posed.transmitters[index - shapes_.size() - 1]};
+    if (index >= exact_level(0)) {
+      posed.transmitters = {posed.transmitters[(index - exact_level(0)) % radar_.transmitters.size()]};
+    }
   }
   made->find_poses(*paths_.scene);
   slot = std::move(made);
@@ -135,7 +174,7 @@ const Replayer::Level& Replayer::level(size_t index) const {
 
 std::unique_ptr<Replayer::Workspace> Replayer::take_workspace() const {
   const std::lock_guard lock(workspaces_mutex_);
-  if (workspaces_.empty()) return std::make_unique<Workspace>();
+  if (workspaces_.empty()) return std::make_unique<Workspace>(Workspace{ChainPlanner(paths_, localise_, settings_.specular), {}});
   std::unique_ptr<Workspace> last = std::move(workspaces_.back());
   workspaces_.pop_back();
   return last;
@@ -146,42 +185,71 @@ void Replayer::give_back(std::unique_ptr<Workspace> workspace) const {
   workspaces_.push_back(std::move(workspace));
 }
 
+std::vector<Echoes> Replayer::take_echoes(size_t count) const {
+  std::vector<Echoes> echoes(count);
+  const std::lock_guard lock(workspaces_mutex_);
+  for (Echoes& one : echoes) {
+    if (spare_.empty()) break;
+    one = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  return echoes;
+}
+
+void Replayer::recycle(std::span<Echoes> echoes) const {
+  const std::lock_guard lock(workspaces_mutex_);
+  for (Echoes& one : echoes) {
+    if (!one.delay.empty()) spare_.push_back(std::move(one));
+  }
+}
+
 // Lengths in m in the place of delays.
-std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const Level& level) const {
-  const size_t num_nodes = level.instants.size();
-  const size_t channels = level.instants.front().transmitters.size() * radar_.receivers.size();
-  std::vector<Echoes> out(channels);
+std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const Level& level, size_t transmitter) const {
+  const size_t num_nodes = level.instants.size(), num_receivers = radar_.receivers.size();
+  const size_t first = transmitter == kAll ? 0 : transmitter * num_receivers;
+  std::vector<Echoes> out = take_echoes(transmitter == kAll ? level.instants.front().transmitters.size() * num_receivers : num_receivers);
   std::vector<ChannelNodes> to;
-  for (size_t channel = 0; channel < channels; ++channel) {
+  for (size_t channel = 0; channel < out.size(); ++channel) {
     Echoes& echoes = out[channel];
-    if (!level.nodes.sampling.empty()) echoes.sampling = level.nodes.sampling[channel / radar_.receivers.size()];
+    if (!level.nodes.sampling.empty()) echoes.sampling = level.nodes.sampling[(first + channel) / num_receivers];
+    else echoes.sampling = {};
     echoes.num_echoes = static_cast<int64_t>(paths.size());
+    echoes.group.clear();
     echoes.delay.resize(num_nodes * paths.size());
     echoes.amplitude.resize(num_nodes * paths.size());
-    to.push_back({echoes.delay.data(), echoes.amplitude.data()});
+    to.push_back({echoes.delay.data(), echoes.amplitude.data(), paths.size(), 0});
   }
-  const ChainPlan plan = antennas_have_phase_ ? unshared(paths.size()) : plan_chains(paths_, localise_, settings_.specular, paths);
+  if (antennas_have_phase_) {
+    evaluate_one_by_one(paths, all_places(paths.size()), level.instants, {first, to});
+    return out;
+  }
   std::unique_ptr<Workspace> workspace = take_workspace();
-  workspace->evaluate_chains(plan, localise_, level.view(), radio_, paths.size(), to);
+  for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
+    const std::span<const int64_t> part = paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin));
+    for (ChannelNodes& channel : to) channel.first_path = begin;
+    const ChainPlan& plan = workspace->plan_chains(part);
+    workspace->evaluate_chains(plan, localise_, level.view(), radio_, {first, to});
+    evaluate_one_by_one(part, plan.others, level.instants, {first, to});
+  }
   give_back(std::move(workspace));
-  evaluate_one_by_one(paths, plan.others, level.instants, out);
   return out;
 }
 
 void Replayer::evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places,
-                                   std::span<const Instant> instants, std::vector<Echoes>& lengths) const {
+                                   std::span<const Instant> instants, const ChannelSpan& channels) const {
+  if (places.empty()) return;
   std::vector<int64_t> indices;
   for (const size_t place : places) indices.push_back(paths[place]);
   const LocalPaths block = localise_(indices);
   EvaluationScratch scratch(block.longest);
-  std::vector<double> length(lengths.size());
-  std::vector<std::complex<double>> amplitude(lengths.size());
+  const size_t num_channels = instants.front().transmitters.size() * instants.front().receivers.size();
+  std::vector<double> length(num_channels);
+  std::vector<std::complex<double>> amplitude(num_channels);
   for (size_t i = 0; i < places.size(); ++i) {
     for (size_t node = 0; node < instants.size(); ++node) {
       evaluate_path(block.paths[i], instants[node], radio_, scratch, {length.data(), amplitude.data(), 1});
-      for (size_t channel = 0; channel < lengths.size(); ++channel) {
-        lengths[channel].delay[node * paths.size() + places[i]] = length[channel];
-        lengths[channel].amplitude[node * paths.size() + places[i]] = amplitude[channel];
+      for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+        channels.nodes[channel].set(node, places[i], length[channels.first + channel], amplitude[channels.first + channel]);
       }
     }
   }
@@ -199,19 +267,40 @@ std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, int transm
   return echoes;
 }
 
-void Replayer::forget_exact(int transmitter) const {
-  const std::lock_guard lock(levels_mutex_);
-  levels_[exact_level(transmitter)].reset();
+std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, int transmitter) const {
+  std::vector<Echoes> lengths = at_nodes(indices, level(static_cast<size_t>(index)), static_cast<size_t>(transmitter));
+  std::vector<Echoes> amplitudes = at_nodes(indices, level(centre_level(transmitter)));
+  std::vector<Echoes> echoes = take_echoes(lengths.size());
+  for (size_t channel = 0; channel < echoes.size(); ++channel) {
+    echoes[channel].sampling = derivative_sampling(radar_.waveform.num_chirps, derivatives());
+    join_chirps(lengths[channel], amplitudes[channel], echoes[channel]);
+  }
+  recycle(lengths);
+  recycle(amplitudes);
+  to_delays(echoes);
+  return echoes;
 }
+
+int64_t Replayer::num_nodes_by_chirp() const { return int64_t{radar_.waveform.num_chirps} * (settings_.per_sample ? 4 : 2); }
+
+void Replayer::forget_chirps(int transmitter) const {
+  const std::lock_guard lock(levels_mutex_);
+  for (const size_t index : {exact_level(transmitter), centre_level(transmitter)}) levels_[index].reset();
+}
+
+// Order at which a path's polynomials would follow it, 0 where they do.
+struct Replayer::NeededOrder {
+  double length = 0.0, amplitude = 0.0;
+};
 
 std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index, std::vector<FailedPath>& failed) const {
   const Level& polynomial = level(static_cast<size_t>(index));
   std::vector<Echoes> echoes = at_nodes(indices, polynomial);
-  std::vector<double> needed(indices.size());  // order
+  std::vector<NeededOrder> needed(indices.size());
   for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, needed);
   for (size_t p = 0; p < indices.size(); ++p) {
-    if (needed[p] == 0.0) continue;
-    failed.push_back({indices[p], next_level(index, needed[p])});
+    if (needed[p].length == 0.0 && needed[p].amplitude == 0.0) continue;
+    failed.push_back(this->failed(indices[p], index, needed[p]));
     for (Echoes& channel : echoes) {
       for (size_t i = p; i < channel.amplitude.size(); i += indices.size()) channel.amplitude[i] = 0.0;
     }
@@ -221,14 +310,23 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
 }
 
 // Orders that paths of one channel would need which the polynomials do not follow.
-void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& lengths, std::vector<double>& needed) const {
+void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& lengths, std::vector<NeededOrder>& needed) const {
   const NodeTails tails = node_tails(nodes, lengths);
+  const auto raise = [&](double tolerance, double tail, double first, double& order) {
+    if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
+  };
   for (size_t p = 0; p < needed.size(); ++p) {
-    const double phase = radio_.wavenumber * tails.length[p], amplitude = tails.amplitude[p];
-    if (phase <= settings_.phase_tolerance && amplitude <= settings_.amplitude_tolerance) continue;
-    needed[p] = std::max({needed[p], order_for(settings_.phase_tolerance, phase, kFirstPhase, nodes.order),
-                          order_for(settings_.amplitude_tolerance, amplitude, kFirstAmplitude, nodes.order)});
+    raise(settings_.phase_tolerance, radio_.wavenumber * tails.length[p], kFirstPhase, needed[p].length);
+    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].amplitude);
   }
+}
+
+// Amplitudes that a polynomial follows late or never are left to the chirps.
+FailedPath Replayer::failed(int64_t path, int index, const NeededOrder& needed) const {
+  const int next = next_level(index, std::max(needed.length, needed.amplitude));
+  const bool is_late = next > num_levels() || num_nodes(next) * kWorthOfANode >= radar_.waveform.num_chirps;
+  if (needed.length == 0.0 && is_late) return {path, index, true};
+  return {path, next, false};
 }
 
 // The first after `index` of at least that order; where the motions have knots, any that keeps them apart will do.

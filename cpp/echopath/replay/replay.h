@@ -26,7 +26,10 @@ struct ReplaySettings {
 struct FailedPath {
   int64_t path;
   int next_level;
+  bool by_chirp;  // Replayer::by_chirp goes on at that level: lengths do follow its polynomial
 };
+
+struct ChannelSpan;
 
 class Replayer {
  public:
@@ -53,9 +56,16 @@ class Replayer {
   int first_level(int64_t path) const;
   // Of the channels of one transmitter [rx], at num_exact_nodes() nodes: some in each of its chirps.
   std::vector<Echoes> exact(std::span<const int64_t> paths, int transmitter) const;
-  // Frees the scene as posed for that.
-  void forget_exact(int transmitter) const;
   int64_t num_exact_nodes() const;
+  // Likewise, at num_nodes_by_chirp() nodes: lengths by the polynomial of `level`, which must follow them, and amplitudes as they
+  // are in each chirp. What fades behind an edge of its surface has a root in its amplitude, which no polynomial follows.
+  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int level, int transmitter) const;
+  int64_t num_nodes_by_chirp() const;
+  // Frees the scene as posed for the chirps of a transmitter.
+  void forget_chirps(int transmitter) const;
+
+  // Takes back echoes that are done with, for their memory.
+  void recycle(std::span<Echoes> echoes) const;
 
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
@@ -73,14 +83,21 @@ class Replayer {
   FrameNodes nodes_of(size_t index) const;
   int exact_order() const;
   Instant instant(double time) const;
+  ChirpDerivatives derivatives() const { return settings_.per_sample ? ChirpDerivatives::kThird : ChirpDerivatives::kFirst; }
   size_t exact_level(int transmitter) const { return 1 + shapes_.size() + static_cast<size_t>(transmitter); }
+  size_t centre_level(int transmitter) const { return exact_level(transmitter) + radar_.transmitters.size(); }
   const Level& level(size_t index) const;
   std::unique_ptr<Workspace> take_workspace() const;
   void give_back(std::unique_ptr<Workspace> workspace) const;
-  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const Level& level) const;
+  // Of the channels of one transmitter of the level, or of all.
+  static constexpr size_t kAll = ~size_t{0};
+  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const Level& level, size_t transmitter = kAll) const;
   void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, std::span<const Instant> instants,
-                           std::vector<Echoes>& lengths) const;
-  void raise_orders(const FrameNodes& nodes, const Echoes& lengths, std::vector<double>& needed) const;
+                           const ChannelSpan& channels) const;
+  std::vector<Echoes> take_echoes(size_t count) const;
+  struct NeededOrder;
+  void raise_orders(const FrameNodes& nodes, const Echoes& lengths, std::vector<NeededOrder>& needed) const;
+  FailedPath failed(int64_t path, int index, const NeededOrder& needed) const;
   int next_level(int index, double needed_order) const;
   void find_mesh_levels() const;
   bool fits(const Level& level, uint32_t mesh_id) const;
@@ -100,6 +117,7 @@ class Replayer {
   mutable std::vector<std::unique_ptr<const Level>> levels_;
   mutable std::mutex workspaces_mutex_;
   mutable std::vector<std::unique_ptr<Workspace>> workspaces_;  // not in use
+  mutable std::vector<Echoes> spare_;                           // likewise
 };
 
 }  // namespace echopath

@@ -18,23 +18,32 @@ class SegmentIds {
     if (2 * size_ >= entries_.size()) grow();
     const uint64_t hash = hash_of(hits, count, kind);
     size_t slot = hash & (entries_.size() - 1);
-    while (entries_[slot].hits && !is(entries_[slot], hash, hits, count, kind)) slot = (slot + 1) & (entries_.size() - 1);
+    while (is_taken(entries_[slot]) && !is(entries_[slot], hash, hits, count, kind)) slot = (slot + 1) & (entries_.size() - 1);
     Entry& entry = entries_[slot];
-    if (!entry.hits) {
-      entry = {hits, hash, kind, count, kNone};
+    if (!is_taken(entry)) {
+      entry = {hits, hash, kind, kNone, static_cast<uint16_t>(count), turn_};
       ++size_;
     }
     return entry.value;
   }
 
+  // Forgets all, and keeps the memory.
+  void clear() {
+    size_ = 0;
+    if (++turn_ != 0) return;
+    entries_.assign(entries_.size(), {});
+    turn_ = 1;
+  }
+
  private:
   struct Entry {
     const Hit* hits = nullptr;
-    uint64_t hash, kind;
-    int count;
-    uint32_t value;
+    uint64_t hash = 0, kind = 0;
+    uint32_t value = kNone;
+    uint16_t count = 0, turn = 0;  // of `clear` in which it was taken
   };
 
+  bool is_taken(const Entry& entry) const { return entry.turn == turn_; }
   static bool is(const Entry& entry, uint64_t hash, const Hit* hits, int count, uint64_t kind) {
     return entry.hash == hash && entry.kind == kind && entry.count == count &&
            (entry.hits == hits || std::memcmp(entry.hits, hits, static_cast<size_t>(count) * sizeof(Hit)) == 0);
@@ -55,15 +64,16 @@ class SegmentIds {
     std::vector<Entry> old(entries_.empty() ? 256 : 2 * entries_.size());
     old.swap(entries_);
     for (const Entry& entry : old) {
-      if (!entry.hits) continue;
+      if (!is_taken(entry)) continue;
       size_t slot = entry.hash & (entries_.size() - 1);
-      while (entries_[slot].hits) slot = (slot + 1) & (entries_.size() - 1);
+      while (is_taken(entries_[slot])) slot = (slot + 1) & (entries_.size() - 1);
       entries_[slot] = entry;
     }
   }
 
   std::vector<Entry> entries_;  // power of two, at most half full
   size_t size_ = 0;
+  uint16_t turn_ = 1;
 };
 
 }  // namespace echopath

@@ -18,9 +18,17 @@ constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: p
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
 constexpr int64_t kLargestBlock = 8000;  // no power of two: rows of nodes would share the sets of the first-level cache
 
+// Echoes with nodes in every chirp: few at a time, whose memory the next take over; a page that is touched for the first time costs
+// as much as a path does at all its nodes.
+constexpr int64_t kNodesOfChirps = 128;
+constexpr int64_t kValuesInFlight = 1 << 19;
+constexpr int64_t kLeastBlock = 32;
+
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);
-  return std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
+  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
+  if (num_nodes <= kNodesOfChirps) return most;
+  return std::min(most, std::max(kLeastBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_nodes)));
 }
 
 constexpr int64_t kPathsOfTask = 1 << 15;  // whose levels are found
@@ -96,26 +104,30 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink
   run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto&) { return replayer_.still(part); }, sink);
 }
 
-// Each path at the order that its meshes need; where that was not enough, at the next.
+// Each path at the order that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
 void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const {
+  std::vector<std::vector<int64_t>> by_chirp(by_level.size());
   for (int level = 1; level <= replayer_.num_levels(); ++level) {
     const Extent extent{0, num_channels(), replayer_.num_nodes(level)};
     const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
     for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, sink)) {
-      by_level[static_cast<size_t>(failed.next_level)].push_back(failed.path);
+      (failed.by_chirp ? by_chirp : by_level)[static_cast<size_t>(failed.next_level)].push_back(failed.path);
     }
   }
-  add_exact(by_level.back(), sink);
+  by_chirp.back() = std::move(by_level.back());
+  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) add_chirps(by_chirp, transmitter, sink);
 }
 
-// Transmitters one after another: the scene as posed at the chirps of one is all that is held.
-void ReplayStream::add_exact(const std::vector<int64_t>& paths, const Sink& sink) const {
-  const int num_receivers = num_channels() / num_transmitters_;
-  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
-    run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.num_exact_nodes()},
-               [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, sink);
-    replayer_.forget_exact(transmitter);
+// The scene as posed at the chirps of one transmitter is all that is held. At the last level stand paths that no polynomial follows.
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, const Sink& sink) const {
+  const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
+  for (int level = 1; level <= replayer_.num_levels(); ++level) {
+    run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp()},
+               [&](auto part, auto&) { return replayer_.by_chirp(part, level, transmitter); }, sink);
   }
+  run_blocks(by_level.back(), {first, num_receivers, replayer_.num_exact_nodes()},
+             [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, sink);
+  replayer_.forget_chirps(transmitter);
 }
 
 // Blocks are replayed in parallel, a fixed number at a time, and handed over in their order. Returns the paths that `replay`
@@ -143,6 +155,7 @@ std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& pat
     for (size_t channel = 0; channel < by_channel.size(); ++channel) {
       if (job_) job_->throw_if_cancelled();
       sink(extent.first_channel + static_cast<int>(channel), by_channel[channel], {paths.data() + begin, handed_over});
+      replayer_.recycle(by_channel[channel]);
     }
     for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
   }

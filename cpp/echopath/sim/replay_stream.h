@@ -31,7 +31,7 @@ class ReplayStream {
   using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<FailedPath>&)>;
   void add_still(const std::vector<int64_t>& paths, const Sink& sink) const;
   void add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const;
-  void add_exact(const std::vector<int64_t>& paths, const Sink& sink) const;
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, const Sink& sink) const;
   // Channels that `replay` makes echoes of, at how many nodes.
   struct Extent {
     int first_channel, num_channels;

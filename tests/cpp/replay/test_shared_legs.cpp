@@ -134,7 +134,9 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Radar radar = array();
   const Paths paths = record(radar);
   const std::vector<int64_t> indices = all_of(paths);
-  const ChainPlan plan = plan_chains(paths, Localiser(paths, hit_patches(paths)), SpecularPoints::kMaterial, indices);
+  const Localiser localise(paths, hit_patches(paths));
+  ChainPlanner planner(paths, localise, SpecularPoints::kMaterial);
+  const ChainPlan& plan = planner(indices);
   EXPECT_EQ(plan.chains.size() + plan.coherent.size() + plan.others.size(), indices.size());
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
   EXPECT_LT(plan.points.size(), plan.legs.size());

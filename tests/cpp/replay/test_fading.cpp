@@ -1,0 +1,90 @@
+// What turns away from the radar fades with the root of a cosine: its amplitude is that of each chirp, its length a polynomial.
+#include <gtest/gtest.h>
+
+#include "echopath/replay/replay.h"
+#include "echopath/signal/echo_states.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+using namespace testing;
+
+constexpr double kPhaseTolerance = 2e-5;  // rad: the aim of 1e-5; tails are estimates
+constexpr double kRounding = 1e-10;       // relative, of the same amplitude at another node
+constexpr double kSlopeTolerance = 3e-6;  // m/s beside 120 m/s: differences over 2 us lack a third derivative of 5e6 m/s^3
+
+// A rotor: its sides come into view and leave it within a frame.
+Paths record(const Radar& radar) {
+  Scene scene;
+  Surface surface = ellipsoid(Vec3::Zero(), {.3, .02, .02}, 2);
+  Node node;
+  node.name = "rotor";
+  node.placement = Eigen::Translation3d(8, 0.5, 0) * Transform::Identity();
+  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  node.material = lambert(0.4);
+  node.motion = std::make_shared<LinearMotion>(Vec3::Zero(), Vec3(0, 0, 200));
+  scene.add(node);
+  TraceSettings settings;
+  settings.num_rays = 1000;
+  settings.max_bounces = 1;
+  return trace(scene, radar, settings);
+}
+
+Radar two_by_two() {
+  Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
+  radar.waveform.num_chirps = 64;
+  radar.transmitters.push_back(antenna_at(Vec3(0, 0.02, 0)));
+  radar.receivers.push_back(antenna_at(Vec3(0, 0.03, 0)));
+  return radar;
+}
+
+// Paths of whatever level whose lengths follow its polynomial and whose amplitudes do not.
+std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int level) {
+  std::vector<int64_t> indices, found;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) indices.push_back(path);
+  std::vector<FailedPath> failed;
+  replayer.interpolated(indices, level, failed);
+  for (const FailedPath& one : failed) {
+    if (one.by_chirp) found.push_back(one.path);
+  }
+  return found;
+}
+
+TEST(Fading, AmplitudesAreThoseOfTheChirps) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  const int level = replayer.first_level(0);
+  const std::vector<int64_t> indices = fading(paths, replayer, level);
+  ASSERT_GT(indices.size(), 20u);
+  std::vector<double> lengths, before, after;
+  std::vector<std::complex<double>> amplitudes, ignored;
+  EchoStates state;
+  double darkest = 1.0, brightest = 0.0;
+  for (const int transmitter : {0, 1}) {
+    const std::vector<Echoes> echoes = replayer.by_chirp(indices, level, transmitter);
+    for (const int chirp : {0, 20, 63}) {
+      const double time = paths.frame.start_time + radar.chirp_time(transmitter, chirp), step = 1e-6;
+      replayer.evaluate(indices, time, lengths, amplitudes);
+      replayer.evaluate(indices, time - step, before, ignored);
+      replayer.evaluate(indices, time + step, after, ignored);
+      for (size_t receiver = 0; receiver < 2; ++receiver) {
+        for (size_t p = 0; p < indices.size(); ++p) {
+          const size_t at = (2 * static_cast<size_t>(transmitter) + receiver) * indices.size() + p;
+          evaluate_states(echoes[receiver], chirp, static_cast<int64_t>(p), 1, state);
+          EXPECT_LT(kTwoPi * 77e9 * std::abs(state.delay[0] - lengths[at] / kSpeedOfLight), kPhaseTolerance);
+          EXPECT_NEAR(state.rate[0] * kSpeedOfLight, (after[at] - before[at]) / (2 * step), kSlopeTolerance);
+          const std::complex<double> amplitude(state.amplitude[0], state.amplitude[1]);
+          EXPECT_LE(std::abs(amplitude - amplitudes[at]), kRounding * std::abs(amplitudes[at]));
+          darkest = std::min(darkest, std::abs(amplitude));
+          brightest = std::max(brightest, std::abs(amplitude));
+        }
+      }
+    }
+  }
+  EXPECT_LT(darkest, 1e-3 * brightest);
+}
+
+}  // namespace
+}  // namespace echopath

@@ -4,9 +4,14 @@
 namespace echopath {
 namespace {
 
+// Adding this leaves multiples of 2^-29, whose products with the number of a sample are exact up to 2^24 samples.
+constexpr double kSplit = 12582912.0;  // 1.5 * 2^23
+
 ECHOPATH_INLINE void add_tone(double frequency, double re, double im, int num_samples, double* out_re, double* out_im) {
+  const double high = (frequency + kSplit) - kSplit, low = frequency - high;
   for (int n = 0; n < num_samples; ++n) {
-    const Phasor phasor = phasor_of_cycles(frequency * n);
+    const double turns = high * n;
+    const Phasor phasor = phasor_of_cycles((turns - round_to_integer(turns)) + low * n);
     out_re[n] += re * phasor.re - im * phasor.im;
     out_im[n] += re * phasor.im + im * phasor.re;
   }

@@ -78,6 +78,11 @@ TEST(Methods, LongRecurrenceDoesNotDrift) {
   EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kLastPhaseRounding);
 }
 
+// A product of frequency and sample, rounded before its whole turns are removed, would leave 1e-11 rad without fused operations.
+TEST(Methods, LongDirectSumKeepsItsPhase) {
+  EXPECT_LT(tone_error(*make_direct(65536), 65536).largest, kToneRounding);
+}
+
 TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
   for (const int num_samples : {1, 2, 4, 6, 16, 64, 99, 100, 255, 512}) {
     for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {

@@ -24,14 +24,6 @@ struct Taper {
   }
 };
 
-// One windowed, padded transform: in[i * stride] -> buffer [fft.size()].
-void transform(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t stride, FftBuffer& buffer) {
-  const int64_t n = static_cast<int64_t>(taper.weight.size());
-  for (int64_t i = 0; i < n; ++i) buffer[i] = taper.weight[i] * in[i * stride];
-  std::fill(buffer.data() + n, buffer.data() + buffer.size(), std::complex<double>{});
-  fft.transform(buffer);
-}
-
 // [rows, samples] -> [rows, range]
 std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows,
                                                   const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
@@ -41,13 +33,34 @@ std::vector<std::complex<double>> range_transform(const std::complex<double>* cu
   parallel_for(num_rows, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
     FftBuffer buffer(fft_size);
-    transform(fft, taper, cube + row * num_samples, 1, buffer);
+    const std::complex<double>* in = cube + row * num_samples;
+    for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper.weight[i] * in[i];
+    fft.transform(buffer);
     std::copy_n(buffer.data(), num_ranges, profiles.data() + row * num_ranges);
   });
   return profiles;
 }
 
-// [maps, chirps, range] -> [maps, velocity, range], zero velocity in the middle
+// A strip of neighbouring columns of one map, in[chirp * num_ranges + column] -> out[velocity * num_ranges + column], zero velocity
+// in the middle. All columns of a row at once: rows are often a power of two apart and share their cache sets, so that a line
+// would be gone before the next column asks for it.
+void transform_strip(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, int64_t num_columns,
+                     std::complex<double>* out) {
+  std::vector<FftBuffer> columns;
+  for (int64_t k = 0; k < num_columns; ++k) columns.emplace_back(fft.size());
+  for (size_t i = 0; i < taper.weight.size(); ++i, in += num_ranges) {
+    for (int64_t k = 0; k < num_columns; ++k) columns[k][i] = taper.weight[i] * in[k];
+  }
+  for (FftBuffer& column : columns) fft.transform(column);
+  // Row v holds frequency v - size / 2.
+  const int64_t size = fft.size(), first = size - size / 2;
+  for (int64_t v = 0; v < size; ++v, out += num_ranges) {
+    const int64_t bin = first + v < size ? first + v : first + v - size;
+    for (int64_t k = 0; k < num_columns; ++k) out[k] = columns[k][bin];
+  }
+}
+
+// [maps, chirps, range] -> [maps, velocity, range]
 std::vector<std::complex<double>> doppler_transform(const std::vector<std::complex<double>>& profiles, int64_t num_maps,
                                                     const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
@@ -57,13 +70,9 @@ std::vector<std::complex<double>> doppler_transform(const std::vector<std::compl
   parallel_for(num_maps * num_strips, [&](int64_t task) {
     if (job) job->throw_if_cancelled();
     const int64_t map = task / num_strips, first = task % num_strips * kColumnsPerTask;
-    FftBuffer buffer(fft_size);
-    for (int64_t r = first; r < std::min(first + kColumnsPerTask, num_ranges); ++r) {
-      transform(fft, taper, profiles.data() + map * num_chirps * num_ranges + r, num_ranges, buffer);
-      std::complex<double>* out = values.data() + map * fft_size * num_ranges + r;
-      // Row v holds frequency v - fft_size / 2.
-      for (int64_t v = 0; v < fft_size; ++v) out[v * num_ranges] = buffer[(v + fft_size - fft_size / 2) % fft_size];
-    }
+    const int64_t num_columns = std::min<int64_t>(kColumnsPerTask, num_ranges - first);
+    transform_strip(fft, taper, profiles.data() + map * num_chirps * num_ranges + first, num_ranges, num_columns,
+                    values.data() + map * fft_size * num_ranges + first);
   });
   return values;
 }

@@ -168,26 +168,58 @@ void EchoTiles::cut(const std::vector<uint64_t>& order) {
   resize_large(nodes_, size);
 }
 
+namespace {
+
+// Where the values of one echo stand in its block.
+struct Source {
+  const double* delay;
+  const double* amplitude;  // re, im
+  int64_t stride;           // echoes, from node to node
+};
+
+// All nodes of one vector of echoes. Those of the next, far apart in memory, are on their way meanwhile.
+void gather_vector(const Source* from, const Source* next, int count, int num_nodes, double* out) {
+  for (int k = 0; k < num_nodes; ++k, out += 3 * kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Source& source = from[lane];
+      const int64_t at = k * source.stride, next_at = k * next[lane].stride;
+      __builtin_prefetch(next[lane].delay + next_at);
+      __builtin_prefetch(next[lane].amplitude + 2 * next_at);
+      out[lane] = source.delay[at];
+      out[kLanes + lane] = lane < count ? source.amplitude[2 * at] : 0.0;
+      out[2 * kLanes + lane] = lane < count ? source.amplitude[2 * at + 1] : 0.0;
+    }
+  }
+}
+
+// `source_of`(echo of the tile, however far beyond its last). The last vector is filled up without amplitude.
+template <class SourceOf>
+void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
+  Source sources[2][kLanes];
+  const auto find_sources = [&](int begin) {
+    for (int lane = 0; lane < kLanes; ++lane) sources[begin / kLanes % 2][lane] = source_of(begin + lane);
+  };
+  find_sources(0);
+  for (int begin = 0; begin < count; begin += kLanes, out += int64_t{num_nodes} * 3 * kLanes) {
+    find_sources(begin + kLanes);
+    const int now = begin / kLanes % 2;
+    gather_vector(sources[now], sources[1 - now], count - begin, num_nodes, out);
+  }
+}
+
+}  // namespace
+
 void EchoTiles::gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
   parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
     const Tile& tile = tiles_[static_cast<size_t>(i)];
-    double* out = nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes;
-    const int padded = (tile.count + kLanes - 1) / kLanes * kLanes;
-    for (int p = 0; p < padded; ++p) {
-      const bool is_real = p < tile.count;
+    const auto source_of = [&](int p) {
       const int64_t place = first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1);
-      const uint64_t index = order[static_cast<size_t>(place)] & index_mask;
+      const uint64_t index = order[static_cast<size_t>(place)] & index_mask, echo = index & local_mask;
       const Echoes& block = blocks[static_cast<size_t>(index >> local_bits_)];
-      double* at = out + int64_t{p / kLanes} * num_nodes_ * 3 * kLanes + p % kLanes;
-      auto from = static_cast<int64_t>(index & local_mask);
-      for (int k = 0; k < num_nodes_; ++k, at += 3 * kLanes, from += block.num_echoes) {
-        const std::complex<double> amplitude = block.amplitude[static_cast<size_t>(from)];
-        at[0] = block.delay[static_cast<size_t>(from)];
-        at[kLanes] = is_real ? amplitude.real() : 0.0;
-        at[2 * kLanes] = is_real ? amplitude.imag() : 0.0;
-      }
-    }
+      return Source{block.delay.data() + echo, reinterpret_cast<const double*>(block.amplitude.data() + echo), block.num_echoes};
+    };
+    gather_tile(tile.count, num_nodes_, source_of, nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes);
   });
 }
 

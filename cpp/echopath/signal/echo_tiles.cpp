@@ -217,7 +217,8 @@ void EchoTiles::gather(std::span<const Echoes> blocks, const std::vector<uint64_
       const int64_t place = first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1);
       const uint64_t index = order[static_cast<size_t>(place)] & index_mask, echo = index & local_mask;
       const Echoes& block = blocks[static_cast<size_t>(index >> local_bits_)];
-      return Source{block.delay.data() + echo, reinterpret_cast<const double*>(block.amplitude.data() + echo), block.num_echoes};
+      const auto* amplitude = reinterpret_cast<const double*>(block.amplitude.data() + echo);
+      return Source{block.delay.data() + echo, amplitude, block.num_echoes};
     };
     gather_tile(tile.count, num_nodes_, source_of, nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes);
   });

@@ -61,7 +61,8 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
       re[lane] = states.amplitude[2 * (p + lane)];
       im[lane] = states.amplitude[2 * (p + lane) + 1];
     }
-    const Tones<1> tones = tones_of<PhasorError::kRounding>(model, States<1>{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}});
+    const States<1> here{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}};
+    const Tones<1> tones = tones_of<PhasorError::kRounding>(model, here);
     store(out.frequency + p, tones.frequency.of[0]);
     store(out.re + p, tones.re.of[0]);
     store(out.im + p, tones.im.of[0]);

@@ -11,13 +11,17 @@ screen_packages=(xvfb xauth)
 viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
+sanitized_dir=$PWD/build/asan
+# C++ modules whose tests run sanitized, too: those that read files, hold geometry and shoot rays. `cmake --preset asan` builds all.
+sanitized_modules=(base fft motion scene em radar)
 python=.venv/bin/python
 
 usage() {
   cat <<'TEXT'
 usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> out/demo/ (OPTIONS go to `echopath demo`)
        ./bootstrap.sh demo --view      likewise, then the viewer, which shows which rays made which cell
-       ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest)
+       ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest), those in C++
+                                       of some modules once more under the address and undefined-behaviour sanitizers
 TEXT
 }
 
@@ -105,18 +109,36 @@ run_pytest() {
   fi
 }
 
+run_ctest() {
+  local dir=$1
+  shift
+  ctest --test-dir "$dir" --output-on-failure "$@" 2>&1 | tee "$dir/ctest.log"
+}
+
+run_sanitized() {
+  rm -f "$sanitized_dir/ctest.log"
+  cmake --preset asan >"$sanitized_dir.log" &&
+    cmake --build "$sanitized_dir" --parallel "$(nproc)" --target "${sanitized_modules[@]/#/test_}" &&
+    run_ctest "$sanitized_dir" --no-tests=error -R "^($(IFS='|' && echo "${sanitized_modules[*]}"))(_hard)?\$"
+}
+
+closing_line() { grep 'tests passed' "$1/ctest.log"; }
+
 run_tests() {
-  local cpp_status=0 python_status=0
+  local cpp_status=0 sanitized_status=0 python_status=0
   say "building the C++ tests"
   cmake --build "$build_dir" --parallel "$(nproc)"
   say "C++ tests"
-  ctest --test-dir "$build_dir" --output-on-failure 2>&1 | tee "$build_dir/ctest.log" || cpp_status=$?
+  run_ctest "$build_dir" || cpp_status=$?
+  say "C++ tests under the address and undefined-behaviour sanitizers: ${sanitized_modules[*]}"
+  run_sanitized || sanitized_status=$?
   say "Python tests"
   run_pytest "$@" 2>&1 | tee "$build_dir/pytest.log" || python_status=$?
   say "results"
-  printf 'ctest:  %s\n' "$(grep 'tests passed' "$build_dir/ctest.log" || echo "ended with $cpp_status")"
+  printf 'ctest, sanitized: %s\n' "$(closing_line "$sanitized_dir" || echo "ended with $sanitized_status")"
+  printf 'ctest:  %s\n' "$(closing_line "$build_dir" || echo "ended with $cpp_status")"
   printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log" | sed 's/^=* *//; s/ *=*$//')"
-  [ "$cpp_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
+  [ "$cpp_status" -eq 0 ] && [ "$sanitized_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
 }
 
 verb=${1:-}

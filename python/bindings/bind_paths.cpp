@@ -152,7 +152,7 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
-      .def_property_readonly("flags", path_column(&Paths::flags), "[P] 1: recorded as the reversal of another path; else 0")
+      .def_property_readonly("flags", path_column(&Paths::flags), "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays")
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter")
       .def_property_readonly("curved_cell", &curved_cell_of,

@@ -32,14 +32,33 @@ auto rows(std::array<T, ProbedChirp::kSamples> ProbedChirp::* field) {
   };
 }
 
+// Of the first chirp; no rows before there is one.
+const std::vector<RayShare>& first_shares(const SignalProbe& self) {
+  static const std::vector<RayShare> none;
+  return self.chirps.empty() ? none : self.chirps.front().shares;
+}
+
+py::array share_fields(const SignalProbe& self) {
+  std::vector<std::complex<double>> values;
+  for (const RayShare& share : first_shares(self)) values.insert(values.end(), share.field.begin(), share.field.end());
+  const auto count = static_cast<Size>(first_shares(self).size());
+  return numpy_take(std::move(values), {count, Size{RayShare::kSamples}});
+}
+
+py::array share_powers(const SignalProbe& self) {
+  std::vector<double> values;
+  for (const RayShare& share : first_shares(self)) values.push_back(share.power);
+  return numpy_take(std::move(values));
+}
+
 }  // namespace
 
 void bind_signal_probe(py::module_& m) {
   py::class_<SignalProbe>(m, "SignalProbe",
                           R"(Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
 
-Two chirps of the frame (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each as direct sums of
-all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly at the chirp.)")
+A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each as
+direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly there.)")
       .def(py::init([](uint64_t seed) { return SignalProbe{seed, 0, {}}; }), py::kw_only(), py::arg("seed") = 1)
       .def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
       .def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")
@@ -55,6 +74,14 @@ all echoes, and moving echoes, the strongest and random ones of all blocks of pa
       .def_property_readonly("largest_phase_error", column(&ProbedChirp::largest_phase_error), "[N] in rad")
       .def_property_readonly("amplitude_error", column(&ProbedChirp::amplitude_error),
                              "[N] rms of the differences of amplitudes in sqrt(W) over their rms")
+      .def_property_readonly("share_field", &share_fields,
+                             "[2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, of "
+                             "both halves of the rays of each batch in turn, then of the paths that rays did not find")
+      .def_property_readonly("share_power", &share_powers,
+                             "[2 batches + 1] in W: sums of |amplitude|^2 of the paths over rough surfaces, likewise")
+      .def_property_readonly("power_sum", column(&ProbedChirp::power_sum), "[N] in W, sum of |amplitude|^2 of all paths")
+      .def_property_readonly("strongest", column(&ProbedChirp::strongest),
+                             "[N] in W, the largest |amplitude|^2 of a path that rays found")
       .def("__repr__", [](const SignalProbe& self) {
         return "SignalProbe(" + std::to_string(self.chirps.size()) + " chirps)";
       });

@@ -29,7 +29,7 @@ from . import actors
 from .actors import Actor, Part
 from .detections import Detections, detect, detect_frame
 from .families import Families, families
-from .guard import Check, GuardWarning, check_signal
+from .guard import Check, GuardWarning, check_rays, check_signal
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .measures import power_by_chirp
 from .parts import Parts, decompose
@@ -73,7 +73,7 @@ __all__ = [
     "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection",
     "Sight", "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity",
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate",
-    "annotate_frame", "beamform", "boltzmann", "cfar", "check_signal", "compensate_tdm", "decompose", "detect",
+    "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect",
     "detect_frame", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame",
     "load_labels", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads",
     "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power",

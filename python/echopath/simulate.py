@@ -10,7 +10,7 @@ from .azimuth_map import checked_settings, sees_azimuth
 from .detections.checks import check_keywords
 from .effects import of_paths
 from .families import check_objects
-from .guard import check_signal, warn_of
+from .guard import check_rays, check_signal, warn_of
 from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
@@ -124,7 +124,8 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
         False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
-    guard: whether the signal is held against slower ways at a few places: see `Frame.checks`
+    guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
+        other: see `Frame.checks`
     progress: callable (stage, fraction) or None
     Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning) where a check disagrees
     by more than is promised.
@@ -150,7 +151,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
                   part_of_path=group_of_path, noise_seed=noise_seed,
                   spectrum_settings={"window": window, "zero_pad": zero_pad},
                   angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
-                  keyframes=keyframes, checks=check_signal(whole, probe, tolerance=tolerance) if guard else [],
+                  keyframes=keyframes, checks=_checks(whole, probe, tolerance, paths.frame) if guard else [],
                   stages=clock.stages)
     warn_of(frame.checks, stacklevel=2)
     with clock("spectra"):
@@ -199,6 +200,10 @@ def _cubes(paths, radar, partitions: dict, families, settings: dict):
     cubes = ep.decompose(paths, radar, views, **settings)
     whole = sum(next(iter(cubes.values())).values())
     return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
+
+
+def _checks(cube, probe, tolerance: float, trace_frame) -> list:
+    return check_signal(cube, probe, tolerance=tolerance) + check_rays(probe, trace_frame)
 
 
 def _label_request(scene, radar, labels, num_batches: int, window, zero_pad, angles: dict):

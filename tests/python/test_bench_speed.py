@@ -64,6 +64,7 @@ def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsy
         assert row["error"] < 1.1 * row["tolerance"] and "finufft_ns" not in row
     for row in results["synthesis"]["slow"]:
         assert row["error"] < row["tolerance"]
+    assert results["guard"]["paths"] > 0 and 0.0 <= results["guard"]["share"] < 1.0
     assert "not installed" in capsys.readouterr().out
     assert (tmp_path / "b" / "speed.csv").read_text().startswith("tolerance,ns,error")
     for name in ("speed_synthesis.png", "speed_frames.png"):

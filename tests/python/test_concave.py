@@ -109,7 +109,7 @@ def echo_over_integral(shape, distance, side=.03):
     mesh = plate(target, facing, side)
     scene = scene_of(mirror=(bent_mesh(shape), METAL, True), plate=(mesh, METAL))
     paths = ep.trace(scene, make_radar(source), num_rays=1 << 18, max_bounces=2).select("T 'mirror' 'plate' R")
-    found = fields(paths)[paths.flags == 0].sum()  # the others are reversals
+    found = fields(paths)[paths.flags & 1 == 0].sum()  # the others are reversals
 
     steps = (np.arange(240) + .5) / 240 * 2 - 1
     fade = np.where(np.abs(steps) < .7, 1, np.cos(np.pi / .6 * (np.abs(steps) - .7)) ** 2)

@@ -3,12 +3,16 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import echopath as ep
+from echopath.guard import check_rays
+from echopath.guard.ray_checks import quantile
 
 FREQUENCY = 77e9
 EXACT = 1e-9         # of the sum of |a|: rates by differences of lengths 1e-7 s apart
 SEEDS = 40
+BATCHES = 8
 
 
 def make_radar(chirps=8, samples=32, antennas=1, real=False, chirp_interval=60e-6):
@@ -61,13 +65,14 @@ def test_probed_samples_are_slow_sums_of_all_paths(paths):
 
 
 @pytest.mark.parametrize("settings", [{"method": "direct"}, {"method": "recurrence"},
-                                      {"method": "nufft", "tolerance": 1e-12}, {"evaluate": "samples"}, {"evaluate": "chirps"}, {"replay": "fermat"},
+                                      {"method": "nufft", "tolerance": 1e-12}, {"evaluate": "samples"}, {"evaluate": "chirps"},
+                                      {"replay": "fermat"},
                                       {"retrace": "invalid", "keyframes": 3}, {"retrace": "always", "keyframes": 2}],
                          ids=lambda settings: "-".join(map(str, settings.values())))
 def test_every_way_to_a_signal_agrees(paths, settings):
     probe = ep.SignalProbe(seed=5)
     cube = ep.synthesize(paths, probe=probe, **settings)
-    assert len(probe.chirp) == 2 * settings.get("keyframes", 1) and probe.chirp.max() < cube.shape[2]
+    assert len(probe.chirp) == settings.get("keyframes", 1) and probe.chirp.max() < cube.shape[2]
     assert all(check.agrees for check in ep.check_signal(cube, probe, tolerance=settings.get("tolerance", 1e-7)))
 
 
@@ -76,6 +81,7 @@ def test_arrays_of_real_samples_agree(paths):
     for seed in range(4):
         probe = ep.SignalProbe(seed=seed)
         parts = ep.decompose(paths, radar, {"ball": "T 'ball' R", "block": "T 'block' R"}, probe=probe)
+        assert len(probe.chirp) == 2
         assert all(check.agrees for check in ep.check_signal(sum(parts.values()), probe))
 
 
@@ -90,12 +96,13 @@ def test_spot_checks_do_not_depend_on_the_number_of_threads(paths):
     assert np.array_equal(probes[0].phase_error, probes[1].phase_error)
 
 
-def test_silent_where_all_is_well():
+@pytest.mark.parametrize("batches", [None, BATCHES])
+def test_silent_where_all_is_well(batches):
     scene, radar = make_scene(turn=20.0), make_radar()
     with warnings.catch_warnings():
         warnings.simplefilter("error", ep.GuardWarning)
-        frames = [ep.simulate(scene, radar, num_rays=400, seed=seed) for seed in range(SEEDS)]
-    assert all(len(frame.checks) >= 3 for frame in frames)
+        frames = [ep.simulate(scene, radar, num_rays=1000, seed=seed, batches=batches) for seed in range(SEEDS)]
+    assert all(len(frame.checks) == (5 if batches is None else 7) for frame in frames)
 
 
 def disagreeing(cube, probe, **promises) -> list:
@@ -155,3 +162,89 @@ def test_checks_come_back_from_the_file(tmp_path):
 def test_nothing_to_compare_is_no_disagreement():
     frame = ep.simulate(ep.Scene(), make_radar(), num_rays=10)
     assert [check.error for check in frame.checks] == [0.0]
+
+
+# --- rays and batches ---
+
+def filled_probe(paths, seed=1):
+    probe = ep.SignalProbe(seed=seed)
+    ep.synthesize(paths, probe=probe)
+    return probe
+
+
+def alarms(paths, seed=1) -> set:
+    return {check.name for check in check_rays(filled_probe(paths, seed), paths.frame) if not check.agrees}
+
+
+def test_thresholds_are_those_of_student():
+    for freedom in (1, 3, 6, 7, 62):
+        for rate in (0.1, 1e-3 / 3, 1e-5):
+            assert quantile(rate, freedom) == pytest.approx(stats.t.isf(rate / 2, freedom), rel=1e-3)
+
+
+def test_shares_are_sums_over_their_own_paths():
+    paths = ep.trace(make_scene(), make_radar(), num_rays=3000, batches=4, seed=2)
+    probe = filled_probe(paths)
+    time = paths.frame.start_time + int(probe.chirp[0]) * 60e-6 + 31 / 2 / 20e6
+    power = np.abs(paths.amplitudes([time])[0]) ** 2
+    half, is_rough = paths.flags >> 1 & 1, paths.diffuse != 0
+    shares = [(paths.batch == batch) & (half == second) for batch in range(4) for second in (0, 1)]
+    expected = [power[share & is_rough].sum() for share in shares]
+    assert probe.share_power == pytest.approx([*expected, 0.0], rel=1e-6)
+    assert probe.power_sum[0] == pytest.approx(power.sum(), rel=1e-6)
+    assert probe.strongest[0] == pytest.approx(power.max(), rel=1e-6)
+    rough = paths.select(is_rough)
+    fields = probe.share_field.sum(axis=0) - (probe.value[0] - filled_probe(rough).value[0])
+    assert np.abs(fields).max() < 1e-9 * probe.amplitude_sum[0]
+    assert 0.45 < np.mean(half[is_rough]) < 0.55
+
+
+def glint_scene():
+    """A dim wall and a bright little plate close by, which belong to one object and share its rays by their solid angles."""
+    scene = ep.Scene()
+    scene.add(None, name="site")
+    for name, width, position, level in (("wall", 10.0, (20, 0, 1), 0.1), ("glint", 0.15, (1, 0.05, 1.02), 1.0)):
+        scene.add(ep.actors.plate(width, width), name=name, parent="site", position=position,
+                  material=ep.Material(reflectivity=level, scattering=1.0))
+    return scene
+
+
+@pytest.mark.parametrize("batches", [None, BATCHES])
+def test_tells_of_a_strong_glint_that_few_rays_have_found(batches):
+    scene, radar, found, told = glint_scene(), make_radar(), 0, 0
+    for seed in range(20):
+        paths = ep.trace(scene, radar, num_rays=900, batches=batches, seed=seed)
+        glints = np.count_nonzero(paths.mesh_id == 1)
+        if 0 < glints <= 3:
+            found += 1
+            told += bool(alarms(paths, seed))
+    assert found >= 10 and told >= 0.9 * found
+    assert not alarms(ep.trace(scene, radar, num_rays=400_000, batches=batches))
+
+
+def with_weights(paths, factor):
+    names = ("hits", "offsets", "num_bounces", "diffuse", "stratum", "batch", "flags", "scene", "radar", "frame")
+    columns = {name: getattr(paths, name) for name in names}
+    return ep.Paths.from_arrays(weight=(paths.weight * factor).astype(np.complex64), **columns)
+
+
+@pytest.mark.parametrize("name, is_wrong", [
+    ("one half of the rays against the other", lambda paths: paths.flags & 2 != 0),
+    ("one half of the batches against the other", lambda paths: paths.batch < BATCHES // 2),
+    ("one batch against the others", lambda paths: paths.batch == 3)], ids=["rays", "batches", "one batch"])
+def test_tells_of_wrong_weights_of_some_rays(name, is_wrong):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(3.0, 3.0), name="plate", position=(4, 0, 1),
+              material=ep.Material(reflectivity=0.5, scattering=1.0))
+    paths = ep.trace(scene, make_radar(), num_rays=4000, batches=BATCHES)
+    assert alarms(paths) == set()
+    assert name in alarms(with_weights(paths, np.where(is_wrong(paths), 1.2, 1.0)))
+
+
+def test_tells_of_a_target_that_was_not_met():
+    with pytest.warns(ep.GuardWarning, match="error of the power against the target"):
+        ep.simulate(make_scene(), make_radar(), target_error_db=1e-3, num_rays=1000, max_rays=2000)
+
+
+def test_paths_of_another_number_of_batches_are_not_judged(paths):
+    assert check_rays(ep.SignalProbe(), paths.frame) == []

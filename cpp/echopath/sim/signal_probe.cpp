@@ -20,26 +20,28 @@ namespace echopath {
 namespace {
 
 constexpr int kSamples = ProbedChirp::kSamples;
-constexpr int kChirps = 2;  // of a pass
+constexpr int kMostChirps = 2;  // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
 
 // Sums of kSamples samples; also offsets of these in samples from the first of the chirp.
 using SampleSums = std::array<double, kSamples>;
 
-ECHOPATH_INLINE void add_tones(const Carriers* carriers, const double* sample, double* out_re, double* out_im) {
+// Samples of each row, real parts first.
+struct SampleRow {
   SampleSums re{}, im{};
+};
+
+// Adds each carrier to its row.
+ECHOPATH_INLINE void add_tones(const Carriers* carriers, const double* sample, SampleRow* rows) {
   for (int p = 0; p < carriers->count; ++p) {
     const double frequency = carriers->frequency[p], a = carriers->re[p], b = carriers->im[p];
+    SampleRow& row = rows[carriers->group[p]];
     for (int s = 0; s < kSamples; ++s) {
       const Phasor phasor = phasor_of_cycles(frequency * sample[s]);
-      re[s] += a * phasor.re - b * phasor.im;
-      im[s] += a * phasor.im + b * phasor.re;
+      row.re[s] += a * phasor.re - b * phasor.im;
+      row.im[s] += a * phasor.im + b * phasor.re;
     }
-  }
-  for (int s = 0; s < kSamples; ++s) {
-    out_re[s] += re[s];
-    out_im[s] += im[s];
   }
 }
 
@@ -114,15 +116,19 @@ class PassProbe::Strongest {
 
 // Of one block.
 struct PassProbe::Seen {
-  SampleSums re{}, im{};
+  explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares) {}
+  std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
+  std::vector<double> power;    // W of these, by share
+  double power_sum = 0.0, strongest = 0.0;  // W
   double amplitude_sum = 0.0;
   std::vector<DrawnEcho> drawn;
 };
 
 // A chirp of a channel, and what was seen of it so far.
 struct PassProbe::Aim {
-  int channel, chirp;
-  SampleSums sample;
+  explicit Aim(size_t num_shares) : seen(num_shares) {}
+  int channel = 0, chirp = 0;
+  SampleSums sample{};
   Seen seen;
 };
 
@@ -130,9 +136,10 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
                      const SignalProbe& probe)
     : paths_(paths), radar_(radar), replayer_(replayer), model_(radar.waveform, 0), seed_(probe.seed) {
   if (synthesis.per_sample) per_sample_ = std::make_unique<PerSample>(radar.waveform, model_);
-  for (int i = 0; i < kChirps; ++i) {
-    const int64_t index = int64_t{probe.first_chirp} * kChirps + i;
-    Aim& aim = aims_.emplace_back();
+  const int num_chirps = std::min(kMostChirps, replayer.num_channels());
+  for (int i = 0; i < num_chirps; ++i) {
+    const int64_t index = int64_t{probe.first_chirp} * kMostChirps + i;
+    Aim& aim = aims_.emplace_back(num_shares());
     aim.channel = draw(seed_, index, 0, replayer.num_channels());
     aim.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
     for (int s = 0; s < kSamples; ++s) {
@@ -151,7 +158,7 @@ void PassProbe::see(int channel, std::span<const Echoes> blocks, std::span<const
   }
   for (Aim& aim : aims_) {
     if (aim.channel != channel) continue;
-    std::vector<Seen> seen(blocks.size());
+    std::vector<Seen> seen(blocks.size(), Seen(num_shares()));
     parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
       const auto k = static_cast<size_t>(i);
       look(aim, blocks[k], paths_of[k], seen[k]);
@@ -160,11 +167,18 @@ void PassProbe::see(int channel, std::span<const Echoes> blocks, std::span<const
   }
 }
 
+size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.num_batches) + 1; }
+
 void PassProbe::add(const Seen& some, Seen& all) {
-  for (size_t s = 0; s < kSamples; ++s) {
-    all.re[s] += some.re[s];
-    all.im[s] += some.im[s];
+  for (size_t row = 0; row < all.rows.size(); ++row) {
+    for (size_t s = 0; s < kSamples; ++s) {
+      all.rows[row].re[s] += some.rows[row].re[s];
+      all.rows[row].im[s] += some.rows[row].im[s];
+    }
   }
+  for (size_t share = 0; share < all.power.size(); ++share) all.power[share] += some.power[share];
+  all.power_sum += some.power_sum;
+  all.strongest = std::max(all.strongest, some.strongest);
   all.amplitude_sum += some.amplitude_sum;
   all.drawn.insert(all.drawn.end(), some.drawn.begin(), some.drawn.end());
 }
@@ -173,6 +187,7 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
   constexpr int kCapacity = EchoStates::kCapacity;
   EchoStates states;
   alignas(64) double power[kCapacity], root[kCapacity];
+  uint32_t row[kCapacity];
   Strongest strongest;
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
@@ -180,21 +195,42 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
     run_simd<find_powers>(states.amplitude, count, power, root);
     seen.amplitude_sum = std::accumulate(root, root + count, seen.amplitude_sum);
     strongest.show(power, begin, count);
-    add_samples(aim, block, begin, count, states, seen);
+    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, seen);
+    add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, seen);
   }
   if (!block.sampling.is_static()) draw_echoes(aim, block, paths, strongest, seen);
 }
 
-void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, int count, const EchoStates& states,
-                            Seen& seen) const {
+// The row of each path. `power`: W of each.
+void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const {
+  const auto images = static_cast<uint32_t>(num_shares() - 1);
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const auto path = static_cast<size_t>(paths[i]);
+    const uint8_t batch = paths_.batch[path];
+    const uint32_t share = batch == kNoBatch ? images : 2u * batch + ((paths_.flags[path] & kSecondHalf) != 0 ? 1u : 0u);
+    const bool is_rough = paths_.diffuse[path] != 0;
+    row[i] = is_rough ? images + 1 : share;
+    if (is_rough) seen.power[share] += power[i];
+    if (share != images) seen.strongest = std::max(seen.strongest, power[i]);
+    seen.power_sum += power[i];
+  }
+}
+
+void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
+                            std::span<const uint32_t> row, Seen& seen) const {
+  const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
-    per_sample_->add_samples(block, aim.chirp, begin, count, aim.sample, seen.re, seen.im);
+    for (int i = 0; i < count; ++i) {
+      SampleRow& to = seen.rows[row[static_cast<size_t>(i)]];
+      per_sample_->add_samples(block, aim.chirp, begin + i, 1, aim.sample, to.re, to.im);
+    }
     return;
   }
   Carriers carriers;
   carriers.count = count;
+  carriers.group = row.data();
   signal_kernels().modulate(model_, states, count, carriers);
-  run_simd<add_tones>(&carriers, aim.sample.data(), seen.re.data(), seen.im.data());
+  run_simd<add_tones>(&carriers, aim.sample.data(), seen.rows.data());
 }
 
 void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
@@ -219,14 +255,26 @@ void PassProbe::finish(SignalProbe& probe, Job* job) {
     chirp.rx = aim.channel % num_receivers;
     chirp.chirp = probe.first_chirp + aim.chirp;
     chirp.amplitude_sum = aim.seen.amplitude_sum;
-    for (size_t s = 0; s < kSamples; ++s) {
-      chirp.sample[s] = static_cast<int>(aim.sample[s]);
-      chirp.value[s] = {aim.seen.re[s], aim.seen.im[s]};
-      if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * aim.seen.re[s];
-    }
+    sum_up(aim, chirp);
     thin_out(aim.seen.drawn);
     compare_echoes(aim, chirp, job);
   }
+}
+
+void PassProbe::sum_up(const Aim& aim, ProbedChirp& chirp) const {
+  const Seen& seen = aim.seen;
+  chirp.power_sum = seen.power_sum;
+  chirp.strongest = seen.strongest;
+  chirp.shares.resize(num_shares());
+  for (size_t s = 0; s < kSamples; ++s) {
+    chirp.sample[s] = static_cast<int>(aim.sample[s]);
+    for (const SampleRow& row : seen.rows) chirp.value[s] += std::complex<double>(row.re[s], row.im[s]);
+    if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
+    for (size_t share = 0; share < num_shares(); ++share) {
+      chirp.shares[share].field[s] = {seen.rows[share].re[s], seen.rows[share].im[s]};
+    }
+  }
+  for (size_t share = 0; share < num_shares(); ++share) chirp.shares[share].power = seen.power[share];
 }
 
 void PassProbe::compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const {

@@ -14,9 +14,16 @@
 
 namespace echopath {
 
+// What some of the rays have brought to one chirp. Paths of rough surfaces, whose phases are random, count by their power.
+struct RayShare {
+  static constexpr int kSamples = 8;
+  std::array<std::complex<double>, kSamples> field{};  // sqrt(W), sums over coherent paths at the samples drawn
+  double power = 0.0;                                  // W, sum of |amplitude|^2 of the others
+};
+
 // One chirp of one channel of the frame.
 struct ProbedChirp {
-  static constexpr int kSamples = 8;
+  static constexpr int kSamples = RayShare::kSamples;
   int tx = 0, rx = 0, chirp = 0;
   std::array<int, kSamples> sample{};
   std::array<std::complex<double>, kSamples> value{};  // sqrt(W): sums of sines and cosines of the echoes as replayed
@@ -26,6 +33,10 @@ struct ProbedChirp {
   double phase_error = 0.0;      // rad at the start frequency, rms weighted by the power of the echoes
   double largest_phase_error = 0.0;  // rad
   double amplitude_error = 0.0;  // rms of the differences over rms of the amplitudes
+  // Halves 0 and 1 (half_of_ray) of the rays of each batch in turn, then the paths of the image method: 2 batches + 1.
+  std::vector<RayShare> shares;
+  double power_sum = 0.0;        // W, of |amplitude|^2 of all paths
+  double strongest = 0.0;        // W, the largest of a path that rays found
 };
 
 // What passes leave behind. Chirps and samples are drawn by `seed`.
@@ -35,7 +46,8 @@ struct SignalProbe {
   std::vector<ProbedChirp> chirps;
 };
 
-// Looks at the echoes of one pass, at two chirps. Same bits for any number of threads.
+// Looks at the echoes of one pass, at one chirp, or at two where there are several channels. Costs about 3 % of trace and
+// synthesis of one channel, less of more. Same bits for any number of threads.
 class PassProbe {
  public:
   // All must outlive it.
@@ -52,8 +64,11 @@ class PassProbe {
   struct Seen;
   class Strongest;
   void look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const;
-  void add_samples(const Aim& aim, const Echoes& block, int64_t begin, int count, const EchoStates& states,
-                   Seen& seen) const;
+  size_t num_shares() const;
+  void sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const;
+  void add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
+                   std::span<const uint32_t> row, Seen& seen) const;
+  void sum_up(const Aim& aim, ProbedChirp& chirp) const;
   void draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
                    Seen& seen) const;
   void compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const;

@@ -15,7 +15,7 @@ namespace echopath {
 void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
   const std::complex<float> rounded(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
-  rows.push_back({offset, diffuse_bits, rounded, 0, static_cast<uint8_t>(count), static_cast<uint8_t>(path_stratum),
+  rows.push_back({offset, diffuse_bits, rounded, current_half, static_cast<uint8_t>(count), static_cast<uint8_t>(path_stratum),
                   current_batch});
 }
 
@@ -36,7 +36,7 @@ void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits,
   uint64_t reversed_bits = 0;
   for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
   add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
-  rows.back().flags = kReversedPath;
+  rows.back().flags |= kReversedPath;
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
@@ -64,6 +64,7 @@ void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
   fan.hit = hit;
   fan.stratum = static_cast<uint8_t>(path_stratum);
   fan.batch = current_batch;
+  fan.flags = current_half;
   fan.max_bounces = static_cast<uint32_t>(max_bounces);
 }
 

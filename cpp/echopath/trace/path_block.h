@@ -18,6 +18,7 @@ class PathBlock {
   std::vector<Hit> hits;
   std::vector<Row> rows;  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
+  uint32_t current_half = 0;         // likewise: 0 or kSecondHalf
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
   std::vector<JonesMatrix> jones;  // likewise
   TraceStatistics statistics;

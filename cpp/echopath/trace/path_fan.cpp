@@ -88,7 +88,7 @@ void FanPairs::write_row(Pair pair, int64_t offset, PathRows& rows) const {
   *rows.weight = {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
   *rows.stratum = fan_.stratum;
   *rows.batch = fan_.batch;
-  *rows.flags = 0;
+  *rows.flags = fan_.flags;
   rows.skip_rows(1);
 }
 

@@ -18,6 +18,7 @@ struct PathFan {
   size_t num_before = 0;  // paths of the block in front of it, those of fans not counted
   Hit hit;
   uint8_t stratum = 0, batch = 0;
+  uint32_t flags = 0;
   uint32_t num_in = 0, num_out = 0, max_bounces = 0;
 };
 

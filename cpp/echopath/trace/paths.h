@@ -1,6 +1,7 @@
 #pragma once
 // The record of a trace: what every ray touched. Immutable after the trace; selections share the hits.
 #include <array>
+#include <bit>
 #include <complex>
 #include <cstdint>
 #include <memory>
@@ -46,6 +47,14 @@ inline constexpr uint8_t kNoBatch = 255;
 // Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
 // it was traced with the antennas exchanged. A chain of several diffuse hits has the coefficients of its travel order.
 inline constexpr uint32_t kReversedPath = 1;
+// Flag of the paths of every other ray (half_of_ray): two halves of the rays, each evenly spread over the launch directions.
+// Paths of the image method belong to neither, whatever their flag.
+inline constexpr uint32_t kSecondHalf = 2;
+// The flag of a ray's paths by its index: 0 or kSecondHalf. The parity of its digits (Thue and Morse), so that
+// both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them apart.
+inline constexpr uint32_t half_of_ray(int64_t index) {
+  return std::popcount(static_cast<uint64_t>(index)) % 2 == 0 ? 0 : kSecondHalf;
+}
 
 struct TraceStatistics {
   int64_t num_rays = 0;        // launched
@@ -89,7 +98,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
   std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
   std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;               // kReversedPath or 0
+  std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
   // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
   std::vector<std::array<float, 7>> curved_cell;

@@ -81,6 +81,7 @@ void RayShooter::shoot_packet(int64_t begin, int count, Packet& packet, Scratch&
   for (int k = 0; k < count; ++k) {
     Ray ray = launched(begin + k, packet.strata[k], packet.directions[k]);
     block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, ray.index));
+    block.current_half = half_of_ray(ray.index);
     surface.point = packet.hits[k];
     surface.receiver = packet.receiver[k];
     if (arrive(ray, packet.verdicts[k], surface, block)) follow(ray, surface, scratch, block);

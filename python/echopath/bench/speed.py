@@ -11,7 +11,7 @@ from pathlib import Path
 import echopath as ep
 
 from ..files import write_texts
-from . import replay_cases, speed_frames, speed_retrace, speed_synthesis, speed_tracer
+from . import replay_cases, speed_frames, speed_guard, speed_retrace, speed_synthesis, speed_tracer
 from .machine import machine
 from .timing import processor_time
 
@@ -40,6 +40,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     tell()
     results["street"] = speed_frames.measure_street(quick=quick)
     tell()
+    results["guard"] = speed_guard.measure_guard(quick=quick)
+    tell()
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
@@ -53,7 +55,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
 def _counter(progress, quick: bool):
     counts = (speed_synthesis.TOLERANCES, speed_frames.QUICK_PATHS if quick else speed_frames.PATHS, speed_frames.CHIRPS,
               speed_frames.ARRAYS, speed_frames.PARTS)
-    steps, done = 4 + sum(map(len, counts)), 0
+    steps, done = 5 + sum(map(len, counts)), 0
 
     def tell():
         nonlocal done
@@ -104,6 +106,7 @@ def verdicts(results: dict) -> list[dict]:
                   row["share"])
              for row in results["tracer"]]
     street = results["street"]
+    rows.append(_row("guard, share of trace and signal", speed_guard.TARGET, results["guard"]["share"], most=True))
     over = street["frame_s"] / street["floor_s"]
     rows.append(_row("street frame over its floor", speed_frames.STREET_TARGET, over, most=True))
     return rows
@@ -121,7 +124,7 @@ def describe(results: dict) -> list[str]:
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
              *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
-             *_street_lines(results["street"]), "",
+             *_street_lines(results["street"]), *speed_guard.describe_guard(results["guard"]), "",
              "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]

@@ -36,7 +36,8 @@ TEST(WeightRules, IntegratingSphere) {
     EXPECT_NEAR(power.power / truth, 1.0, kSphereTolerance) << reflectivity;
     EXPECT_LT(power.standard_error / truth, kSphereTolerance) << reflectivity;
     // Reversals aside, one path a bounce: three, and as many as the roulette lets happen.
-    const auto num_bounces = std::count(paths.flags.begin(), paths.flags.end(), 0u);
+    const auto num_bounces = std::count_if(paths.flags.begin(), paths.flags.end(),
+                                           [](uint32_t flags) { return (flags & kReversedPath) == 0; });
     EXPECT_LT(num_bounces, static_cast<int64_t>(100000 * (3.2 + 1.0 / (1.0 - reflectivity)))) << reflectivity;
   }
 }

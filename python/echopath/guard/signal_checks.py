@@ -1,47 +1,15 @@
-"""The guard of a run: what it computed, held against slower ways at a few random places, and a warning where they disagree.
-
-What it cannot see: places that were not drawn, and paths that no ray found.
-"""
+"""Samples against direct sums, and moving echoes against exact ones, at places of the frame drawn by chance."""
 from __future__ import annotations
 
-import dataclasses
-import warnings
-
 import numpy as np
+
+from .check import Check
 
 LARGEST_OF_RMS = 6.0    # how much a NUFFT may err in one sample, over its rms of all samples
 ROUNDING = 1e-13        # of the sum of |amplitude|: of the direct sums
 BEYOND_TAIL = 10.0      # what a polynomial leaves out may add up to, over its last two coefficients, which the aims are for
 PHASE_TOLERANCE = 1e-5      # rad, the aim of `synthesize`
 AMPLITUDE_TOLERANCE = 1e-4  # relative, likewise
-
-
-class GuardWarning(UserWarning):
-    """A result disagrees with a slower way to it by more than the run promises."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Check:
-    """One comparison of the guard.
-
-    name: what was compared with what; error: how far they are apart, in `unit`; promise: the most that is promised
-    unit: "rad", "dB" or what the error is relative to; count: how many places were compared
-    """
-
-    name: str
-    error: float
-    promise: float
-    unit: str
-    count: int
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the error is no larger than promised."""
-        return self.error <= self.promise
-
-    def __str__(self) -> str:
-        verdict = "" if self.agrees else ": TOO MUCH"
-        return f"{self.error:.1e} {self.unit}, promised {self.promise:.0e}{verdict} ({self.count:,} compared)"
 
 
 def check_signal(cube, probe, *, tolerance: float = 1e-7, phase_tolerance: float = PHASE_TOLERANCE) -> list[Check]:
@@ -70,10 +38,3 @@ def _samples(cube, probe, tolerance: float) -> Check:
         error = np.where(apart == 0.0, 0.0, apart / probe.amplitude_sum)
     promise = LARGEST_OF_RMS * max(tolerance, ROUNDING)
     return Check("samples against direct sums", float(np.max(error, initial=0.0)), promise, "of the sum of |a|", got.size)
-
-
-def warn_of(checks, stacklevel: int = 2) -> None:
-    """Warns (GuardWarning) of each of the `checks` that does not agree."""
-    for check in checks:
-        if not check.agrees:
-            warnings.warn(f"{check.name}: {check}", GuardWarning, stacklevel=stacklevel + 1)

@@ -1,0 +1,40 @@
+"""What the guard of a run says: how far apart two ways to one result are, and a warning where that is too far."""
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+
+class GuardWarning(UserWarning):
+    """A result disagrees with a slower way to it by more than the run promises."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Check:
+    """One comparison of the guard.
+
+    name: what was compared with what; error: how far they are apart, in `unit`; promise: the most that is promised
+    unit: "rad", "dB" or what the error is relative to; count: how many places were compared
+    """
+
+    name: str
+    error: float
+    promise: float
+    unit: str
+    count: int
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the error is no larger than promised."""
+        return self.error <= self.promise
+
+    def __str__(self) -> str:
+        verdict = "" if self.agrees else ": TOO MUCH"
+        return f"{self.error:.2g} {self.unit}, promised {self.promise:.2g}{verdict} ({self.count:,} compared)"
+
+
+def warn_of(checks, stacklevel: int = 2) -> None:
+    """Warns (GuardWarning) of each of the `checks` that does not agree."""
+    for check in checks:
+        if not check.agrees:
+            warnings.warn(f"{check.name}: {check}", GuardWarning, stacklevel=stacklevel + 1)

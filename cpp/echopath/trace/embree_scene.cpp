@@ -8,10 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <string>
 
+#include "echopath/base/simd.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
@@ -30,6 +32,17 @@ constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the 
 constexpr double kMostCover = 1.5;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Embree picks the best instruction set, too, unless another one is asked for (base/simd.h).
+const char* device_options() {
+#ifdef ECHOPATH_X86_KERNELS
+  const char* asked = std::getenv("ECHOPATH_INSTRUCTION_SET");
+  if (!asked || !*asked || instruction_set() == InstructionSet::kAvx512) return nullptr;
+  return instruction_set() == InstructionSet::kAvx2 ? "isa=avx2" : "isa=sse2";
+#else
+  return nullptr;
+#endif
+}
+
 bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
 
 template <class Vector>
@@ -46,6 +59,19 @@ void set_ray(RTCRay& ray, const Vector& from, const Vector& direction, float far
   ray.mask = 0xFFFFFFFFu;
   ray.id = 0;
   ray.flags = 0;
+}
+
+// Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
+// says.
+void clear_rays(RTCRay16& rays) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    rays.org_x[lane] = rays.org_y[lane] = rays.org_z[lane] = 0.0f;
+    rays.dir_x[lane] = rays.dir_y[lane] = rays.dir_z[lane] = 0.0f;
+    rays.tnear[lane] = 0.0f;
+    rays.tfar[lane] = -1.0f;
+    rays.time[lane] = 0.0f;
+    rays.mask[lane] = rays.id[lane] = rays.flags[lane] = 0;
+  }
 }
 
 template <class Vector>
@@ -156,7 +182,7 @@ struct EmbreeScene::Device {
   std::vector<bool> has_mesh;  // by mesh ID
   double lift = 0.0;  // m
 
-  Device() : device(rtcNewDevice(nullptr)) {
+  Device() : device(rtcNewDevice(device_options())) {
     if (!device) throw DeviceError("Embree: no device could be made");
   }
   ~Device() {
@@ -278,6 +304,7 @@ void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count,
   alignas(64) RTCRayHit16 queries;
   Lanes lanes;
   std::fill_n(lanes.valid.begin(), count, -1);
+  clear_rays(queries.ray);
   if (log_) log_->calls.push_back({QueryLog::Kind::kClosestPacket, static_cast<uint8_t>(count)});
   for (int lane = 0; lane < count; ++lane) {
     const Vec3 start = moved_up(from, directions[lane]);
@@ -370,6 +397,7 @@ void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* block
   for (size_t begin = 0; begin < count; begin += kPacketSize) {
     const size_t num_lanes = std::min<size_t>(kPacketSize, count - begin);
     Lanes lanes;
+    clear_rays(rays);
     if (log_) log_->calls.push_back({QueryLog::Kind::kShadowPacket, static_cast<uint8_t>(num_lanes)});
     for (size_t k = 0; k < num_lanes; ++k) {
       const Line line = line_between(segments[begin + k].from, segments[begin + k].to);
@@ -408,6 +436,7 @@ void EmbreeScene::Device::ask(const QueryLog::Ray& ray, bool is_shadow) const {
 void EmbreeScene::Device::ask(const QueryLog::Ray* rays, int count, bool is_shadow) const {
   alignas(64) RTCRayHit16 queries;
   Lanes lanes;
+  clear_rays(queries.ray);
   for (int lane = 0; lane < count; ++lane) {
     set_ray(queries.ray, lane, rays[lane].from, rays[lane].direction, rays[lane].far);
     lanes.valid[static_cast<size_t>(lane)] = rays[lane].far > 0 ? -1 : 0;

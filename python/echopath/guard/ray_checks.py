@@ -23,7 +23,7 @@ FALSE_ALARM_RATE = 1e-3 / 3.0
 # of a difference that is none.
 ALIKE = 0.01
 FEWEST_BATCHES = 4      # fewer say nothing of a single one
-HALVES = "one half of the rays against the other"
+HALVES = "halves of the rays"
 
 
 def check_rays(probe, frame) -> list[Check]:
@@ -65,7 +65,7 @@ def _strongest(probe) -> list[Check]:
 def _target(frame) -> list[Check]:
     if frame.target_error_db == 0.0:
         return []
-    return [Check("error of the power against the target", frame.error_db, frame.target_error_db, "dB", 1)]
+    return [Check("error against its target", frame.error_db, frame.target_error_db, "dB", 1)]
 
 
 def _batches(probe, count: int) -> list[Check]:
@@ -77,7 +77,7 @@ def _batches(probe, count: int) -> list[Check]:
     if count < FEWEST_BATCHES:
         return checks
     estimates = _estimates(probe, count)
-    return [*checks, _check("one half of the batches against the other", _of_two(estimates, alike), count - 2),
+    return [*checks, _check("halves of the batches", _of_two(estimates, alike), count - 2),
             _check("one batch against the others", _outlier(estimates, alike), count - 2, num_tests=count)]
 
 

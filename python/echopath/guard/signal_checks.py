@@ -24,7 +24,7 @@ def check_signal(cube, probe, *, tolerance: float = 1e-7, phase_tolerance: float
     count = int(probe.num_echoes.sum())
     if count == 0:
         return checks
-    name = "moving echoes against exact ones"
+    name = "moving echoes"
     phase, amplitude = float(np.max(probe.phase_error)), float(np.max(probe.amplitude_error))
     return [*checks, Check(f"{name}, phase", phase, BEYOND_TAIL * phase_tolerance, "rad rms", count),
             Check(f"{name}, size", amplitude, BEYOND_TAIL * AMPLITUDE_TOLERANCE, "of the amplitude rms", count)]

@@ -13,7 +13,7 @@ viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbco
 build_dir=$PWD/build/default
 sanitized_dir=$PWD/build/asan
 # C++ modules whose tests run sanitized, too: those that read files, hold geometry and shoot rays. `cmake --preset asan` builds all.
-sanitized_modules=(base fft motion scene em radar)
+sanitized_modules=(base fft motion scene em radar trace)
 python=.venv/bin/python
 
 usage() {

@@ -2,7 +2,10 @@
 // Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3",
 // SC 2011). A number is a pure function of (seed, counter), so results depend on neither threads nor call order.
 #include <array>
+#include <cstddef>
 #include <cstdint>
+
+#include "echopath/base/simd.h"
 
 namespace echopath {
 
@@ -12,27 +15,47 @@ enum class Stream : uint32_t {
   kProbe = 9, kTraining = 16
 };
 
-inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {
+// The four words of as many counters as there are lanes, or what has become of them.
+template <size_t kLanes>
+using PhiloxWords = std::array<std::array<uint32_t, kLanes>, 4>;
+
+// In loops over lanes that compilers vectorise.
+template <size_t kLanes>
+ECHOPATH_INLINE void philox4x32(PhiloxWords<kLanes>& words, std::array<uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
-    const uint64_t p0 = uint64_t{0xD2511F53u} * counter[0];
-    const uint64_t p1 = uint64_t{0xCD9E8D57u} * counter[2];
-    counter = {static_cast<uint32_t>(p1 >> 32) ^ counter[1] ^ key[0], static_cast<uint32_t>(p1),
-               static_cast<uint32_t>(p0 >> 32) ^ counter[3] ^ key[1], static_cast<uint32_t>(p0)};
+    ECHOPATH_NO_UNROLL
+    for (size_t i = 0; i < kLanes; ++i) {
+      const uint64_t p0 = uint64_t{0xD2511F53u} * words[0][i];
+      const uint64_t p1 = uint64_t{0xCD9E8D57u} * words[2][i];
+      words[0][i] = static_cast<uint32_t>(p1 >> 32) ^ words[1][i] ^ key[0];
+      words[1][i] = static_cast<uint32_t>(p1);
+      words[2][i] = static_cast<uint32_t>(p0 >> 32) ^ words[3][i] ^ key[1];
+      words[3][i] = static_cast<uint32_t>(p0);
+    }
     key[0] += 0x9E3779B9u;
     key[1] += 0xBB67AE85u;
   }
-  return counter;
+}
+
+inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {
+  PhiloxWords<1> words;
+  for (size_t k = 0; k < 4; ++k) words[k][0] = counter[k];
+  philox4x32(words, key);
+  return {words[0][0], words[1][0], words[2][0], words[3][0]};
+}
+
+inline std::array<uint32_t, 2> philox_key(uint64_t seed) { return {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)}; }
+
+// Uniform in [0, 1) with 53 bits.
+ECHOPATH_INLINE double unit_interval(uint32_t high, uint32_t low) {
+  return static_cast<double>(static_cast<int64_t>(((uint64_t{high} << 32) | low) >> 11)) * 0x1.0p-53;
 }
 
 // Two uniform numbers in [0, 1) with 53 bits for (seed, stream, index, dimension).
 inline std::array<double, 2> uniform2(uint64_t seed, Stream stream, uint64_t index, uint32_t dimension) {
   const auto bits = philox4x32({static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32), dimension,
-                                static_cast<uint32_t>(stream)},
-                               {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
-  const auto unit = [](uint32_t high, uint32_t low) {
-    return static_cast<double>(((uint64_t{high} << 32) | low) >> 11) * 0x1.0p-53;
-  };
-  return {unit(bits[0], bits[1]), unit(bits[2], bits[3])};
+                                static_cast<uint32_t>(stream)}, philox_key(seed));
+  return {unit_interval(bits[0], bits[1]), unit_interval(bits[2], bits[3])};
 }
 
 }  // namespace echopath

@@ -9,32 +9,49 @@
 namespace echopath {
 namespace {
 
-std::complex<double> reflection(const Material& material, double frequency, double cos_incidence, PolarizationMode mode) {
-  if (material.conductor) return -1.0;
-  if (material.reflectivity) return -std::sqrt(*material.reflectivity);
+double other_share(double share) { return std::sqrt(std::max(0.0, 1.0 - share * share)); }
+
+std::complex<double> complex_permittivity(const Material& material, double frequency) {
   const double loss = material.conductivity / (kTwoPi * frequency * kVacuumPermittivity);
-  const std::complex<double> permittivity = *material.permittivity - std::complex<double>(0.0, loss);
-  return mode == PolarizationMode::kTe ? fresnel_te(permittivity, cos_incidence) : fresnel_tm(permittivity, cos_incidence);
+  return *material.permittivity - std::complex<double>(0.0, loss);
 }
+
+// `phase`: k sigma_h cos(incidence) in rad.
+double ament_of_phase(double phase) { return std::exp(-2.0 * phase * phase); }
 
 }  // namespace
 
 double ament_factor(double wavenumber, double roughness_height, double cos_incidence) {
-  const double phase = wavenumber * roughness_height * cos_incidence;
-  return std::exp(-2.0 * phase * phase);
+  return ament_of_phase(wavenumber * roughness_height * cos_incidence);
+}
+
+SurfaceModel::SurfaceModel(const Material& material, double frequency)
+    : material_(&material), is_dielectric_(!material.conductor && !material.reflectivity) {
+  constant_.gamma = material.reflectivity ? -std::sqrt(*material.reflectivity) : -1.0;
+  if (is_dielectric_) permittivity_ = complex_permittivity(material, frequency);
+  if (material.scattering) {
+    constant_.diffuse = *material.scattering;
+    constant_.coherent = other_share(constant_.diffuse);
+  } else {
+    wavenumber_height_ = kTwoPi * frequency / kSpeedOfLight * material.roughness_height;
+  }
+}
+
+SurfaceResponse SurfaceModel::respond_at(double cos_incidence, PolarizationMode mode) const {
+  SurfaceResponse response = constant_;
+  if (is_dielectric_) {
+    const bool is_te = mode == PolarizationMode::kTe;
+    response.gamma = is_te ? fresnel_te(permittivity_, cos_incidence) : fresnel_tm(permittivity_, cos_incidence);
+  }
+  if (wavenumber_height_ > 0) {
+    response.coherent = ament_of_phase(wavenumber_height_ * cos_incidence);
+    response.diffuse = other_share(response.coherent);
+  }
+  return response;
 }
 
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode) {
-  SurfaceResponse response;
-  response.gamma = reflection(material, frequency, cos_incidence, mode);
-  if (material.scattering) {
-    response.diffuse = *material.scattering;
-    response.coherent = std::sqrt(std::max(0.0, 1.0 - response.diffuse * response.diffuse));
-  } else if (material.roughness_height > 0) {
-    response.coherent = ament_factor(kTwoPi * frequency / kSpeedOfLight, material.roughness_height, cos_incidence);
-    response.diffuse = std::sqrt(std::max(0.0, 1.0 - response.coherent * response.coherent));
-  }
-  return response;
+  return SurfaceModel(material, frequency).respond(cos_incidence, mode);
 }
 
 }  // namespace echopath

@@ -21,4 +21,26 @@ double ament_factor(double wavenumber, double roughness_height, double cos_incid
 // reflectivity rho with -sqrt(rho).
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode);
 
+// A material at one frequency, with all that does not depend on the wave worked out once; `material` must outlive it.
+class SurfaceModel {
+ public:
+  SurfaceModel(const Material& material, double frequency);
+  const Material& material() const { return *material_; }
+  // Whether its coefficients depend on the polarisation.
+  bool is_dielectric() const { return is_dielectric_; }
+  // What `respond` gives.
+  SurfaceResponse respond(double cos_incidence, PolarizationMode mode) const {
+    return is_dielectric_ || wavenumber_height_ > 0 ? respond_at(cos_incidence, mode) : constant_;
+  }
+
+ private:
+  SurfaceResponse respond_at(double cos_incidence, PolarizationMode mode) const;
+
+  const Material* material_;
+  SurfaceResponse constant_;  // without what depends on the wave
+  bool is_dielectric_;
+  std::complex<double> permittivity_ = 1.0;  // relative, with the conductivity
+  double wavenumber_height_ = 0.0;           // rad, k sigma_h; 0: smooth, or a constant share scatters
+};
+
 }  // namespace echopath

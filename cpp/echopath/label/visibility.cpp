@@ -9,6 +9,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/embree_scene.h"
+#include "echopath/trace/launch_cones.h"
 #include "echopath/trace/sampler.h"
 #include "echopath/trace/scene_objects.h"
 
@@ -114,6 +115,7 @@ class Onlooker {
   }
 
   Tally scan(const End& end, const Stratum& cone, int64_t count, Job* job) const {
+    const ConeFrame frame(cone);
     const auto points = disc_points(Sampler::kLattice, count, {Eigen::Vector2d(0.5, 0.5)});
     const int64_t num_tasks = (count + kDirectionsPerTask - 1) / kDirectionsPerTask;
     std::vector<Tally> tallies(static_cast<size_t>(num_tasks), Tally(surfaces_.names.size()));
@@ -121,7 +123,7 @@ class Onlooker {
       if (job) job->throw_if_cancelled();
       const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
       for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
-        look_along(cone.direction(points->point(i)), end, tallies[static_cast<size_t>(task)]);
+        look_along(frame.direction(points->point(i)), end, tallies[static_cast<size_t>(task)]);
       }
     });
     Tally sum(surfaces_.names.size());

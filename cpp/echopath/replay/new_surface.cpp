@@ -6,6 +6,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/trace/launch.h"
+#include "echopath/trace/launch_cones.h"
 
 namespace echopath {
 namespace {
@@ -107,13 +108,14 @@ SurfaceSeen look_for_new_surface(const Scene& scene, double frequency, const Ins
   for (const PosedAntenna& transmitter : antennas.transmitters) {
     if (job) job->throw_if_cancelled();
     const LaunchPlan plan = plan_rays(scene, geometry, transmitter.position, num_rays);
+    const LaunchCones cones(plan.strata);
     const int64_t count = plan.first_ray.back();
     std::vector<SurfaceSeen> parts(static_cast<size_t>((count + kRaysPerTask - 1) / kRaysPerTask), SurfaceSeen(scene));
     parallel_for(static_cast<int64_t>(parts.size()), [&](int64_t i) {
       for (int64_t ray = i * kRaysPerTask; ray < std::min(count, (i + 1) * kRaysPerTask); ++ray) {
         const int stratum = plan.stratum_of(ray);
-        const Vec3 direction = plan.direction(stratum, ray);
-        look.shoot(transmitter, direction, plan.ray_density(direction, stratum), parts[static_cast<size_t>(i)]);
+        const Vec3 direction = cones.direction(stratum, plan.point_of(stratum, ray));
+        look.shoot(transmitter, direction, cones.density_of_ray(direction, stratum), parts[static_cast<size_t>(i)]);
       }
     });
     for (const SurfaceSeen& part : parts) sum.add(part);

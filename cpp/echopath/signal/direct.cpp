@@ -1,5 +1,5 @@
+#include "echopath/base/phasor.h"
 #include "echopath/signal/method.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace {

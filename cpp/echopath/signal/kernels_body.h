@@ -1,8 +1,8 @@
 // The inner loops of synthesis for one instruction set: kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
 // ECHOPATH_LANES set (no include guard).
+#include "echopath/base/phasor.h"
 #include "echopath/signal/kernels.h"
 #include "echopath/signal/nufft_kernel.h"
-#include "echopath/signal/phasor.h"
 #include "echopath/signal/vector.h"
 
 namespace echopath::ECHOPATH_KERNELS {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "echopath/base/phasor.h"
 #include "echopath/base/simd.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace {

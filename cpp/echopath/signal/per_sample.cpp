@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "echopath/base/phasor.h"
 #include "echopath/signal/echoes.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace {

@@ -3,8 +3,8 @@
 // stays in registers.
 #include <algorithm>
 
+#include "echopath/base/phasor.h"
 #include "echopath/signal/method.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace {

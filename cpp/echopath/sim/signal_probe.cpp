@@ -8,13 +8,13 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/phasor.h"
 #include "echopath/base/random.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/carrier.h"
 #include "echopath/signal/echo_states.h"
 #include "echopath/signal/kernels.h"
 #include "echopath/signal/per_sample.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace {

@@ -54,9 +54,22 @@ void DiscLattice::add_rows(double cell_area, const Eigen::Vector2d& shift) {
   }
 }
 
+size_t DiscLattice::row_of(int64_t index) const {
+  return static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), index) - first_.begin()) - 1;
+}
+
 Eigen::Vector2d DiscLattice::point(int64_t index) const {
-  const auto row = static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), index) - first_.begin()) - 1;
+  const size_t row = row_of(index);
   return rows_[row] + static_cast<double>(index - first_[row]) * step_;
+}
+
+void DiscLattice::points(int64_t first, int64_t count, Eigen::Vector2d* out) const {
+  const int64_t end = first + count;
+  for (size_t row = row_of(first); first < end; ++row) {
+    for (; first < std::min(end, first_[row + 1]); ++first) {
+      *out++ = rows_[row] + static_cast<double>(first - first_[row]) * step_;
+    }
+  }
 }
 
 int DiscLattice::batch_of(int64_t index) const {

@@ -22,9 +22,11 @@ class DiscLattice : public DiscPoints {
   int64_t size() const override { return first_.back(); }
   double cell_area() const override { return cell_area_; }
   Eigen::Vector2d point(int64_t index) const override;
+  void points(int64_t first, int64_t count, Eigen::Vector2d* out) const override;
   int batch_of(int64_t index) const override;
 
  private:
+  size_t row_of(int64_t index) const;
   void fill(double cell_area, const std::vector<Eigen::Vector2d>& shifts);
   void add_rows(double cell_area, const Eigen::Vector2d& shift);
 

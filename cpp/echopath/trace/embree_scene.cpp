@@ -61,16 +61,18 @@ void set_ray(RTCRay& ray, const Vector& from, const Vector& direction, float far
   ray.flags = 0;
 }
 
-// Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
-// says.
-void clear_rays(RTCRay16& rays) {
+// What is the same for all rays. Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree
+// looks at them whatever `valid` says.
+void begin_packet(RTCRay16& rays) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
     rays.org_x[lane] = rays.org_y[lane] = rays.org_z[lane] = 0.0f;
     rays.dir_x[lane] = rays.dir_y[lane] = rays.dir_z[lane] = 0.0f;
     rays.tnear[lane] = 0.0f;
     rays.tfar[lane] = -1.0f;
     rays.time[lane] = 0.0f;
-    rays.mask[lane] = rays.id[lane] = rays.flags[lane] = 0;
+    rays.mask[lane] = 0xFFFFFFFFu;
+    rays.id[lane] = 0;
+    rays.flags[lane] = 0;
   }
 }
 
@@ -82,12 +84,7 @@ void set_ray(RTCRay16& rays, int lane, const Vector& from, const Vector& directi
   rays.dir_x[lane] = static_cast<float>(direction.x());
   rays.dir_y[lane] = static_cast<float>(direction.y());
   rays.dir_z[lane] = static_cast<float>(direction.z());
-  rays.tnear[lane] = 0.0f;
   rays.tfar[lane] = far;
-  rays.time[lane] = 0.0f;
-  rays.mask[lane] = 0xFFFFFFFFu;
-  rays.id[lane] = 0;
-  rays.flags[lane] = 0;
 }
 
 #if RTC_VERSION_MAJOR >= 4
@@ -135,9 +132,11 @@ void forget_hit(RTCHit& hit) {
   hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
-void forget_hit(RTCHit16& hits, int lane) {
-  hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-  hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+void forget_hits(RTCHit16& hits) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
 }
 
 // Meets the plane of a triangle in double; (u, v) of the point of the triangle next to there, each rounded once.
@@ -180,7 +179,6 @@ struct EmbreeScene::Device {
   RTCScene scene = nullptr;
   bool has_tree_per_mesh = false;
   std::vector<bool> has_mesh;  // by mesh ID
-  double lift = 0.0;  // m
 
   Device() : device(rtcNewDevice(device_options())) {
     if (!device) throw DeviceError("Embree: no device could be made");
@@ -264,7 +262,7 @@ void EmbreeScene::update(const Scene& scene, const Pose& pose, const Vec3& origi
     device_->set_mesh(mesh_id, meshes_.vertices(mesh_id), meshes_.triangles(mesh_id));
   }
   const double largest = std::max(1.0, meshes_.largest_coordinate());
-  device_->lift = 4.0 * 0x1.0p-24 * largest;
+  lift_ = 4.0 * 0x1.0p-24 * largest;
   reach_ = 2.0 * largest;
   if (!changed.empty() || meshes_.size() == 0) device_->build(job);
 }
@@ -279,11 +277,6 @@ Vec3 EmbreeScene::origin_near(const Scene& scene, const Pose& pose, const Vec3& 
   if (!(near_moves || any_moves(scene)) || length <= 0.0) return nearest;
   const double step = std::exp2(std::floor(std::log2(length)) - 3.0);
   return (nearest / step).array().round().matrix() * step;
-}
-
-Vec3 EmbreeScene::moved_up(const Vec3& from, const Vec3& direction) const {
-  const double distance = -from.dot(direction);  // to the point of the ray next to the origin
-  return distance > 2.0 * reach_ ? Vec3(from + (distance - 2.0 * reach_) * direction) : from;
 }
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
@@ -304,12 +297,13 @@ void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count,
   alignas(64) RTCRayHit16 queries;
   Lanes lanes;
   std::fill_n(lanes.valid.begin(), count, -1);
-  clear_rays(queries.ray);
+  begin_packet(queries.ray);
+  forget_hits(queries.hit);
+  const bool is_near = from.norm() <= 2.0 * reach_;  // then no ray has to be moved up
   if (log_) log_->calls.push_back({QueryLog::Kind::kClosestPacket, static_cast<uint8_t>(count)});
   for (int lane = 0; lane < count; ++lane) {
-    const Vec3 start = moved_up(from, directions[lane]);
+    const Vec3 start = is_near ? from : moved_up(from, directions[lane]);
     set_ray(queries.ray, lane, start, directions[lane], kInfinity);
-    forget_hit(queries.hit, lane);
     if (log_) log_->add(start, directions[lane], kInfinity);
   }
   embree_intersect(device_->scene, lanes.valid.data(), queries);
@@ -364,16 +358,6 @@ void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& directio
   hit.curvature = smooth.curvature;
 }
 
-// `far` is 0 where the points are too near to each other for anything to lie between them.
-EmbreeScene::Line EmbreeScene::line_between(const Vec3& from, const Vec3& to) const {
-  const Vec3 whole = to - from;
-  const double length = whole.norm();
-  if (length <= 2.0 * device_->lift) return {from, Vec3::UnitX(), 0.0f};
-  const Vec3 direction = whole / length, start = moved_up(from, direction);
-  const double rest = length - direction.dot(start - from);
-  return {start, direction, static_cast<float>(rest * (1.0 - 1e-6))};
-}
-
 // Embree marks an occluded ray with a far end of -infinity.
 bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
   const Line line = line_between(from, to);
@@ -397,7 +381,7 @@ void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* block
   for (size_t begin = 0; begin < count; begin += kPacketSize) {
     const size_t num_lanes = std::min<size_t>(kPacketSize, count - begin);
     Lanes lanes;
-    clear_rays(rays);
+    begin_packet(rays);
     if (log_) log_->calls.push_back({QueryLog::Kind::kShadowPacket, static_cast<uint8_t>(num_lanes)});
     for (size_t k = 0; k < num_lanes; ++k) {
       const Line line = line_between(segments[begin + k].from, segments[begin + k].to);
@@ -436,16 +420,14 @@ void EmbreeScene::Device::ask(const QueryLog::Ray& ray, bool is_shadow) const {
 void EmbreeScene::Device::ask(const QueryLog::Ray* rays, int count, bool is_shadow) const {
   alignas(64) RTCRayHit16 queries;
   Lanes lanes;
-  clear_rays(queries.ray);
+  begin_packet(queries.ray);
+  if (!is_shadow) forget_hits(queries.hit);
   for (int lane = 0; lane < count; ++lane) {
     set_ray(queries.ray, lane, rays[lane].from, rays[lane].direction, rays[lane].far);
     lanes.valid[static_cast<size_t>(lane)] = rays[lane].far > 0 ? -1 : 0;
-    if (!is_shadow) forget_hit(queries.hit, lane);
   }
   if (is_shadow) embree_occluded(scene, lanes.valid.data(), queries.ray);
   else embree_intersect(scene, lanes.valid.data(), queries);
 }
-
-Vec3 EmbreeScene::lifted(const Vec3& point, const Vec3& normal) const { return point + device_->lift * normal; }
 
 }  // namespace echopath

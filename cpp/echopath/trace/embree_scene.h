@@ -61,7 +61,7 @@ class EmbreeScene {
   // nothing else.
   void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
-  Vec3 lifted(const Vec3& point, const Vec3& normal) const;
+  Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
 
   // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
   // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
@@ -88,13 +88,25 @@ class EmbreeScene {
     Vec3 from, direction;
     float far;
   };
-  Vec3 moved_up(const Vec3& from, const Vec3& direction) const;
-  Line line_between(const Vec3& from, const Vec3& to) const;
+  Vec3 moved_up(const Vec3& from, const Vec3& direction) const {
+    const double distance = -from.dot(direction);  // to the point of the ray next to the origin
+    return distance > 2.0 * reach_ ? Vec3(from + (distance - 2.0 * reach_) * direction) : from;
+  }
+  // `far` is 0 where the points are too near to each other for anything to lie between them.
+  Line line_between(const Vec3& from, const Vec3& to) const {
+    const Vec3 whole = to - from;
+    const double length = whole.norm();
+    if (length <= 2.0 * lift_) return {from, Vec3::UnitX(), 0.0f};
+    const Vec3 direction = (1.0 / length) * whole, start = moved_up(from, direction);
+    const double rest = length - direction.dot(start - from);
+    return {start, direction, static_cast<float>(rest * (1.0 - 1e-6))};
+  }
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
   QueryLog* log_ = nullptr;
+  double lift_ = 0.0;   // m
   double reach_ = 0.0;  // m: radius around the origin that holds the scene
   PosedMeshes meshes_;
   std::vector<Surface> surfaces_;  // by mesh ID

@@ -144,19 +144,22 @@ int LaunchPlan::batch_of(int stratum, int64_t ray) const {
   return points[k]->batch_of(ray - first_ray[k]);
 }
 
-Vec3 LaunchPlan::direction(int index, int64_t ray) const {
-  const auto k = static_cast<size_t>(index);
-  return strata[k].direction(points[k]->point(ray - first_ray[k]));
+Eigen::Vector2d LaunchPlan::point_of(int stratum, int64_t ray) const {
+  const auto k = static_cast<size_t>(stratum);
+  return points[k]->point(ray - first_ray[k]);
 }
 
-double LaunchPlan::ray_density(const Vec3& direction, int own, double aimed_share) const {
-  double density = 0.0;
-  for (int k = 0; k < static_cast<int>(strata.size()); ++k) {
-    const Stratum& stratum = strata[static_cast<size_t>(k)];
-    if (stratum.num_rays == 0 || (k != own && !stratum.contains(direction))) continue;
-    density += (is_defensive(k) ? 1.0 : aimed_share) * stratum.ray_density;
+void LaunchPlan::points_of(int64_t begin, int count, Columns out) const {
+  const int64_t end = begin + count;
+  for (int stratum = stratum_of(begin); begin < end; ++stratum) {
+    const auto k = static_cast<size_t>(stratum);
+    const int64_t num_here = std::min(end, first_ray[k + 1]) - begin;
+    points[k]->points(begin - first_ray[k], num_here, out.points);
+    std::fill_n(out.strata, num_here, stratum);
+    for (int64_t i = 0; i < num_here; ++i) out.batches[i] = batches == 1 ? 0 : batch_of(stratum, begin + i);
+    out = {out.strata + num_here, out.batches + num_here, out.points + num_here};
+    begin += num_here;
   }
-  return density;
 }
 
 }  // namespace echopath

@@ -14,6 +14,12 @@ namespace echopath {
 // there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
 // At most 255 strata: images over the most mirrors are left out first, then the objects of the smallest solid angle.
 struct LaunchPlan {
+  // Where to write what belongs to each of some rays.
+  struct Columns {
+    int *strata, *batches;
+    Eigen::Vector2d* points;  // of the unit disc
+  };
+
   std::vector<Stratum> strata;
   // Of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc.
   std::vector<std::unique_ptr<const DiscPoints>> points;
@@ -25,13 +31,10 @@ struct LaunchPlan {
   int batch_of(int stratum, int64_t ray) const;
   // Rays per sr of one batch inside the cone.
   double lattice_density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density / batches; }
-  // Unit direction of a ray.
-  Vec3 direction(int stratum, int64_t ray) const;
+  Eigen::Vector2d point_of(int stratum, int64_t ray) const;
+  // Of `count` rays in a row.
+  void points_of(int64_t begin, int count, Columns out) const;
   bool is_defensive(int stratum) const { return stratum + 1 == static_cast<int>(strata.size()); }
-  // Expected rays per sr toward `direction`, of all strata together (balance heuristic). `own`: a stratum that is counted
-  // in any case, -1 for none: a ray at the rim of its cone must not fall out of it by rounding. `aimed_share`: of the rays
-  // of the cones that count.
-  double ray_density(const Vec3& direction, int own = -1, double aimed_share = 1.0) const;
 };
 
 struct LaunchSettings {

@@ -11,6 +11,12 @@ constexpr double kRim = 1e-3;      // m: single precision of the mirrors in the 
 
 }  // namespace
 
+LegFinder::LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency,
+                     const Vec3& polarization)
+    : geometry_(geometry), mirrors_(mirrors), polarization_(polarization) {
+  for (const Mirror& mirror : mirrors) models_.emplace_back(*mirror.material, frequency);
+}
+
 AntennaView LegFinder::view_of(const Vec3& antenna) const {
   return {antenna, find_beams(antenna, mirrors_, kMaxLegMirrors)};
 }
@@ -36,7 +42,7 @@ void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, st
   }
   Leg& leg = legs.emplace_back();
   leg.length = line.norm();
-  leg.to_antenna = line / leg.length;
+  leg.to_antenna = (1.0 / leg.length) * line;
   leg.at_antenna = -leg.to_antenna;
 }
 
@@ -115,11 +121,11 @@ void LegFinder::keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& s
 void LegFinder::set_gain(Leg& leg) const {
   for (int k = 0; k < leg.num_bounces; ++k) {
     LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
-    const Mirror& mirror = mirrors_[static_cast<size_t>(bounce.mirror)];
-    const PolarizationMode mode = polarization_mode(polarization_, bounce.direction, mirror.normal);
-    const SurfaceResponse response = respond(*mirror.material, frequency_, -bounce.direction.dot(bounce.normal), mode);
+    const SurfaceModel& model = models_[static_cast<size_t>(bounce.mirror)];
+    const PolarizationMode mode = mode_along(model, polarization_, bounce.direction, bounce.normal);
+    const SurfaceResponse response = model.respond(-bounce.direction.dot(bounce.normal), mode);
     leg.gain *= response.gamma * response.coherent *
-                mirror_sign(*mirror.material, mode, polarization_, bounce.direction, mirror.normal);
+                mirror_sign(model.material(), mode, polarization_, bounce.direction, bounce.normal);
     bounce.specular_share = response.coherent * response.coherent;
     leg.specular_share *= bounce.specular_share;
   }

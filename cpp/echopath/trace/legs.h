@@ -11,11 +11,11 @@ namespace echopath {
 
 // A bounce of a leg, seen by a wave that travels from the surface point to the antenna.
 struct LegBounce {
-  int mirror = 0;      // index into the mirrors
-  Hit hit{};
+  int mirror;          // index into the mirrors
+  Hit hit;
   Vec3 direction;      // unit, of travel toward the mirror
   Vec3 normal;         // unit, on the lit side
-  double specular_share = 1.0;  // s_m^2
+  double specular_share;  // s_m^2
 };
 
 struct Leg {
@@ -27,6 +27,8 @@ struct Leg {
   Vec3 at_antenna;            // unit, from the antenna toward the point or its image
   std::complex<double> gain = 1.0;  // field factor: product of Gamma_m s_m of the mirrors
   double specular_share = 1.0;      // product of s_m^2: the probability with which a ray goes on specularly over all of them
+
+  Leg() {}  // so that a list of legs grows without touching bounces that are not there
 };
 
 struct AntennaView {
@@ -53,8 +55,7 @@ struct LegSearch {
 
 class LegFinder {
  public:
-  LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization)
-      : geometry_(geometry), mirrors_(mirrors), frequency_(frequency), polarization_(polarization) {}
+  LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization);
 
   AntennaView view_of(const Vec3& antenna) const;
   // All visible legs between a point and `antenna`, direct first, then in the order of the beams.
@@ -73,7 +74,7 @@ class LegFinder {
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
-  double frequency_;
+  std::vector<SurfaceModel> models_;  // of the mirrors
   Vec3 polarization_;
 };
 

@@ -37,4 +37,15 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
 double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
                    const Vec3& normal);
 
+// Of a surface whose coefficients may depend on it; `direction`: unit, of travel.
+inline PolarizationMode mode_along(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
+  return model.is_dielectric() ? polarization_mode(polarization, direction, normal) : PolarizationMode::kTe;
+}
+
+// What a surface makes of a wave that travels along `direction`, a unit vector; `normal` is on the lit side.
+inline SurfaceResponse respond_along(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction,
+                                     const Vec3& normal) {
+  return model.respond(-direction.dot(normal), mode_along(model, polarization, direction, normal));
+}
+
 }  // namespace echopath

@@ -6,11 +6,13 @@
 #include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 namespace echopath {
+
+namespace {
+
+constexpr int64_t kOfRay = -1;
+
+}  // namespace
 
 void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
                            int path_stratum) {
@@ -24,11 +26,9 @@ void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::com
   hits.insert(hits.end(), first, first + count);
 }
 
-void PathBlock::add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
-                           int path_stratum) {
-  pending_.push_back(rows.size());
-  used_depth_ = std::max(used_depth_, skipped + count);
-  add_record(skipped, count, diffuse_bits, path_weight, path_stratum);
+void PathBlock::add_prefix(int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
+  used_depth_ = std::max(used_depth_, count);
+  add_record(kOfRay, count, diffuse_bits, path_weight, path_stratum);
 }
 
 void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
@@ -51,10 +51,14 @@ void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
 }
 
 void PathBlock::end_ray(const Hit* ray_hits) {
-  const auto base = static_cast<int64_t>(hits.size());
-  hits.insert(hits.end(), ray_hits, ray_hits + used_depth_);
-  for (const size_t path : pending_) rows[path].offset += base;
-  pending_.clear();
+  if (used_depth_ > 0) {
+    const auto base = static_cast<int64_t>(hits.size());
+    for (int k = 0; k < used_depth_; ++k) hits.push_back(ray_hits[k]);
+    for (size_t i = first_of_ray_; i < rows.size(); ++i) {
+      if (rows[i].offset == kOfRay) rows[i].offset = base;
+    }
+  }
+  first_of_ray_ = rows.size();
   used_depth_ = 0;
 }
 
@@ -94,21 +98,23 @@ void PathBlock::clear() {
   fan_hits.clear();
   statistics = TraceStatistics();
   num_fan_paths_ = num_fan_hits_ = 0;
+  first_of_ray_ = 0;
 }
 
 // The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.
 void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const {
-  for (size_t i = begin; i < end; ++i) {
-    const Row& from = rows[i];
-    *to.offsets = first_hit + from.offset;
-    *to.num_bounces = from.num_bounces;
-    *to.diffuse = from.diffuse;
-    *to.weight = from.weight;
-    *to.stratum = from.stratum;
-    *to.batch = from.batch;
-    *to.flags = from.flags;
-    to.skip_rows(1);
+  const PathRows at = to;  // where no store can change it
+  for (size_t i = 0; i < end - begin; ++i) {
+    const Row& from = rows[begin + i];
+    at.offsets[i] = first_hit + from.offset;
+    at.num_bounces[i] = from.num_bounces;
+    at.diffuse[i] = from.diffuse;
+    at.weight[i] = from.weight;
+    at.stratum[i] = from.stratum;
+    at.batch[i] = from.batch;
+    at.flags[i] = from.flags;
   }
+  to.skip_rows(end - begin);
   // These end with the last path that has an entry.
   for (size_t i = begin; i < std::min(end, curved_cell.size()); ++i) paths.curved_cell[row + i - begin] = curved_cell[i];
   for (size_t i = begin; i < std::min(end, jones.size()); ++i) paths.jones[row + i - begin] = jones[i];
@@ -135,13 +141,6 @@ void PathBlock::write(PathRows to, Paths& paths) const {
 
 namespace {
 
-// To the system: what thousands of small blocks leave behind is never large enough for a later array.
-void give_back_free_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
-}
-
 void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_queries += part.num_queries;
   total.num_hits += part.num_hits;
@@ -163,19 +162,28 @@ struct Places {
   }
 };
 
-// Columns one by one beside each other: their memory is touched for the first time here.
+// Of one column: asked for first, so that all of them lie in large pages, and touched by one thread beside the others'.
+struct Room {
+  std::function<void()> ask, fill;
+};
+
+template <class T>
+Room room_for(std::vector<T>& column, size_t count) {
+  return {[&column, count] { reserve_large(column, count); }, [&column, count] { column.resize(count); }};
+}
+
 void make_room(const std::vector<PathBlock>& blocks, size_t num_paths, Paths& paths) {
   const auto has = [&](const auto& column) {
     return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock& block) { return !(block.*column).empty(); });
   };
   const bool has_cells = has(&PathBlock::curved_cell), has_jones = has(&PathBlock::jones);
-  const std::function<void()> columns[] = {
-      [&] { resize_large(paths.offsets, num_paths); },     [&] { resize_large(paths.diffuse, num_paths); },
-      [&] { resize_large(paths.weight, num_paths); },      [&] { resize_large(paths.flags, num_paths); },
-      [&] { resize_large(paths.num_bounces, num_paths); }, [&] { resize_large(paths.stratum, num_paths); },
-      [&] { resize_large(paths.batch, num_paths); },       [&] { resize_large(paths.curved_cell, has_cells ? num_paths : 0); },
-      [&] { resize_large(paths.jones, has_jones ? num_paths : 0); }};
-  parallel_for(std::ssize(columns), [&](int64_t i) { columns[i](); });
+  const Room rooms[] = {
+      room_for(paths.offsets, num_paths), room_for(paths.diffuse, num_paths), room_for(paths.weight, num_paths),
+      room_for(paths.flags, num_paths), room_for(paths.num_bounces, num_paths), room_for(paths.stratum, num_paths),
+      room_for(paths.batch, num_paths), room_for(paths.curved_cell, has_cells ? num_paths : 0),
+      room_for(paths.jones, has_jones ? num_paths : 0)};
+  for (const Room& room : rooms) room.ask();
+  parallel_for(std::ssize(rooms), [&](int64_t i) { rooms[i].fill(); });
 }
 
 }  // namespace
@@ -201,7 +209,6 @@ void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
   blocks.clear();
   paths.hits = std::move(hits);
   paths.frame.statistics.num_paths = paths.num_paths();
-  give_back_free_memory();
 }
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
 // What one chunk of rays records; chunks are joined in their order.
+#include <memory_resource>
 #include <vector>
 
 #include "echopath/trace/path_fan.h"
@@ -15,21 +16,25 @@ class PathBlock {
     uint32_t flags;
     uint8_t num_bounces, stratum, batch;
   };
-  std::vector<Hit> hits;
-  std::vector<Row> rows;  // the paths that are not of fans
+  // Its arrays are of that memory, which must outlive it.
+  explicit PathBlock(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : hits(memory), rows(memory), curved_cell(memory), jones(memory), fans(memory), fan_legs(memory), fan_hits(memory) {}
+
+  std::pmr::vector<Hit> hits;
+  std::pmr::vector<Row> rows;  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
   uint32_t current_half = 0;         // likewise: 0 or kSecondHalf
-  std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before them
-  std::vector<JonesMatrix> jones;  // likewise
+  std::pmr::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
+  std::pmr::vector<JonesMatrix> jones;  // likewise
   TraceStatistics statistics;
-  std::vector<PathFan> fans;
-  std::vector<FanLeg> fan_legs;  // of each fan in turn
-  std::vector<Hit> fan_hits;     // of their mirrors
+  std::pmr::vector<PathFan> fans;
+  std::pmr::vector<FanLeg> fan_legs;  // of each fan in turn
+  std::pmr::vector<Hit> fan_hits;     // of their mirrors
 
   // A path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
-  // A path over hits [skipped, skipped + count) of the current ray, which all such paths share.
-  void add_prefix(int skipped, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
+  // A path over the first `count` hits of the current ray, which all such paths share.
+  void add_prefix(int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // A path over `first` [count], given in the order in which it was traced, that runs the other way (kReversedPath).
   void add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
   // Paths over `hit` and every pair of legs that `add_leg` adds next, those in and then those out, but for those of more than
@@ -58,8 +63,8 @@ class PathBlock {
   void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const;
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
 
-  std::vector<size_t> pending_;  // paths of the current ray whose offset is still relative to the ray
-  int used_depth_ = 0;
+  size_t first_of_ray_ = 0;  // path of the current ray
+  int used_depth_ = 0;       // of its hits, by paths over the first of them, whose offset is kOfRay until it ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;
 };
 

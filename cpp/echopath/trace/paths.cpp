@@ -62,14 +62,6 @@ double Stratum::solid_angle() const { return kTwoPi * versine; }
 
 bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - axis).squaredNorm() <= versine; }
 
-Vec3 Stratum::direction(const Eigen::Vector2d& point) const {
-  // In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
-  const double here = versine * std::min(1.0, point.squaredNorm());
-  const Eigen::Vector2d across = point * std::sqrt(versine * (2.0 - here));
-  const Vec3 first = axis.unitOrthogonal(), second = axis.cross(first);
-  return ((1.0 - here) * axis + across[0] * first + across[1] * second).normalized();
-}
-
 void Paths::validate() const {
   const size_t size = offsets.size();
   require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&

@@ -37,8 +37,6 @@ struct Stratum {
 
   double solid_angle() const;                  // sr
   bool contains(const Vec3& direction) const;  // unit direction
-  // Unit direction of a point of the unit disc, of which the cone is an equal-area (Lambert) projection.
-  Vec3 direction(const Eigen::Vector2d& point) const;
 };
 
 // The batch of paths that rays did not find (image method): they stand in each batch's estimate in full.

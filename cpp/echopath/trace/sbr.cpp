@@ -15,13 +15,14 @@ static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs kn
 // Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 
-Vec3 cosine_lobe(const Vec3& normal, const std::array<double, 2>& random) {
-  const double sine = std::sqrt(random[0]);
-  const Vec3 first = normal.unitOrthogonal();
-  const Vec3 second = normal.cross(first);
-  return (std::sqrt(1.0 - random[0]) * normal + sine * std::cos(kTwoPi * random[1]) * first +
-          sine * std::sin(kTwoPi * random[1]) * second)
-      .normalized();
+// The direction over a surface whose components along two axes across the unit normal and along it are given. The axes turn
+// smoothly but for one line (Duff et al. 2017, "Building an orthonormal basis, revisited").
+Vec3 over_surface(const Vec3& normal, const Vec3& local) {
+  const double sign = std::copysign(1.0, normal.z());
+  const double a = -1.0 / (sign + normal.z()), b = normal.x() * normal.y() * a;
+  const Vec3 first(1.0 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x());
+  const Vec3 second(b, sign + normal.y() * normal.y() * a, -normal.y());
+  return local.x() * first + local.y() * second + local.z() * normal;
 }
 
 // The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
@@ -49,12 +50,12 @@ double curvature_along(const RayHit& point, const Vec3& direction) {
 
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
-    : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), settings_(settings),
+    : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), cones_(plan.strata), settings_(settings),
       legs_(geometry, mirrors, settings.frequency, settings.polarization), transmitter_(legs_.view_of(settings.transmitter)),
       receiver_(legs_.view_of(settings.receiver)), mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) material_.push_back(scene.node_of(id).material.get());
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) models_.emplace_back(*scene.node_of(id).material, settings.frequency);
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
@@ -70,23 +71,31 @@ void RayShooter::shoot(int64_t begin, int64_t end, PathBlock& block) const {
 
 // Together to their first hits, each on its own from there.
 void RayShooter::shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const {
-  for (int k = 0; k < count; ++k) {
-    packet.strata[k] = plan_.stratum_of(begin + k);
-    packet.directions[k] = plan_.direction(packet.strata[k], begin + k);
-  }
+  launch_packet(begin, count, packet);
   geometry_.intersect(settings_.transmitter, packet.directions.data(), count, packet.verdicts.data(), packet.hits.data());
   block.statistics.num_queries += count;
   look_at_receiver(count, packet, block);
   Surface surface;
   for (int k = 0; k < count; ++k) {
+    if (packet.verdicts[k] == EmbreeScene::Verdict::kMiss) continue;
     Ray ray = launched(begin + k, packet.strata[k], packet.directions[k]);
-    block.current_batch = static_cast<uint8_t>(plan_.batch_of(ray.stratum, ray.index));
+    block.current_batch = static_cast<uint8_t>(packet.batches[k]);
     block.current_half = half_of_ray(ray.index);
     surface.point = packet.hits[k];
     surface.receiver = packet.receiver[k];
+    surface.chance = packet.chance.hit(k);
+    surface.packet = &packet.chance;
+    surface.lane = k;
     if (arrive(ray, packet.verdicts[k], surface, block)) follow(ray, surface, scratch, block);
     block.end_ray(ray.hits.data());
   }
+}
+
+// Directions, and what chance decides where rays arrive.
+void RayShooter::launch_packet(int64_t begin, int count, Packet& packet) const {
+  plan_.points_of(begin, count, {packet.strata.data(), packet.batches.data(), packet.points.data()});
+  for (int k = 0; k < count; ++k) packet.directions[k] = cones_.direction(packet.strata[k], packet.points[k]);
+  packet.chance.draw(settings_.seed, begin, count, packet.batches.data());
 }
 
 // From all first hits together: they lie beside each other. What a mirror needs depends on more.
@@ -96,7 +105,7 @@ void RayShooter::look_at_receiver(int count, Packet& packet, PathBlock& block) c
   for (int k = 0; k < count; ++k) {
     const RayHit& hit = packet.hits[k];
     packet.receiver[k] = Sight::kUnknown;
-    if (packet.verdicts[k] != EmbreeScene::Verdict::kHit || material_[hit.hit.mesh_id]->mirror) continue;
+    if (packet.verdicts[k] != EmbreeScene::Verdict::kHit || models_[hit.hit.mesh_id].material().mirror) continue;
     if (hit.normal.dot(settings_.receiver - hit.position) <= 0) continue;
     packet.segments[num_asked] = {geometry_.lifted(hit.position, hit.normal), settings_.receiver};
     asked[num_asked++] = k;
@@ -113,7 +122,7 @@ RayShooter::Ray RayShooter::launched(int64_t index, int stratum, const Vec3& dir
   ray.stratum = stratum;
   ray.from = settings_.transmitter;
   ray.direction = ray.launch_direction = direction;
-  ray.leg_density = ray.launch_density = plan_.ray_density(direction, stratum);
+  ray.leg_density = ray.launch_density = cones_.density_of_ray(direction, stratum);
   if (settings_.is_polarized) ray.polarized = launched_fields(direction);
   if (has_smooth_) ray.rays = RayDifferential::from_point(direction);
   return ray;
@@ -129,8 +138,11 @@ void RayShooter::follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock&
 
 bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
   ++block.statistics.num_queries;
+  if (!arrive(ray, geometry_.intersect(ray.from, ray.direction, surface.point), surface, block)) return false;
   surface.receiver = Sight::kUnknown;
-  return arrive(ray, geometry_.intersect(ray.from, ray.direction, surface.point), surface, block);
+  surface.packet = nullptr;
+  surface.chance = hit_chance(settings_.seed, ray.index, ray.depth);
+  return true;
 }
 
 // At the point of `surface`, if it is one.
@@ -150,12 +162,13 @@ bool RayShooter::arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;
   if (has_smooth_ && ray.coherent) follow_tube(ray, surface);
-  surface.material = material_[surface.point.hit.mesh_id];
-  const PolarizationMode mode = polarization_mode(settings_.polarization, ray.direction, surface.point.normal);
-  surface.response = respond(*surface.material, settings_.frequency, surface.cos_incidence, mode);
+  surface.model = &models_[surface.point.hit.mesh_id];
+  surface.material = &surface.model->material();
+  const bool is_dielectric = surface.model->is_dielectric();
+  surface.mode = mode_along(*surface.model, settings_.polarization, ray.direction, surface.point.normal);
+  surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
   if (!surface.material->mirror) {
-    const bool is_dielectric = surface.material->permittivity.has_value();
-    ray.has_dielectric_tm |= is_dielectric && mode == PolarizationMode::kTm;
+    ray.has_dielectric_tm |= surface.mode == PolarizationMode::kTm;
     ray.has_odd_conductors ^= !is_dielectric;
   }
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
@@ -186,27 +199,23 @@ double RayShooter::survival_of(const SurfaceResponse& response, int num_bounces)
   return num_bounces < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
 }
 
-RayShooter::Odds RayShooter::odds_of(const Material& material, const SurfaceResponse& response) const {
+RayShooter::Odds RayShooter::odds_of(const Surface& surface, const SurfaceResponse& response) const {
   const Odds shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
   const bool is_asked = settings_.specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
   // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
-  if (!is_asked || material.mirror) return shares;
+  if (!is_asked || surface.material->mirror) return shares;
   return {settings_.specular_probability, 1.0 - settings_.specular_probability};
 }
 
 bool RayShooter::bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   const SurfaceResponse& response = surface.response;
-  const Odds odds = odds_of(*surface.material, response);
+  const Odds odds = odds_of(surface, response);
   const int num_bounces = ray.coherent ? ray.depth : ray.depth - scratch.chain.first;
   const double survival = survival_of(response, num_bounces);
-  const auto dimension = static_cast<uint32_t>(2 * ray.depth);
   const bool is_open = odds.specular > 0 && odds.diffuse > 0;
   bool specular = odds.diffuse == 0;
-  if (is_open || survival < 1) {
-    const auto coin = uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
-    if (coin[1] >= survival) return false;
-    if (is_open) specular = coin[0] < odds.specular;
-  }
+  if (surface.chance.survival_coin >= survival) return false;
+  if (is_open) specular = surface.chance.lobe_coin < odds.specular;
   ray.from = geometry_.lifted(surface.point.position, surface.point.normal);
   if (specular) bounce_specular(ray, surface, odds.specular * survival, scratch.chain);
   else bounce_diffuse(ray, surface, odds.diffuse * survival, scratch, block);
@@ -225,8 +234,7 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probab
   const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
   const int mirror = mirror_of_mesh_[point.hit.mesh_id];
   if (mirror >= 0) {
-    const PolarizationMode mode = polarization_mode(settings_.polarization, ray.direction, point.normal);
-    ray.coefficient *= mirror_sign(*surface.material, mode, settings_.polarization, ray.direction, point.normal);
+    ray.coefficient *= mirror_sign(*surface.material, surface.mode, settings_.polarization, ray.direction, point.normal);
   }
   ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
   ray.coefficient *= response.gamma * response.coherent;
@@ -246,18 +254,19 @@ void RayShooter::reflect_tube(Ray& ray, const Surface& surface) const {
   ray.is_curved = ray.is_curved || point.is_smooth;
 }
 
-// Two numbers in [0, 1) for the direction in which the ray leaves its hit diffusely. Neighbours are neighbours no more deeper
-// in a chain.
-std::array<double, 2> RayShooter::scatter_numbers(const Ray& ray, int batch) const {
-  if (ray.coherent) return scatter_point(settings_.seed, batch, ray.index, ray.depth - 1);
-  const auto dimension = static_cast<uint32_t>(2 * ray.depth + 1);
-  return uniform2(settings_.seed, Stream::kBounce, static_cast<uint64_t>(ray.index), dimension);
+// The direction in which the ray leaves its hit diffusely, the normal along z. Neighbours are neighbours no more deeper in a
+// chain.
+Vec3 RayShooter::scatter_lobe(const Ray& ray, const Surface& surface, int batch) const {
+  if (surface.packet) return surface.packet->lobe(surface.lane);
+  if (ray.coherent) return cosine_lobe(scatter_point(settings_.seed, batch, ray.index, ray.depth - 1));
+  const auto index = static_cast<uint64_t>(ray.index);
+  return cosine_lobe(uniform2(settings_.seed, Stream::kBounce, index, static_cast<uint32_t>(ray.depth)));
 }
 
 void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch,
                                 PathBlock& block) const {
   const Vec3& normal = surface.point.normal;
-  const Vec3 out = cosine_lobe(normal, scatter_numbers(ray, block.current_batch));
+  const Vec3 out = over_surface(normal, scatter_lobe(ray, surface, block.current_batch));
   if (ray.coherent) begin_chain(ray, surface, probability, scratch);
   ray.coefficient *= diffuse_coefficient(surface.response);
   ray.area *= surface.area;

@@ -13,7 +13,9 @@
 // the opposite order would have to use such a mirror.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include "echopath/trace/launch.h"
+#include "echopath/trace/launch_cones.h"
 #include "echopath/trace/legs.h"
+#include "echopath/trace/chance.h"
 #include "echopath/trace/path_block.h"
 
 namespace echopath {
@@ -44,10 +46,12 @@ class RayShooter {
   struct Odds;     // of going on
   struct Packet;   // of neighbouring rays up to their first hits
   struct Chain;    // of diffuse hits
+  using RayHits = std::array<Hit, 64>;
 
   void shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const;
   void look_at_receiver(int count, Packet& packet, PathBlock& block) const;
   Ray launched(int64_t index, int stratum, const Vec3& direction) const;
+  void launch_packet(int64_t begin, int count, Packet& packet) const;
   void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
@@ -56,6 +60,7 @@ class RayShooter {
   bool opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const;
   void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
               bool with_reversal, PathBlock& block) const;
+  static RayHits way_back_over(const Ray& ray, const Leg& leg);
   void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
   bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
   bool arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface, PathBlock& block) const;
@@ -76,8 +81,8 @@ class RayShooter {
   void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
   void bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
-  std::array<double, 2> scatter_numbers(const Ray& ray, int batch) const;
-  Odds odds_of(const Material& material, const SurfaceResponse& response) const;
+  Vec3 scatter_lobe(const Ray& ray, const Surface& surface, int batch) const;
+  Odds odds_of(const Surface& surface, const SurfaceResponse& response) const;
   static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
   SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;
   // sbr_diffuse.cpp: chains of several diffuse hits.
@@ -94,27 +99,27 @@ class RayShooter {
   JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
   void follow_legs(const Ray& ray, Scratch& scratch) const;
-  JonesMatrix pair_matrix(const Ray& ray, const Surface& surface, const Scratch& scratch, size_t in, size_t out) const;
+  JonesMatrix pair_matrix(const Surface& surface, const Scratch& scratch, size_t in, size_t out) const;
   void scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const;
-  FieldPair scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
-  FieldPair scattered_back(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+  FieldPair scattered(const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
+  FieldPair scattered_back(const Surface& surface, const FieldPair& fields, const Vec3& in,
                            const Vec3& out) const;
   JonesMatrix opposite_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const Chain& chain) const;
   FieldPair incident_over(const Leg& leg) const;
   FieldPair fields_over(const Leg& leg, FieldPair fields) const;
   FieldPair axes_over(const Leg& leg) const;
   JonesMatrix received_over(const Leg& leg, const FieldPair& fields) const;
-  std::complex<double> phase_factor(const Ray& ray) const;
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
   const LaunchPlan& plan_;
+  LaunchCones cones_;
   SbrSettings settings_;
   LegFinder legs_;
   AntennaView transmitter_, receiver_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
-  std::vector<const Material*> material_;  // by mesh ID
+  std::vector<SurfaceModel> models_;  // by mesh ID
   std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then

@@ -27,6 +27,16 @@ std::array<Hit, 2 * kMaxLegMirrors + 1> pair_hits(const Leg& in, const Hit& hit,
 
 }  // namespace
 
+// The hits of a ray and then those of a receive leg.
+RayShooter::RayHits RayShooter::way_back_over(const Ray& ray, const Leg& leg) {
+  RayHits hits;
+  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
+  for (int k = 0; k < leg.num_bounces; ++k) {
+    hits[static_cast<size_t>(ray.depth + k)] = leg.bounces[static_cast<size_t>(k)].hit;
+  }
+  return hits;
+}
+
 // Whether the way back, over this hit as a mirror, would have to be dropped.
 bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const {
   const MirrorBounce mirror{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
@@ -85,16 +95,13 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
 // One path over the ray's own hits and a receive leg, and its reversal.
 void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
                         bool with_reversal, PathBlock& block) const {
-  if (ray.depth + leg.num_bounces > settings_.max_bounces) return;
-  std::array<Hit, 64> hits;
-  std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
-  int count = ray.depth;
-  for (int k = 0; k < leg.num_bounces; ++k) hits[static_cast<size_t>(count++)] = leg.bounces[static_cast<size_t>(k)].hit;
-  if (leg.num_bounces == 0) block.add_prefix(0, count, bits, weight, ray.stratum);
-  else block.add(hits.data(), count, bits, weight, ray.stratum);
+  const int count = ray.depth + leg.num_bounces;
+  if (count > settings_.max_bounces) return;
+  if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, weight, ray.stratum);
+  else block.add(way_back_over(ray, leg).data(), count, bits, weight, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
   if (!with_reversal) return;
-  block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
+  block.add_reversal(way_back_over(ray, leg).data(), count, bits, weight, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
 }
 
@@ -130,7 +137,7 @@ std::array<float, 7> RayShooter::cell_behind_curves(const Ray& ray, const Surfac
 void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   const std::complex<double> scalar =
       settings_.is_polarized ? 1.0 : ray.coefficient * diffuse_coefficient(surface.response);
-  const std::complex<double> weight = scalar * std::sqrt(surface.area) * phase_factor(ray);
+  const std::complex<double> weight = scalar * std::sqrt(surface.area) * surface.chance.phase;
   const uint64_t bits = uint64_t{1} << (ray.depth - 1);
   const bool with_reversal = ray.mirror.mesh >= 0;
   for (const Leg& leg : scratch.receive) {
@@ -156,6 +163,7 @@ Leg RayShooter::own_leg(const Ray& ray) const {
 double RayShooter::counted_share(const Surface& surface) const { return surface.material->mirror ? kMirrorShare : 1.0; }
 
 bool RayShooter::is_counted(const Ray& ray, const Surface& surface) const {
+  if (!surface.material->mirror) return true;
   const double share = plan_.is_defensive(ray.stratum) ? 1.0 : counted_share(surface);
   if (share == 1.0) return true;
   const auto hit = static_cast<uint32_t>(ray.depth);
@@ -167,11 +175,11 @@ bool RayShooter::is_counted(const Ray& ray, const Surface& surface) const {
 double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const {
   const double aimed_share = counted_share(surface);
   const double own_density =
-      aimed_share == 1.0 ? ray.launch_density : plan_.ray_density(ray.launch_direction, ray.stratum, aimed_share);
+      aimed_share == 1.0 ? ray.launch_density : cones_.density_of_ray(ray.launch_direction, ray.stratum, aimed_share);
   double hits_per_area =
       own_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
   for (const Leg& leg : others) {
-    hits_per_area += plan_.ray_density(leg.at_antenna, -1, aimed_share) * leg.specular_share *
+    hits_per_area += cones_.density(leg.at_antenna, aimed_share) * leg.specular_share *
                      surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
   }
   return 1.0 / hits_per_area;
@@ -179,13 +187,13 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch);
-  const std::complex<double> weight = std::sqrt(material_area(ray, surface, scratch.transmit)) * phase_factor(ray);
+  const std::complex<double> weight = std::sqrt(material_area(ray, surface, scratch.transmit)) * surface.chance.phase;
   if (settings_.is_polarized) return record_matrices(ray, surface, weight, scratch, block);
   if (!scratch.transmit.empty() || scratch.receive.size() > 1 || scratch.receive[0].num_bounces > 0) {
     return record_fan(ray, surface, weight, scratch, block);
   }
   const std::complex<double> own = weight * diffuse_coefficient(surface.response) * ray.coefficient;
-  block.add_prefix(0, ray.depth, uint64_t{1} << (ray.depth - 1), own, ray.stratum);
+  block.add_prefix(ray.depth, uint64_t{1} << (ray.depth - 1), own, ray.stratum);
 }
 
 void RayShooter::record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
@@ -217,15 +225,9 @@ void RayShooter::record_matrices(const Ray& ray, const Surface& surface, std::co
       if (count > settings_.max_bounces) continue;
       const auto hits = pair_hits(in, surface.point.hit, out);
       block.add(hits.data(), count, uint64_t{1} << in.num_bounces, weight, ray.stratum);
-      block.set_jones(pair_matrix(ray, surface, scratch, i, j));
+      block.set_jones(pair_matrix(surface, scratch, i, j));
     }
   }
-}
-
-std::complex<double> RayShooter::phase_factor(const Ray& ray) const {
-  const double turn = uniform2(settings_.seed, Stream::kPhase, static_cast<uint64_t>(ray.index),
-                               static_cast<uint32_t>(ray.depth))[0];
-  return std::polar(1.0, kTwoPi * turn);
 }
 
 }  // namespace echopath

@@ -22,33 +22,29 @@ const Leg* leg_over(const std::vector<Leg>& legs, MirrorSequence sequence) {
 }
 
 // The transmit leg of a ray, over whatever it is, as its way back; its hits stay those of the ray.
-Leg own_way_back(const Vec3& arrival, const Vec3& departure, std::complex<double> gain) {
-  Leg leg;
+void set_own_way_back(const Vec3& arrival, const Vec3& departure, std::complex<double> gain, Leg& leg) {
   leg.sequence = kOther;
   leg.to_antenna = -arrival;
   leg.at_antenna = departure;
   leg.gain = gain;
-  return leg;
 }
 
 }  // namespace
 
 // What the surface makes of a wave that comes from where `direction` points, a unit vector.
 SurfaceResponse RayShooter::response_toward(const Surface& surface, const Vec3& direction) const {
-  const Vec3& normal = surface.point.normal;
-  return respond(*surface.material, settings_.frequency, normal.dot(direction),
-                 polarization_mode(settings_.polarization, -direction, normal));
+  return respond_along(*surface.model, settings_.polarization, -direction, surface.point.normal);
 }
 
 // Before a coherent ray leaves a surface diffusely, with the given probability.
 void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch) const {
   Chain& chain = scratch.chain;
-  chain = Chain();
-  chain.first = ray.depth - 1;
+  chain.begin(ray.depth - 1);
   chain.density = probability / surface.area;
   if (ray.sequence == kOther) {
     chain.odds = 0.0;
-    chain.back = own_way_back(ray.direction, ray.launch_direction, ray.coefficient);
+    chain.back.emplace();
+    set_own_way_back(ray.direction, ray.launch_direction, ray.coefficient, *chain.back);
     chain.fields = ray.polarized;
     return;
   }
@@ -70,11 +66,11 @@ void RayShooter::leave_diffuse(const Ray& ray, const Surface& surface, const Vec
   chain.coefficient *= diffuse_coefficient(response);
   if (settings_.is_polarized && chain.back) {
     const Vec3 in = is_first ? Vec3(-chain.back->to_antenna) : ray.direction;
-    chain.fields = scattered_back(ray, surface, chain.fields, in, out);
+    chain.fields = scattered_back(surface, chain.fields, in, out);
   }
   if (surface.point.normal.dot(out) < kGrazing) chain.odds = 0.0;  // the opposite ray would be dropped
   if (is_first) return;
-  chain.odds *= chain.held * odds_of(*surface.material, response).diffuse / probability;
+  chain.odds *= chain.held * odds_of(surface, response).diffuse / probability;
   chain.held = survival_of(response, kRouletteBounce);
 }
 
@@ -82,7 +78,7 @@ void RayShooter::leave_diffuse(const Ray& ray, const Surface& surface, const Vec
 void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double probability, Chain& chain) const {
   const SurfaceResponse& response = surface.response;
   chain.coefficient *= response.gamma * response.coherent;
-  chain.odds *= chain.held * odds_of(*surface.material, response).specular / probability;
+  chain.odds *= chain.held * odds_of(surface, response).specular / probability;
   chain.held = survival_of(response, kRouletteBounce);
   // Of several bounces in a row, whether unflagged surfaces are large enough is judged differently in the other order, which
   // is left to its own rays.
@@ -94,6 +90,8 @@ void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double p
 
 // The visible transmit legs of a hit that rays can come over, but for `skip`.
 void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, MirrorSequence skip, Scratch& scratch) const {
+  scratch.transmit.clear();
+  if (skip == kDirect && transmitter_.beams.empty()) return;
   LegQuery query = legs_from(surface, max_mirrors, skip);
   query.direct = Sight::kUnknown;
   legs_.find(query, transmitter_, scratch.transmit, scratch.search);
@@ -105,9 +103,9 @@ void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, Mir
 double RayShooter::share_of_order(const Surface& surface, const SurfaceResponse& response, const Leg& leg,
                                   const Chain& chain) const {
   if (chain.odds == 0) return 1.0;
-  const double density = plan_.ray_density(leg.at_antenna) * leg.specular_share * surface.point.normal.dot(leg.to_antenna) /
+  const double density = cones_.density(leg.at_antenna) * leg.specular_share * surface.point.normal.dot(leg.to_antenna) /
                          (leg.length * leg.length);
-  const double probability = odds_of(*surface.material, response).diffuse * survival_of(response, leg.num_bounces + 1);
+  const double probability = odds_of(surface, response).diffuse * survival_of(response, leg.num_bounces + 1);
   return 1.0 / (1.0 + chain.odds * density * probability / chain.density);
 }
 
@@ -117,7 +115,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
   scratch.transmit.clear();
   if (chain.back || chain.odds > 0) find_transmit_legs(surface, settings_.max_bounces - ray.depth, kOther, scratch);
   const uint64_t bits = ray.diffuse | uint64_t{1} << (ray.depth - 1);
-  const std::complex<double> common = std::sqrt(ray.area * surface.area) * phase_factor(ray);
+  const std::complex<double> common = std::sqrt(ray.area * surface.area) * surface.chance.phase;
   const auto weighted = [&](std::complex<double> scalar) { return settings_.is_polarized ? common : common * scalar; };
   const std::complex<double> natural = ray.coefficient * diffuse_coefficient(surface.response);
   for (const Leg& in : scratch.transmit) {
@@ -139,7 +137,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
 // From the transmitter over `leg` to the hit where the ray is, and back along its chain to the receiver.
 void RayShooter::record_reversed(const Ray& ray, const Chain& chain, const Leg& leg, uint64_t bits,
                                  std::complex<double> weight, PathBlock& block) const {
-  std::array<Hit, 64> hits;
+  RayHits hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
   for (int k = 0; k < chain.back->num_bounces; ++k) {
     hits[static_cast<size_t>(chain.first - 1 - k)] = chain.back->bounces[static_cast<size_t>(k)].hit;

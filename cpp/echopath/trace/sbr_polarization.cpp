@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/random.h"
 #include "echopath/trace/sbr_state.h"
 
 namespace echopath {
@@ -32,20 +31,17 @@ void RayShooter::reflect_polarized(const Ray& ray, const Surface& surface, Field
 }
 
 void RayShooter::scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const {
-  ray.polarized = scattered(ray, surface, ray.polarized, ray.direction, out);
+  ray.polarized = scattered(surface, ray.polarized, ray.direction, out);
 }
 
 // What a diffuse hit makes of fields that travel along `in`. Its random axis is bound to the hit, like its phase.
-FieldPair RayShooter::scattered(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+FieldPair RayShooter::scattered(const Surface& surface, const FieldPair& fields, const Vec3& in,
                                 const Vec3& out) const {
   const double cos_incidence = -in.dot(surface.point.normal);
   const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, cos_incidence);
-  const double diffuse = respond(*surface.material, settings_.frequency, cos_incidence, PolarizationMode::kTe).diffuse;
+  const double diffuse = surface.model->respond(cos_incidence, PolarizationMode::kTe).diffuse;
   Depolarization turn{surface.material->cross_polarization, 0.0};
-  if (turn.cross_share > 0) {
-    const auto index = static_cast<uint64_t>(ray.index);
-    turn.axis = kPi * uniform2(settings_.seed, Stream::kPhase, index, static_cast<uint32_t>(ray.depth))[1];
-  }
+  if (turn.cross_share > 0) turn.axis = kPi * surface.chance.axis_coin;
   FieldPair out_fields;
   for (size_t launch = 0; launch < 2; ++launch) {
     out_fields[launch] = diffuse * scattered_field(fields[launch], in, surface.point.normal, out, modes, turn);
@@ -55,10 +51,10 @@ FieldPair RayShooter::scattered(const Ray& ray, const Surface& surface, const Fi
 
 // The transpose of what the hit makes of fields that come along -`out` and leave along -`in`: a chain of such hits, read
 // from its other end.
-FieldPair RayShooter::scattered_back(const Ray& ray, const Surface& surface, const FieldPair& fields, const Vec3& in,
+FieldPair RayShooter::scattered_back(const Surface& surface, const FieldPair& fields, const Vec3& in,
                                      const Vec3& out) const {
   const FieldPair axes = launched_fields(out);
-  const FieldPair back = scattered(ray, surface, axes, -out, -in);
+  const FieldPair back = scattered(surface, axes, -out, -in);
   FieldPair out_fields;
   for (size_t launch = 0; launch < 2; ++launch) {
     const std::complex<double> along[] = {back[0].transpose() * fields[launch], back[1].transpose() * fields[launch]};
@@ -104,12 +100,12 @@ JonesMatrix RayShooter::coherent_matrix(const Ray& ray, const Surface& surface, 
 }
 
 JonesMatrix RayShooter::diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const {
-  return received_over(leg, scattered(ray, surface, ray.polarized, ray.direction, leg.to_antenna));
+  return received_over(leg, scattered(surface, ray.polarized, ray.direction, leg.to_antenna));
 }
 
 // From the receiver along the ray's way to the transmitter at the end of `leg`, for the opposite order of its chain.
 JonesMatrix RayShooter::opposite_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const Chain& chain) const {
-  return received_over(leg, scattered_back(ray, surface, chain.fields, ray.direction, leg.to_antenna));
+  return received_over(leg, scattered_back(surface, chain.fields, ray.direction, leg.to_antenna));
 }
 
 // Of all pairs of legs, each of which is followed once. The ray's own way to the hit is one of the transmit legs.
@@ -120,9 +116,9 @@ void RayShooter::follow_legs(const Ray& ray, Scratch& scratch) const {
   for (const Leg& out : scratch.receive) scratch.axes.push_back(axes_over(out));
 }
 
-JonesMatrix RayShooter::pair_matrix(const Ray& ray, const Surface& surface, const Scratch& scratch, size_t in, size_t out) const {
+JonesMatrix RayShooter::pair_matrix(const Surface& surface, const Scratch& scratch, size_t in, size_t out) const {
   const Vec3 arrival = -scratch.transmit[in].to_antenna;
-  return components(scattered(ray, surface, scratch.incident[in], arrival, scratch.receive[out].to_antenna), scratch.axes[out]);
+  return components(scattered(surface, scratch.incident[in], arrival, scratch.receive[out].to_antenna), scratch.axes[out]);
 }
 
 }  // namespace echopath

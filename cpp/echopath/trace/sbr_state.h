@@ -27,7 +27,7 @@ struct RayShooter::Ray {
   int64_t index = 0;
   int stratum = 0;
   Vec3 from, direction, launch_direction;
-  std::array<Hit, 64> hits;
+  RayHits hits;
   int depth = 0;              // hits so far
   uint64_t diffuse = 0;       // bit per hit
   bool coherent = true;       // regime C
@@ -52,17 +52,24 @@ struct RayShooter::Ray {
 
 struct RayShooter::Surface {
   RayHit point;
+  const SurfaceModel* model = nullptr;
   const Material* material = nullptr;
   double cos_incidence = 0.0;
+  PolarizationMode mode = PolarizationMode::kTe;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
   Sight receiver = Sight::kUnknown;  // as seen from here
+  HitChance chance;
+  const PacketChance* packet = nullptr;  // of the packet that this hit is one of, null behind first hits
+  int lane = 0;                          // there
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
 struct RayShooter::Packet {
-  std::array<int, kPacketSize> strata;
+  std::array<int, kPacketSize> strata, batches;
+  std::array<Eigen::Vector2d, kPacketSize> points;
   std::array<Vec3, kPacketSize> directions;
+  PacketChance chance;  // of the first hits
   std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
   std::array<RayHit, kPacketSize> hits;
   std::array<Sight, kPacketSize> receiver;  // from the hits
@@ -84,6 +91,14 @@ struct RayShooter::Chain {
   double held = 1.0;         // survival in the opposite order at the hit that was left last: it joins `odds` one hit later
   std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
   FieldPair fields;          // likewise, where polarised: of launches at the receiver that run the ray's way
+
+  void begin(int first_hit) {
+    first = first_hit;
+    back.reset();
+    density = 0.0;
+    odds = held = 1.0;
+    coefficient = 1.0;
+  }
 };
 
 struct RayShooter::Scratch {

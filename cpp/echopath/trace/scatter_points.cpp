@@ -8,8 +8,8 @@ namespace echopath {
 namespace {
 
 // Sobol' digits of `index` below kScatterNetSize, as integers below it.
-std::array<uint32_t, 2> net_point(uint32_t index) {
-  std::array<uint32_t, 2> point{0, 0};
+constexpr ScatterCell net_point(uint32_t index) {
+  ScatterCell point{0, 0};
   uint32_t mirrored = kScatterNetSize / 2, pascal = kScatterNetSize / 2;
   for (; index != 0; index >>= 1, mirrored >>= 1, pascal ^= pascal >> 1) {
     if (!(index & 1)) continue;
@@ -19,20 +19,29 @@ std::array<uint32_t, 2> net_point(uint32_t index) {
   return point;
 }
 
+constexpr auto kNet = [] {
+  std::array<ScatterCell, kScatterNetSize> net{};
+  for (uint32_t i = 0; i < kScatterNetSize; ++i) net[i] = net_point(i);
+  return net;
+}();
+
 }  // namespace
 
-std::array<double, 2> scatter_point(uint64_t seed, int batch, int64_t ray, int hit) {
-  constexpr double kSize = kScatterNetSize;
-  const auto index = static_cast<uint64_t>(ray);
+ScatterCell scatter_shift(uint64_t seed, int batch, int64_t ray, int hit) {
   const auto group = static_cast<uint32_t>(batch) << 8 | static_cast<uint32_t>(hit);
-  const auto shift = uniform2(seed, Stream::kScatterShift, index / kScatterNetSize, group);
-  const auto fine = uniform2(seed, Stream::kScatterPoint, index, static_cast<uint32_t>(hit));
-  const auto net = net_point(static_cast<uint32_t>(index % kScatterNetSize));
-  std::array<double, 2> point;
-  for (std::size_t k = 0; k < 2; ++k) {
-    point[k] = (static_cast<double>(net[k] ^ static_cast<uint32_t>(shift[k] * kSize)) + fine[k]) / kSize;
-  }
-  return point;
+  const auto shift = uniform2(seed, Stream::kScatterShift, static_cast<uint64_t>(ray) / kScatterNetSize, group);
+  return {static_cast<uint32_t>(shift[0] * kScatterNetSize), static_cast<uint32_t>(shift[1] * kScatterNetSize)};
+}
+
+ScatterCell scatter_cell(const ScatterCell& shift, int64_t ray) {
+  const ScatterCell& net = kNet[static_cast<size_t>(ray % kScatterNetSize)];
+  return {net[0] ^ shift[0], net[1] ^ shift[1]};
+}
+
+std::array<double, 2> scatter_point(uint64_t seed, int batch, int64_t ray, int hit) {
+  const ScatterCell cell = scatter_cell(scatter_shift(seed, batch, ray, hit), ray);
+  const auto fine = uniform2(seed, Stream::kScatterPoint, static_cast<uint64_t>(ray), static_cast<uint32_t>(hit));
+  return {(cell[0] + fine[0]) / kScatterNetSize, (cell[1] + fine[1]) / kScatterNetSize};
 }
 
 }  // namespace echopath

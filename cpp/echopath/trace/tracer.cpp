@@ -1,5 +1,6 @@
 #include "echopath/trace/tracer.h"
 
+#include "echopath/base/large_page_memory.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/mirror_paths.h"
 
@@ -91,9 +92,11 @@ void Tracer::shoot_block(int64_t index, PathBlock& block) const {
 }
 
 Paths Tracer::run(Job* job) const {
-  std::vector<PathBlock> blocks(1);
+  LargePageMemory memory;
+  std::vector<PathBlock> blocks;
+  blocks.reserve(static_cast<size_t>(num_blocks()) + 1);
+  while (std::ssize(blocks) <= num_blocks()) blocks.emplace_back(&memory);
   add_mirror_paths(geometry_, mirrors_, sbr_, blocks.front());
-  blocks.resize(static_cast<size_t>(num_blocks()) + 1);
   if (job) job->start(num_blocks());
   parallel_for(
       num_blocks(),

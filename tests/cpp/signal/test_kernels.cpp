@@ -3,11 +3,11 @@
 #include <limits>
 
 #include "cpp/signal/slow_sum.h"
+#include "echopath/base/phasor.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/echo_tiles.h"
 #include "echopath/signal/kernels.h"
 #include "echopath/signal/nufft_kernel.h"
-#include "echopath/signal/phasor.h"
 
 namespace echopath {
 namespace kernels_baseline { extern const SignalKernels kKernels; }

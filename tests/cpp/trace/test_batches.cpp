@@ -6,6 +6,7 @@
 #include "echopath/trace/embree_scene.h"
 #include "echopath/trace/disc_lattice.h"
 #include "echopath/trace/launch.h"
+#include "echopath/trace/launch_cones.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -72,10 +73,11 @@ TEST(Batches, EachCoversTheSphere) {
   settings.batches = kBatches;
   const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
+  const LaunchCones cones(plan.strata);
   std::vector<double> solid_angle(kBatches);
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
     const int stratum = plan.stratum_of(ray);
-    const double density = plan.ray_density(plan.direction(stratum, ray), stratum);
+    const double density = cones.density_of_ray(cones.direction(stratum, plan.point_of(stratum, ray)), stratum);
     solid_angle[static_cast<size_t>(plan.batch_of(stratum, ray))] += kBatches / density;
   }
   for (const double covered : solid_angle) EXPECT_NEAR(covered / (4 * kPi), 1.0, 5e-3);

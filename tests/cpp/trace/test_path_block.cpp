@@ -105,14 +105,14 @@ TEST(PathBlock, OrderIsThatOfAdding) {
   const Legs legs{{{}, {1}}, {{}}};
   block.add(ray, 1, 1, Complex(2.0, 0.0), 0);
   add_fan(block, legs, 4);
-  block.add_prefix(1, 1, 1, Complex(3.0, 0.0), 0);
+  block.add_prefix(2, 1, Complex(3.0, 0.0), 0);
   block.end_ray(ray);
   add_fan(block, legs, 4);
   block.add_reversal(ray, 2, 1, Complex(4.0, 0.0), 0);
   std::vector<Expected> expected = {{{7}, 1, 2.0}};
   const std::vector<Expected> fan = pairs(legs, 4);
   expected.insert(expected.end(), fan.begin(), fan.end());
-  expected.push_back({{8}, 1, 3.0});
+  expected.push_back({{7, 8}, 1, 3.0});
   expected.insert(expected.end(), fan.begin(), fan.end());
   expected.push_back({{8, 7}, 2, 4.0});
   // Behind a block of its own, so that places are not those of the block.

@@ -8,6 +8,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/trace/embree_scene.h"
 #include "echopath/trace/launch.h"
+#include "echopath/trace/launch_cones.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -199,12 +200,13 @@ TEST(Launch, DensityIsThatOfTheDirections) {
   const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
   ASSERT_GE(plan.strata.size(), 4u);  // ball, plate, an image, the field of view
+  const LaunchCones cones(plan.strata);
   double solid_angle = 0.0;  // sum of 1 / density over all rays estimates the solid angle they cover: the sphere
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
     const int stratum = plan.stratum_of(ray);
-    const Vec3 direction = plan.direction(stratum, ray);
+    const Vec3 direction = cones.direction(stratum, plan.point_of(stratum, ray));
     EXPECT_NEAR(direction.norm(), 1.0, 1e-12);
-    solid_angle += 1.0 / plan.ray_density(direction, stratum);
+    solid_angle += 1.0 / cones.density_of_ray(direction, stratum);
   }
   EXPECT_NEAR(solid_angle / (4 * kPi), 1.0, 1e-3);
 }

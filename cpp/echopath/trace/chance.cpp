@@ -1,0 +1,118 @@
+#include "echopath/trace/chance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/phasor.h"
+#include "echopath/base/random.h"
+#include "echopath/trace/scatter_points.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kCoin = 0x1.0p-32;
+
+template <size_t kLanes>
+ECHOPATH_INLINE PhiloxWords<kLanes> draw_words(uint64_t seed, Stream stream, uint64_t first, uint32_t dimension) {
+  PhiloxWords<kLanes> words;
+  for (size_t i = 0; i < kLanes; ++i) {
+    words[0][i] = static_cast<uint32_t>(first + i);
+    words[1][i] = static_cast<uint32_t>((first + i) >> 32);
+    words[2][i] = dimension;
+    words[3][i] = static_cast<uint32_t>(stream);
+  }
+  philox4x32(words, {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
+  return words;
+}
+
+template <size_t kLanes>
+struct ChanceLanes {
+  double *phase_re, *phase_im, *axis_coin, *lobe_coin, *survival_coin;
+};
+
+template <size_t kLanes>
+ECHOPATH_INLINE void draw_chance(uint64_t seed, uint64_t first, uint32_t depth, ChanceLanes<kLanes> out) {
+  const PhiloxWords<kLanes> words = draw_words<kLanes>(seed, Stream::kPhase, first, depth);
+  for (size_t i = 0; i < kLanes; ++i) {
+    const Phasor phase = phasor_of_cycles(words[0][i] * kCoin);
+    out.phase_re[i] = phase.re;
+    out.phase_im[i] = phase.im;
+    out.axis_coin[i] = words[1][i] * kCoin;
+    out.lobe_coin[i] = words[2][i] * kCoin;
+    out.survival_coin[i] = words[3][i] * kCoin;
+  }
+}
+
+struct Direction {
+  double x, y, z;
+};
+
+ECHOPATH_INLINE Direction direction_of(double u, double v) {
+  const double sine = std::sqrt(u);
+  const Phasor turn = phasor_of_cycles(v);
+  return {sine * turn.re, sine * turn.im, std::sqrt(1.0 - u)};
+}
+
+// The cells of the rays, and then their directions.
+struct LobeLanes {
+  double *x, *y, *z;
+};
+
+ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LobeLanes lanes) {
+  const PhiloxWords<kPacketSize> words = draw_words<kPacketSize>(seed, Stream::kScatterPoint, first, 0);
+  for (size_t i = 0; i < kPacketSize; ++i) {
+    const double u = (lanes.x[i] + unit_interval(words[0][i], words[1][i])) * (1.0 / kScatterNetSize);
+    const double v = (lanes.y[i] + unit_interval(words[2][i], words[3][i])) * (1.0 / kScatterNetSize);
+    const Direction direction = direction_of(u, v);
+    lanes.x[i] = direction.x;
+    lanes.y[i] = direction.y;
+    lanes.z[i] = direction.z;
+  }
+}
+
+}  // namespace
+
+HitChance hit_chance(uint64_t seed, int64_t ray, int depth) {
+  double re, im;
+  HitChance chance;
+  draw_chance<1>(seed, static_cast<uint64_t>(ray), static_cast<uint32_t>(depth),
+                 {&re, &im, &chance.axis_coin, &chance.lobe_coin, &chance.survival_coin});
+  chance.phase = {re, im};
+  return chance;
+}
+
+Vec3 cosine_lobe(const std::array<double, 2>& random) {
+  const Direction direction = direction_of(random[0], random[1]);
+  return {direction.x, direction.y, direction.z};
+}
+
+void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batches) {
+  ScatterCell shift{};
+  for (int k = 0; k < count; ++k) {
+    const bool is_new = k == 0 || batches[k] != batches[k - 1] || (first + k) % kScatterNetSize == 0;
+    if (is_new) shift = scatter_shift(seed, batches[k], first + k, 0);
+    const ScatterCell cell = scatter_cell(shift, first + k);
+    const auto lane = static_cast<size_t>(k);
+    x_[lane] = cell[0];
+    y_[lane] = cell[1];
+  }
+  std::fill(x_.begin() + count, x_.end(), 0.0);
+  std::fill(y_.begin() + count, y_.end(), 0.0);
+  const auto index = static_cast<uint64_t>(first);
+  using Lanes = ChanceLanes<kPacketSize>;
+  run_simd<&draw_chance<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re_.data(), phase_im_.data(), axis_coin_.data(),
+                                                                    lobe_coin_.data(), survival_coin_.data()});
+  run_simd<&draw_lobes>(seed, index, LobeLanes{x_.data(), y_.data(), z_.data()});
+}
+
+HitChance PacketChance::hit(int lane) const {
+  const auto k = static_cast<size_t>(lane);
+  return {{phase_re_[k], phase_im_[k]}, axis_coin_[k], lobe_coin_[k], survival_coin_[k]};
+}
+
+Vec3 PacketChance::lobe(int lane) const {
+  const auto k = static_cast<size_t>(lane);
+  return {x_[k], y_[k], z_[k]};
+}
+
+}  // namespace echopath

@@ -1,0 +1,38 @@
+#pragma once
+// What chance decides where a ray meets a surface; of a packet's first hits all at once.
+#include <array>
+#include <complex>
+#include <cstdint>
+
+#include "echopath/base/geometry.h"
+#include "echopath/trace/embree_scene.h"
+
+namespace echopath {
+
+// Of hit number `depth` (1: the first) of a ray. Coins are uniform in [0, 1) with 32 bits.
+struct HitChance {
+  std::complex<double> phase;  // of what it scatters, of magnitude 1
+  double axis_coin = 0.0;      // of the axis about which it turns polarisations
+  double lobe_coin = 0.0;      // whether the ray goes on specularly
+  double survival_coin = 0.0;  // whether it goes on at all
+};
+HitChance hit_chance(uint64_t seed, int64_t ray, int depth);
+
+// A direction over a surface with its normal along z, in a cosine lobe: of two numbers in [0, 1).
+Vec3 cosine_lobe(const std::array<double, 2>& random);
+
+// Of rays in a row.
+class PacketChance {
+ public:
+  // Of the first hits of rays [first, first + count); batches [count]. With what hit_chance and cosine_lobe of scatter_point
+  // give for each, but for rounding.
+  void draw(uint64_t seed, int64_t first, int count, const int* batches);
+  HitChance hit(int lane) const;
+  Vec3 lobe(int lane) const;
+
+ private:
+  using Column = std::array<double, kPacketSize>;
+  alignas(64) Column phase_re_, phase_im_, axis_coin_, lobe_coin_, survival_coin_, x_, y_, z_;
+};
+
+}  // namespace echopath

@@ -1,6 +1,8 @@
 """Where rays, triangles and single precision meet badly."""
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 import echopath as ep
@@ -15,6 +17,7 @@ from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, edge_points, 
 cases = Cases("Geometry")
 UTM = np.array([450_000.0, 5_400_000.0, 120.0])
 NO_MESH = 2 ** 32 - 1
+MOST_PATHS_AT_EDGES = 1e-3  # that corners rounded to other single precision numbers may take or give
 
 
 def level_error(paths, distance: float, truth: float, keep=slice(None)) -> float:
@@ -60,11 +63,26 @@ def utm_hits() -> float:
     return float(differ.mean())
 
 
-@cases("signal at UTM coordinates", "double precision resolves 9e-10 m there: relative change of the signal", bound=1e-5,
-       broken="rays in world coordinates instead of those about the scene: 0.065")
+def path_keys(paths) -> list:
+    """Of each path its weight, its events and where it hits, rounded: one ray's paths are the same wherever the world begins."""
+    places = np.column_stack([paths.hits["triangle_id"], np.round(1e4 * paths.hits["u"])]).astype(np.int64).tolist()
+    weights = np.round(1e5 * np.asarray(paths.weight)).tolist()
+    return [(weight, diffuse, *map(tuple, places[begin:begin + count])) for weight, diffuse, begin, count
+            in zip(weights, paths.diffuse.tolist(), paths.offsets.tolist(), paths.num_bounces.tolist())]
+
+
+@cases("signal at UTM coordinates", "double precision resolves 9e-10 m there: relative change of the signal of the paths that "
+       "both worlds have, all but a thousandth", bound=1e-5,
+       broken="rays in world coordinates instead of those about the scene: other paths, hits 0.87 apart")
 def utm_signal() -> float:
-    near, far = street(np.zeros(3)), street(UTM)
-    one, two = (ep.synthesize(paths, paths.radar) for paths in (near, far))
+    records = street(np.zeros(3)), street(UTM)
+    keys = [path_keys(paths) for paths in records]
+    near, far = (Counter(of_record) for of_record in keys)
+    shared = [np.array([near[key] == far[key] for key in of_record]) for of_record in keys]
+    alone = 1.0 - min(mask.mean() for mask in shared)
+    if alone > MOST_PATHS_AT_EDGES:
+        return float(alone)
+    one, two = (ep.synthesize(paths.select(mask), paths.radar) for paths, mask in zip(records, shared))
     return float(np.linalg.norm(one - two) / np.linalg.norm(one))
 
 

@@ -6,7 +6,7 @@ An antenna launches and receives along the unit part of its polarisation that li
 """
 import numpy as np
 
-from .reference import Cells, Reference, _unit
+from .reference import Reference, _unit
 
 
 class PolarizedReference(Reference):
@@ -31,16 +31,9 @@ class PolarizedReference(Reference):
                 out.append((one.length + two.length, amplitude, np.zeros(len(lit))))
         return cells, out
 
-    def planes_alone(self, time):
-        corners, owner = self.triangles(time)
-        at = Cells(self.antenna(1, time)[None], np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]))
-        out = []
-        for mesh in np.flatnonzero([material.mirror for material in self.materials]):
-            leg = self._over(at, self.antenna(0, time), corners, owner, mesh)
-            arriving = np.einsum("ij,ij->i", self._launched(leg, time), self._axis(1, -leg.toward))
-            gains = np.sqrt(self.radar.transmit_power * self.gain(0, leg.leaving) * self.gain(1, leg.toward))
-            out.append((leg.length, (leg.gain != 0) * arriving * self.wavelength * gains / (4 * np.pi * leg.length)))
-        return out
+    def _reflected(self, leg, time):
+        arriving = np.einsum("ij,ij->i", self._launched(leg, time), self._axis(1, -leg.toward))
+        return (leg.gain != 0) * arriving
 
     def modes(self, mesh, cosine):
         """Gamma_TE and Gamma_TM along p_i and p_r, complex [M]."""

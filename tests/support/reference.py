@@ -251,8 +251,12 @@ class Reference:
         for mesh in np.flatnonzero([material.mirror for material in self.materials]):
             leg = self._over(at, self.antenna(0, time), corners, owner, mesh)
             gains = np.sqrt(self.radar.transmit_power * self.gain(0, leg.leaving) * self.gain(1, leg.toward))
-            out.append((leg.length, leg.gain * self.wavelength * gains / (4 * np.pi * leg.length)))
+            out.append((leg.length, self._reflected(leg, time) * self.wavelength * gains / (4 * np.pi * leg.length)))
         return out
+
+    def _reflected(self, leg, time):
+        """What reaches the receiver of a field of one that leaves over a plane, [1]."""
+        return leg.gain
 
     def diffuse_power(self, time):
         """Mean over the random phases, W."""

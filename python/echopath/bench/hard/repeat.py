@@ -51,18 +51,24 @@ def differences(one, two) -> int:
     return int(not same_bits(paths, again)) + sum(a != b for a, b in zip(made, made_again, strict=True))
 
 
+def with_threads(counts, work) -> list:
+    """What `work` gives with each number of threads."""
+    before = ep.num_threads()
+    try:
+        made = []
+        for count in counts:
+            ep.set_num_threads(count)
+            made.append(work())
+    finally:
+        ep.set_num_threads(before)
+    return made
+
+
 @cases("threads", "record, signal, parts, maps with noise, validity, power: results whose bits differ between 1, 2, 3 and 7 "
        "threads", bound=0.0, unit="results",
        broken="as many partial sums as threads: 4; random numbers in the order of their calls: 8")
 def threads() -> float:
-    before = ep.num_threads()
-    try:
-        made = []
-        for count in THREADS:
-            ep.set_num_threads(count)
-            made.append(outcome())
-    finally:
-        ep.set_num_threads(before)
+    made = with_threads(THREADS, outcome)
     return float(max(differences(made[0], other) for other in made[1:]))
 
 
@@ -95,14 +101,7 @@ def _bytes_of(value) -> bytes:
        "3 and 7 threads, at a second run, or in a file", bound=0.0, unit="results",
        broken="as many partial sums as threads: 30")
 def a_labelled_frame() -> float:
-    before = ep.num_threads()
-    try:
-        frames = []
-        for count in (*THREADS, THREADS[0]):
-            ep.set_num_threads(count)
-            frames.append(labelled_frame())
-    finally:
-        ep.set_num_threads(before)
+    frames = with_threads((*THREADS, THREADS[0]), labelled_frame)
     with tempfile.TemporaryDirectory() as folder:
         ep.save_frame(frames[0], Path(folder) / "frame.h5")
         frames.append(ep.load_frame(Path(folder) / "frame.h5"))

@@ -308,9 +308,22 @@ void EmbreeScene::intersect(const Vec3& from, const Vec3* directions, int count,
   }
   embree_intersect(device_->scene, lanes.valid.data(), queries);
   const RTCHit16& met = queries.hit;
-  for (int lane = 0; lane < count; ++lane) {
-    hits[lane].hit = {met.geomID[lane], met.primID[lane], met.u[lane], met.v[lane]};
-    verdicts[lane] = confirm(from, directions[lane], hits[lane]);
+  for (int lane = 0; lane < count; ++lane) hits[lane].hit = {met.geomID[lane], met.primID[lane], met.u[lane], met.v[lane]};
+  ask_for_corners(hits, count);
+  for (int lane = 0; lane < count; ++lane) verdicts[lane] = confirm(from, directions[lane], hits[lane]);
+}
+
+// Has the corners of all triangles that were met come from memory at the same time.
+void EmbreeScene::ask_for_corners(const RayHit* hits, int count) const {
+  for (int k = 0; k < count; ++k) {
+    const Hit& hit = hits[k].hit;
+    if (hit.mesh_id != RTC_INVALID_GEOMETRY_ID) __builtin_prefetch(surfaces_[hit.mesh_id].triangles + hit.triangle_id);
+  }
+  for (int k = 0; k < count; ++k) {
+    const Hit& hit = hits[k].hit;
+    if (hit.mesh_id == RTC_INVALID_GEOMETRY_ID) continue;
+    const Surface& surface = surfaces_[hit.mesh_id];
+    for (const uint32_t vertex : surface.triangles[hit.triangle_id]) __builtin_prefetch(surface.vertices + vertex);
   }
 }
 

@@ -101,6 +101,7 @@ class EmbreeScene {
     const double rest = length - direction.dot(start - from);
     return {start, direction, static_cast<float>(rest * (1.0 - 1e-6))};
   }
+  void ask_for_corners(const RayHit* hits, int count) const;
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 

@@ -41,9 +41,9 @@ def measure_tracer(*, quick: bool = False) -> list[dict]:
     return rows
 
 
-def bare_share(scene, radar, num_rays: int) -> dict:
+def bare_share(scene, radar, num_rays: int, repetitions: int = REPETITIONS) -> dict:
     """Queries of a trace, its seconds and those of the queries alone, by the clock and of the processor."""
-    found = ep._core.bare_queries(scene, radar, num_rays=num_rays, repetitions=REPETITIONS)
+    found = ep._core.bare_queries(scene, radar, num_rays=num_rays, repetitions=repetitions)
     trace, bare = found["trace_seconds"], found["bare_seconds"]
     return {"queries": found["num_queries"], "trace_s": float(np.median(trace["elapsed"])),
             "bare_s": float(np.median(bare["elapsed"])),

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "array.h"
+#include "echopath/scene/coplanar.h"
 #include "echopath/scene/readers.h"
 #include "echopath/scene/scene.h"
 #include "keywords.h"
+#include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
@@ -281,6 +283,47 @@ py::array_t<double> world_vertices_of(const Scene& scene, int64_t mesh_id, doubl
   return to_numpy(world_vertices(scene, checked_mesh_id(scene, mesh_id), time));
 }
 
+// What scene.coplanar_overlaps lists.
+struct NamedOverlap {
+  CoplanarOverlap overlap;
+  std::string first, second;
+};
+
+std::vector<NamedOverlap> named_overlaps(const Scene& scene, double time, double max_distance) {
+  const auto found = run_job("coplanar overlaps", py::none(),
+                             [&](Job& job) { return coplanar_overlaps(scene, time, max_distance, &job); });
+  std::vector<NamedOverlap> named;
+  for (const CoplanarOverlap& one : found) {
+    named.push_back({one, scene.node_of(one.first_mesh_id).name, scene.node_of(one.second_mesh_id).name});
+  }
+  return named;
+}
+
+std::string overlap_text(const NamedOverlap& self) {
+  std::ostringstream text;
+  text << "CoplanarOverlap('" << self.first << "', '" << self.second << "', " << self.overlap.num_triangles << " triangles, "
+       << self.overlap.area << " m^2)";
+  return text.str();
+}
+
+void bind_overlaps(py::module_& m) {
+  py::class_<NamedOverlap>(m, "CoplanarOverlap", "Where two meshes, or a mesh and itself, lie on each other.")
+      .def_property_readonly(
+          "names", [](const NamedOverlap& self) { return py::make_tuple(self.first, self.second); },
+          "full names of the two meshes; twice the same for a mesh that lies on itself")
+      .def_property_readonly(
+          "mesh_ids",
+          [](const NamedOverlap& self) { return py::make_tuple(self.overlap.first_mesh_id, self.overlap.second_mesh_id); },
+          "their mesh IDs, the lower one first")
+      .def_property_readonly("num_triangles", [](const NamedOverlap& self) { return self.overlap.num_triangles; },
+                             "of both meshes, that lie on one of the other")
+      .def_property_readonly("area", [](const NamedOverlap& self) { return self.overlap.area; },
+                             "m^2, summed over pairs of triangles")
+      .def_property_readonly("distance", [](const NamedOverlap& self) { return self.overlap.distance; },
+                             "m, largest between the two")
+      .def("__repr__", &overlap_text);
+}
+
 std::string scene_text(const Scene& self) {
   return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) +
          " meshes, " + std::to_string(self.num_triangles()) + " triangles)";
@@ -347,6 +390,15 @@ void bind_scene_tree(py::module_& m) {
            "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).")
       .def("world_vertices", &world_vertices_of, py::arg("mesh_id"), py::arg("time") = 0.0,
            "Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.")
+      .def("coplanar_overlaps", &named_overlaps, py::kw_only(), py::arg("time") = 0.0,
+           py::arg("max_distance") = kCoplanarDistance, R"(Where meshes lie on each other, or a mesh lies on itself.
+
+time: s; max_distance: m, up to which two triangles count that are nowhere further apart where one lies over the other
+Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
+label are those of the one that is met. Neither does triangles any harm that no ray reaches, as under a box on the ground.
+Triangles that merely touch, overlap by less than max_distance, or cross do not count.
+Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
+time outside a motion.)")
       .def("__repr__", &scene_text);
   m.def("glob_takes", &glob_takes, py::arg("glob"), py::arg("full_name"),
         "Whether a glob takes a mesh name: its full name or an ancestor's; * is any text, / too, and ? one character.");
@@ -359,6 +411,7 @@ void bind_scene(py::module_& m) {
   bind_mesh(m);
   bind_readers(m);
   bind_nodes(m);
+  bind_overlaps(m);
   bind_scene_tree(m);
 }
 

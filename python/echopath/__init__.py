@@ -12,9 +12,9 @@ answer_ctrl_c_while_loading()
 
 from . import _core
 from ._core import (
-    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CosinePower, Deformation,
-    DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion, Paths,
-    Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame,
+    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap, CosinePower,
+    Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion,
+    Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame,
     TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform,
     boltzmann, cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
     power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
@@ -67,7 +67,7 @@ def _viewer():
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
-    "ChirpSequence", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family",
+    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family",
     "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Isotropic", "Joint", "KeyframeMotion", "Labels",
     "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells",
     "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection",

@@ -16,7 +16,9 @@ FEW = settings(max_examples=60, deadline=None, derandomize=True)
 SUM_SHARE = 1e-12    # of the whole signal: sums of doubles in another order
 LENGTH = 1e-9        # m: keys of some metres in double precision, through splines of steep pieces
 ROTATION = 1e-12     # of a unit quaternion
+AREA = 1e-7          # m^2, of up to 1 m^2: corners at UTM coordinates are known to 1e-9 m
 MESHES = ("ball", "box", "plate")
+UTM = (450_000.0, 5_400_000.0, 120.0)
 
 
 @pytest.fixture(scope="module")
@@ -185,3 +187,36 @@ def test_no_scene_file_is_worse_than_an_error(tmp_path_factory, text, behind):
         ep.load_scene(path)
     except (ValueError, OSError) as error:
         assert str(error)
+
+
+centimetres = st.integers(-150, 150).map(lambda number: 0.01 * number)
+sides = st.integers(10, 200).map(lambda number: 0.01 * number)
+turns = st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4).filter(lambda q: math.hypot(*q) > 0.1)
+
+
+def rectangle(corner, size, height: float, cells: int) -> ep.Mesh:
+    """A flat mesh over [corner, corner + size] at `height`, of cells x cells pairs of triangles."""
+    across, up = (start + length * np.arange(cells + 1) / cells for start, length in zip(corner, size))
+    vertices = [(x, y, height) for y in up for x in across]
+    lower = [j * (cells + 1) + i for j in range(cells) for i in range(cells)]
+    pairs = [[(a, a + 1, a + cells + 2), (a, a + cells + 2, a + cells + 1)] for a in lower]
+    return ep.Mesh(vertices, [triangle for pair in pairs for triangle in pair])
+
+
+@FEW
+@given(corners=st.tuples(centimetres, centimetres), sizes=st.tuples(sides, sides), turn=turns, gap=st.floats(-2e-5, 2e-5),
+       cells=st.tuples(st.integers(1, 6), st.integers(1, 6)), offset=st.sampled_from([(0.0, 0.0, 0.0), UTM]))
+def test_overlaps_have_the_area_of_the_rectangle_that_two_have_in_common(corners, sizes, turn, gap, cells, offset):
+    scene = ep.Scene()
+    turned = np.array(turn) / math.hypot(*turn)
+    motion = ep.KeyframeMotion(times=[-1.0, 1.0], translations=[offset] * 2, rotations=[turned] * 2)
+    scene.add(name="both", motion=motion)
+    scene.add(rectangle((0.0, 0.0), (1.0, 1.0), 0.0, cells[0]), name="one", parent="both", material="metal")
+    scene.add(rectangle(corners, sizes, gap, cells[1]), name="two", parent="both", material="concrete")
+    common = math.prod(max(0.0, min(1.0, low + size) - max(0.0, low)) for low, size in zip(corners, sizes))
+    found = scene.coplanar_overlaps()
+    if abs(abs(gap) - 1e-5) < 2 * LENGTH:
+        return
+    assert [overlap.names for overlap in found] == ([("both/one", "both/two")] if common > 0.0 and abs(gap) < 1e-5 else [])
+    for overlap in found:
+        assert abs(overlap.area - common) <= AREA and abs(overlap.distance - abs(gap)) <= 2 * LENGTH

@@ -245,6 +245,22 @@ def test_mesh_ids_are_checked(square):
             scene.world_vertices(mesh_id)
 
 
+def test_overlaps_name_their_meshes_and_tell_area_and_distance():
+    scene = ep.Scene()
+    scene.add(ep.actors.ground(10.0), name="ground", material="asphalt", position=(0, 0, -0.3))
+    scene.add(ep.actors.box(0.6), name="box", material="metal", motion=ep.LinearMotion(velocity=(0, 0, 4e-6)))
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(3, 0, 1))
+    found, = scene.coplanar_overlaps()
+    assert found.names == ("ground", "box") and found.mesh_ids == (0, 1) and found.num_triangles == 4
+    assert found.area == pytest.approx(0.36, rel=1e-12) and found.distance < 1e-15
+    assert str(found) == "CoplanarOverlap('ground', 'box', 4 triangles, 0.36 m^2)"
+    later, = scene.coplanar_overlaps(time=2.0)
+    assert later.distance == pytest.approx(8e-6, abs=1e-12)
+    assert scene.coplanar_overlaps(time=2.0, max_distance=7e-6) == [] == ep.Scene().coplanar_overlaps()
+    with pytest.raises(ValueError, match="max_distance: must be positive and finite, m, got 0"):
+        scene.coplanar_overlaps(max_distance=0.0)
+
+
 def test_globs_take_names_and_their_descendants():
     assert ep._core.glob_takes("ped*/arm_?", "pedestrian/arm_l/hand")
     assert not ep._core.glob_takes("arm_?", "pedestrian/arm_l")

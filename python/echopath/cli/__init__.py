@@ -190,7 +190,8 @@ def _run(options) -> None:
                               batches=options.batches, extra_parts=chosen, progress=progress)
         certificate = certify(frame, progress=progress)
         written = write_outputs(frame, options.out, partitions=frame.parts)
-    for text in [scene_file.title or options.scene, *report.counts(frame.paths), *report.effects(frame.effects),
+    for text in [scene_file.title or options.scene, *report.counts(frame.paths),
+                 *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
                  *report.checks(frame.checks), *report.validity(certificate), *report.files(written)]:

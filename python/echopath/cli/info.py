@@ -14,7 +14,6 @@ from . import report
 
 FRAME_SUFFIXES = (".h5", ".hdf5")
 MESH_SUFFIXES = (".obj", ".ply")
-MAX_LISTED = 40  # nodes or meshes named one by one
 
 
 def describe_file(path, selections=()) -> list[str]:
@@ -39,7 +38,7 @@ def describe_file(path, selections=()) -> list[str]:
 
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
-    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene),
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace.start_time),
              *_describe_radar(scene_file.radar), "trace", report.line("rays", f"{trace.num_rays:,}"),
              report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:
@@ -53,12 +52,17 @@ def _describe_scene_file(scene_file) -> list[str]:
     return lines
 
 
-def _describe_scene(scene) -> list[str]:
+def _describe_scene(scene, time: float) -> list[str]:
     meshes = list(scene.meshes)
     lines = ["scene", report.line("meshes", str(len(meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
     lines += [report.line(f"  {mesh.name}", f"{len(mesh.mesh.triangles):,} triangles{_material(mesh)}")
-              for mesh in meshes[:MAX_LISTED]]
-    return lines + ([f"    and {len(meshes) - MAX_LISTED} more"] if len(meshes) > MAX_LISTED else [])
+              for mesh in meshes[:report.MAX_LISTED]]
+    more = [f"    and {len(meshes) - report.MAX_LISTED} more"] if len(meshes) > report.MAX_LISTED else []
+    return [*lines, *more, *_describe_overlaps(scene, time)]
+
+
+def _describe_overlaps(scene, time: float, names=None) -> list[str]:
+    return report.overlaps(scene, time, names) or [report.line(report.ON_EACH_OTHER, "none")]
 
 
 def _material(mesh) -> str:
@@ -101,7 +105,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
     chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
-    lines = [str(path), *_describe_scene(frame.scene), *_describe_radar(frame.radar), "record",
+    lines = [str(path), *_describe_scene(frame.scene, frame.paths.frame.trace_time), *_describe_radar(frame.radar), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
@@ -150,7 +154,15 @@ def _describe_meshes(meshes) -> list[str]:
                   report.line("from, to", f"{_point(low)}, {_point(high)} m"),
                   report.line("triangles removed", f"{mesh.num_removed_triangles}"),
                   report.line("vertices duplicated", f"{mesh.num_duplicated_vertices}")]
-    return lines
+    return lines + _describe_overlaps(_scene_of(meshes), 0.0, [name for name, _ in meshes])
+
+
+def _scene_of(meshes):
+    """The meshes in one scene, under numbers: names in files may be what those of a scene must not be."""
+    scene = ep.Scene()
+    for number, (_, mesh) in enumerate(meshes):
+        scene.add(mesh, name=str(number), material="metal")
+    return scene
 
 
 def _point(point) -> str:

@@ -9,6 +9,8 @@ from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
+MAX_LISTED = 40  # nodes or meshes named one by one
+ON_EACH_OTHER = "surfaces on each other"
 
 
 def _power_text(power: float) -> str:
@@ -31,6 +33,19 @@ def _target(frame) -> list[str]:
         return []
     verdict = "met" if frame.error_db <= frame.target_error_db else "NOT met with the most rays allowed"
     return [line("error", f"{frame.error_db:.3g} dB, target {frame.target_error_db:g} dB: {verdict}")]
+
+
+def overlaps(scene, time: float, names=None) -> list[str]:
+    """Which meshes of a scene lie on each other at `time` (s), largest areas first; nothing where none do.
+
+    names: of the meshes by ID, instead of those in the scene
+    """
+    names = names or [mesh.name for mesh in scene.meshes]
+    found = sorted(scene.coplanar_overlaps(time=time), key=lambda overlap: -overlap.area)
+    lines = [line("  " + " and ".join(dict.fromkeys(names[mesh_id] for mesh_id in overlap.mesh_ids)),
+                  f"{overlap.num_triangles:,} triangles, {overlap.area:.4g} m^2") for overlap in found[:MAX_LISTED]]
+    more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
+    return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more] if found else []
 
 
 def effects(all_effects) -> list[str]:

@@ -236,6 +236,27 @@ def coplanar_meshes() -> float:
     return abs(decibels(rcs_of(traced(both, make_radar(), 2 ** 14, max_bounces=1), 200.0) / one))
 
 
+# Placement of the second of two unit squares, whether it is turned over, and the area in m^2 that they have in common.
+SQUARES = (((0.3, 0.4, 0.0), False, 0.42), ((0.3, 0.4, 0.0), True, 0.42), ((0.0, 0.0, 5e-6), False, 1.0),
+           ((0.0, 0.0, 20e-6), False, 0.0), ((1.0, 0.3, 0.0), False, 0.0), ((1.0, 1.0, 0.0), True, 0.0))
+
+
+@cases("report of coplanar surfaces", "two squares turned at random, at UTM coordinates: overlapping, turned over, 5 and 20 "
+       "um apart, touching (largest error of the area told, 1 m^2 where one is told of that is none)", bound=1e-7, unit="m^2",
+       broken="no limit of distance, no least overlap, or facing one way only: 1")
+def coplanar_report() -> float:
+    square = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
+    faces, random, worst = np.array([[0, 1, 2], [0, 2, 3]]), np.random.default_rng(1), 0.0
+    for shift, is_turned, area in SQUARES * 10:
+        turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+        two = faces[:, ::-1] if is_turned else faces
+        meshes = ep.Mesh(UTM + square @ turn, faces), ep.Mesh(UTM + (square + shift) @ turn, two)
+        scene = scene_of(("one", meshes[0], METAL), ("two", meshes[1], METAL))
+        told = [overlap.area for overlap in scene.coplanar_overlaps()]
+        worst = max(worst, abs(sum(told) - area), float(bool(told) != (area > 0.0)))
+    return worst
+
+
 @cases("triangles without area or with NaN", "they are removed and counted; the record keeps its bits (bytes that differ)",
        bound=0.0,
        broken="such triangles kept: none is counted as removed")

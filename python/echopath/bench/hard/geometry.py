@@ -55,8 +55,8 @@ def street(offset):
     return traced(street_scene(offset), make_radar(offset, baseline=0.125), 20_000)
 
 
-@cases("world at UTM coordinates", "an offset of 5 400 km leaves what a million rays meet as it is (share that differs, or by "
-       "more than a micrometre)", bound=1e-6,
+@cases("world at UTM coordinates", "an offset of 5 400 km leaves what a million rays meet as it is (share that differs, or "
+       "by more than a micrometre)", bound=1e-6,
        broken="rays in world coordinates instead of those about the scene: 0.028")
 def utm_hits() -> float:
     directions = np.random.default_rng(1).normal((1.0, 0.0, 0.0), (0.05, 0.3, 0.3), (1_000_000, 3))
@@ -246,7 +246,8 @@ SQUARES = (((0.3, 0.4, 0.0), False, 0.42), ((0.3, 0.4, 0.0), True, 0.42), ((0.0,
 
 
 @cases("report of coplanar surfaces", "two squares turned at random, at UTM coordinates: overlapping, turned over, 5 and 20 "
-       "um apart, touching (largest error of the area told, 1 m^2 where one is told of that is none)", bound=1e-7, unit="m^2",
+       "um apart, touching (largest error of the area told, 1 m^2 where one is told of that is none)", bound=1e-7,
+       unit="m^2",
        broken="no limit of distance, no least overlap, or facing one way only: 1")
 def coplanar_report() -> float:
     square = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
@@ -343,3 +344,20 @@ def _image_over(heights) -> np.ndarray:
     for z in heights:
         image[2] = 2 * round(float(z), 9) - image[2]
     return image
+
+
+@cases("wedges", "metal plates at an angle turn every ray back after pi over the angle bounces at most, rounded up, and "
+       "some only after as many, rounded down (beyond either, angles of 4.9 to 17 degrees)", bound=0.0, unit="bounces",
+       broken="origins not lifted off their surface: 24")
+def wedges() -> float:
+    worst = 0.0
+    for angle_deg in (4.9, 7.3, 11.0, 17.0):
+        half = np.radians(0.5 * angle_deg)
+        deep, high = -np.cos(half), np.sin(half)
+        corners = ([[0, -1, 0], [0, 1, 0], [deep, 1, z], [deep, -1, z]] for z in (high, -high))
+        scene = scene_of(*((name, ep.Mesh(four, [[0, 1, 2], [0, 2, 3]]), METAL, {"position": (5.0, 0.0, 0.0)})
+                           for name, four in zip(("up", "down"), corners)))
+        paths = traced(scene, make_radar(baseline=0.01), 4000, max_bounces=64)
+        most = float(np.max(paths.num_bounces))
+        worst = max(worst, most - np.ceil(180.0 / angle_deg), np.floor(180.0 / angle_deg) - most)
+    return worst

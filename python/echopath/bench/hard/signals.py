@@ -119,7 +119,8 @@ def recurrence_drift() -> float:
     for count in (512, 4096, 65536):
         chirps = waveform(num_samples=count, num_chirps=1, chirp_interval=4e-3)
         for place in np.linspace(0.01, 0.99, 99):
-            made, direct = (tones(chirps, [place * chirps.max_range], method=method)[0] for method in ("recurrence", "direct"))
+            ranges = [place * chirps.max_range]
+            made, direct = (tones(chirps, ranges, method=method)[0] for method in ("recurrence", "direct"))
             worst = max(worst, np.abs(made - direct).max())
     return float(worst)
 

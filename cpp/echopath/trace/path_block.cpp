@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "echopath/base/large_array.h"
-#include "echopath/base/parallel.h"
-
 namespace echopath {
 
 namespace {
@@ -137,78 +134,6 @@ void PathBlock::write(PathRows to, Paths& paths) const {
     legs += fan.num_in + fan.num_out;
   }
   write_until(rows.size());
-}
-
-namespace {
-
-void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
-  total.num_queries += part.num_queries;
-  total.num_hits += part.num_hits;
-  total.num_near_antenna += part.num_near_antenna;
-  total.num_grazing += part.num_grazing;
-  total.num_small_mirrors += part.num_small_mirrors;
-  total.num_false_hits += part.num_false_hits;
-}
-
-// Where each block begins in the record, and where the last one ends.
-struct Places {
-  std::vector<size_t> paths{0}, hits{0};
-
-  explicit Places(const std::vector<PathBlock>& blocks) {
-    for (const PathBlock& block : blocks) {
-      paths.push_back(paths.back() + block.num_paths());
-      hits.push_back(hits.back() + block.num_hits());
-    }
-  }
-};
-
-// Of one column: asked for first, so that all of them lie in large pages, and touched by one thread beside the others'.
-struct Room {
-  std::function<void()> ask, fill;
-};
-
-template <class T>
-Room room_for(std::vector<T>& column, size_t count) {
-  return {[&column, count] { reserve_large(column, count); }, [&column, count] { column.resize(count); }};
-}
-
-void make_room(const std::vector<PathBlock>& blocks, size_t num_paths, Paths& paths) {
-  const auto has = [&](const auto& column) {
-    return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock& block) { return !(block.*column).empty(); });
-  };
-  const bool has_cells = has(&PathBlock::curved_cell), has_jones = has(&PathBlock::jones);
-  const Room rooms[] = {
-      room_for(paths.offsets, num_paths), room_for(paths.diffuse, num_paths), room_for(paths.weight, num_paths),
-      room_for(paths.flags, num_paths), room_for(paths.num_bounces, num_paths), room_for(paths.stratum, num_paths),
-      room_for(paths.batch, num_paths), room_for(paths.curved_cell, has_cells ? num_paths : 0),
-      room_for(paths.jones, has_jones ? num_paths : 0)};
-  for (const Room& room : rooms) room.ask();
-  parallel_for(std::ssize(rooms), [&](int64_t i) { rooms[i].fill(); });
-}
-
-}  // namespace
-
-void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job) {
-  const Places places(blocks);
-  auto hits = std::make_shared<std::vector<Hit>>();
-  resize_large(*hits, places.hits.back());
-  make_room(blocks, places.paths.back(), paths);
-  Job own(job);  // its progress is not that of the rays
-  parallel_for(
-      std::ssize(blocks),
-      [&](int64_t index) {
-        const auto i = static_cast<size_t>(index);
-        const size_t row = places.paths[i], hit = places.hits[i];
-        const PathRows rows{hits->data() + hit,           static_cast<int64_t>(hit),  paths.offsets.data() + row,
-                            paths.num_bounces.data() + row, paths.diffuse.data() + row, paths.weight.data() + row,
-                            paths.stratum.data() + row,     paths.batch.data() + row,   paths.flags.data() + row};
-        blocks[i].write(rows, paths);
-      },
-      &own);
-  for (PathBlock& block : blocks) add_statistics(paths.frame.statistics, block.statistics);
-  blocks.clear();
-  paths.hits = std::move(hits);
-  paths.frame.statistics.num_paths = paths.num_paths();
 }
 
 }  // namespace echopath

@@ -1,6 +1,5 @@
 #pragma once
-// What one chunk of rays records; chunks are joined in their order.
-#include <memory_resource>
+// What one chunk of rays records, until it becomes a part of the record (record_writer.h).
 #include <vector>
 
 #include "echopath/trace/path_fan.h"
@@ -16,20 +15,16 @@ class PathBlock {
     uint32_t flags;
     uint8_t num_bounces, stratum, batch;
   };
-  // Its arrays are of that memory, which must outlive it.
-  explicit PathBlock(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : hits(memory), rows(memory), curved_cell(memory), jones(memory), fans(memory), fan_legs(memory), fan_hits(memory) {}
-
-  std::pmr::vector<Hit> hits;
-  std::pmr::vector<Row> rows;  // the paths that are not of fans
+  std::vector<Hit> hits;
+  std::vector<Row> rows;  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
   uint32_t current_half = 0;         // likewise: 0 or kSecondHalf
-  std::pmr::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
-  std::pmr::vector<JonesMatrix> jones;  // likewise
+  std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
+  std::vector<JonesMatrix> jones;  // likewise
   TraceStatistics statistics;
-  std::pmr::vector<PathFan> fans;
-  std::pmr::vector<FanLeg> fan_legs;  // of each fan in turn
-  std::pmr::vector<Hit> fan_hits;     // of their mirrors
+  std::vector<PathFan> fans;
+  std::vector<FanLeg> fan_legs;  // of each fan in turn
+  std::vector<Hit> fan_hits;     // of their mirrors
 
   // A path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum);
@@ -67,9 +62,5 @@ class PathBlock {
   int used_depth_ = 0;       // of its hits, by paths over the first of them, whose offset is kOfRay until it ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;
 };
-
-// Joins blocks in order into `paths` (hits and path arrays only), which has none yet, and frees each block. Raises Cancelled
-// when the job is.
-void join_blocks(std::vector<PathBlock>& blocks, Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

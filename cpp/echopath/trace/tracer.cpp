@@ -1,13 +1,16 @@
 #include "echopath/trace/tracer.h"
 
-#include "echopath/base/large_page_memory.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/mirror_paths.h"
+#include "echopath/trace/record_writer.h"
 
 namespace echopath {
 namespace {
 
-constexpr int64_t kRaysPerBlock = 1024;
+constexpr int64_t kRaysPerBlock = 256;
+// What is shot before it becomes part of the record: small enough for caches, and many blocks for each thread.
+constexpr int64_t kBlocksPerWave = 64, kBlocksPerThread = 32;
+constexpr int64_t kBlocksAhead = 64;  // that tell how large a record of several waves will be
 
 // The whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
 void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
@@ -91,24 +94,43 @@ void Tracer::shoot_block(int64_t index, PathBlock& block) const {
   shooter_.shoot(index * kRaysPerBlock, std::min(num_rays(), (index + 1) * kRaysPerBlock), block);
 }
 
+// Every `step`-th block.
+std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
+  std::vector<PathBlock> ahead(static_cast<size_t>((num_blocks() + step - 1) / step));
+  Job own(job);  // its progress is that of the waves
+  parallel_for(std::ssize(ahead), [&](int64_t i) { shoot_block(i * step, ahead[static_cast<size_t>(i)]); }, &own);
+  return ahead;
+}
+
+// In waves: what a block holds is still in the cache when it becomes part of the record, and the next wave has its memory.
 Paths Tracer::run(Job* job) const {
-  LargePageMemory memory;
-  std::vector<PathBlock> blocks;
-  blocks.reserve(static_cast<size_t>(num_blocks()) + 1);
-  while (std::ssize(blocks) <= num_blocks()) blocks.emplace_back(&memory);
-  add_mirror_paths(geometry_, mirrors_, sbr_, blocks.front());
-  if (job) job->start(num_blocks());
-  parallel_for(
-      num_blocks(),
-      [&](int64_t i) {
-        thread_local PathBlock block;  // with room from those before: what is kept is no larger than it needs to be
-        block.clear();
-        shoot_block(i, block);
-        blocks[static_cast<size_t>(i) + 1] = block;
-      },
-      job);
   Paths paths = empty_;
-  join_blocks(blocks, paths, job);
+  RecordWriter record(paths);
+  PathBlock over_mirrors;
+  add_mirror_paths(geometry_, mirrors_, sbr_, over_mirrors);
+  record.append({&over_mirrors}, job);
+  if (job) job->start(num_blocks());
+  const int64_t per_wave = std::max(kBlocksPerWave, kBlocksPerThread * num_threads());
+  const int64_t step = num_blocks() > per_wave ? (num_blocks() + kBlocksAhead - 1) / kBlocksAhead : 0;
+  const std::vector<PathBlock> ahead = step > 0 ? shoot_ahead(step, job) : std::vector<PathBlock>();
+  record.expect(ahead, num_blocks());
+  std::vector<PathBlock> wave(static_cast<size_t>(std::min(per_wave, num_blocks())));
+  for (int64_t begin = 0; begin < num_blocks(); begin += per_wave) {
+    std::vector<const PathBlock*> blocks;
+    for (int64_t i = begin; i < std::min(begin + per_wave, num_blocks()); ++i) {
+      const bool is_ahead = step > 0 && i % step == 0;
+      blocks.push_back(is_ahead ? &ahead[static_cast<size_t>(i / step)] : &wave[static_cast<size_t>(i - begin)]);
+    }
+    const auto shoot = [&](int64_t k) {
+      PathBlock& block = wave[static_cast<size_t>(k)];
+      if (blocks[static_cast<size_t>(k)] != &block) return;
+      block.clear();
+      shoot_block(begin + k, block);
+    };
+    parallel_for(std::ssize(blocks), shoot, job);
+    record.append(blocks, job);
+  }
+  record.finish();
   return paths;
 }
 

@@ -21,6 +21,7 @@ class Tracer {
   const EmbreeScene& geometry() const { return geometry_; }
 
  private:
+  std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   LaunchPlan plan_rays(const TraceSettings& settings);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
 

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "echopath/trace/mirror_paths.h"
+#include "echopath/trace/record_writer.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -69,9 +70,11 @@ DoubleBounces double_bounces(const Scenery& scenery, const EmbreeScene& geometry
   settings.is_polarized = is_polarized;
   const std::vector<Mirror> no_mirrors;
   const RayShooter shooter(*paths.scene, geometry, no_mirrors, scenery.plan, settings);
-  std::vector<PathBlock> blocks(1);
-  shooter.shoot(0, scenery.plan.first_ray.back(), blocks[0]);
-  join_blocks(blocks, paths);
+  PathBlock block;
+  shooter.shoot(0, scenery.plan.first_ray.back(), block);
+  RecordWriter record(paths);
+  record.append({&block});
+  record.finish();
   paths.frame.strata = scenery.plan.strata;
   std::vector<uint8_t> forward, backward;
   for (size_t i = 0; i < paths.num_bounces.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "echopath/replay/received_power.h"
+#include "echopath/trace/record_writer.h"
 #include "echopath/trace/sbr.h"
 #include "support/scenes.h"
 
@@ -109,9 +110,11 @@ Paths trace_with_odds(const Scene& scene, double specular_probability, uint64_t 
   odds.seed = seed;
   odds.specular_probability = specular_probability;
   const RayShooter shooter(scene, geometry, no_mirrors, plan, odds);
-  std::vector<PathBlock> blocks(1);
-  shooter.shoot(0, plan.first_ray.back(), blocks.front());
-  join_blocks(blocks, paths);
+  PathBlock block;
+  shooter.shoot(0, plan.first_ray.back(), block);
+  RecordWriter record(paths);
+  record.append({&block});
+  record.finish();
   return paths;
 }
 

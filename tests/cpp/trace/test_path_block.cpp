@@ -1,7 +1,7 @@
 // The record that blocks of rays become: every path over the hits, with the weight and in the order in which it was added.
 #include <gtest/gtest.h>
 
-#include "echopath/trace/path_block.h"
+#include "records.h"
 
 namespace echopath {
 namespace {
@@ -66,12 +66,6 @@ std::vector<Expected> pairs(const Legs& legs, size_t max_bounces) {
   return all;
 }
 
-Paths joined(std::vector<PathBlock> blocks) {
-  Paths paths;
-  join_blocks(blocks, paths);
-  return paths;
-}
-
 TEST(PathBlock, FansAreAllPairsOfTheirLegs) {
   const std::vector<std::vector<uint32_t>> ways = {{}, {1}, {2}, {3, 4}, {5, 6}};
   for (const size_t num_in : {1, 2, 3, 5}) {
@@ -82,7 +76,7 @@ TEST(PathBlock, FansAreAllPairsOfTheirLegs) {
           if (is_bent_first) std::reverse(legs.in.begin(), legs.in.end());
           std::vector<PathBlock> blocks(2);
           add_fan(blocks[1], legs, static_cast<int>(max_bounces));
-          expect_paths(joined(blocks), pairs(legs, max_bounces));
+          expect_paths(record_of(blocks), pairs(legs, max_bounces));
         }
       }
     }
@@ -94,7 +88,7 @@ TEST(PathBlock, FansShareHits) {
   const Legs legs{{{}, {1}, {2}}, {{}, {1}, {2}}};
   std::vector<PathBlock> blocks(1);
   add_fan(blocks[0], legs, 4);
-  const Paths paths = joined(blocks);
+  const Paths paths = record_of(blocks);
   EXPECT_EQ(paths.num_paths(), 9);
   EXPECT_EQ(paths.num_hits(), 4 * 3);  // two ways in by two ways out over mirrors
 }
@@ -120,7 +114,7 @@ TEST(PathBlock, OrderIsThatOfAdding) {
   blocks[0].add(ray, 2, 3, Complex(5.0, 0.0), 0);
   blocks[2] = block;
   expected.insert(expected.begin(), {{7, 8}, 3, 5.0});
-  expect_paths(joined(blocks), expected);
+  expect_paths(record_of(blocks), expected);
 }
 
 TEST(PathBlock, OptionalColumnsStayWithTheirPaths) {
@@ -130,10 +124,51 @@ TEST(PathBlock, OptionalColumnsStayWithTheirPaths) {
   block.add(ray, 1, 0, Complex(2.0, 0.0), 0);
   block.set_curved_cell({1, 2, 3, 4, 5, 6, 7});
   add_fan(block, {{{}}, {{}}}, 4);
-  const Paths paths = joined({block});
+  const Paths paths = record_of({block});
   ASSERT_EQ(paths.curved_cell.size(), 4u);
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(paths.curved_cell[i][6], i == 2 ? 7.0f : 0.0f) << i;
   EXPECT_TRUE(paths.jones.empty());
+}
+
+// However the blocks come together, and whether room was made for them or not.
+TEST(RecordWriter, RecordDoesNotDependOnHowItGrew) {
+  std::vector<PathBlock> blocks(5);
+  std::vector<Expected> expected;
+  for (uint32_t k = 0; k < blocks.size(); ++k) {
+    const Hit ray[] = {hit(k), hit(k + 10)};
+    for (uint32_t i = 0; i <= k; ++i) {
+      blocks[k].add(ray, 2, i, Complex(1.0 + i, k), 0);
+      expected.push_back({{k, k + 10}, i, Complex(1.0 + i, k)});
+    }
+    blocks[k].statistics.num_hits = 1 << k;
+  }
+  blocks[3].set_curved_cell({1, 2, 3, 4, 5, 6, 7});
+  for (const size_t per_append : {0u, 1u, 2u}) {
+    const Paths paths = record_of(blocks, per_append);
+    expect_paths(paths, expected);
+    ASSERT_EQ(paths.curved_cell.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(paths.curved_cell[i][6], i == 9 ? 7.0f : 0.0f) << i;
+    EXPECT_EQ(paths.frame.statistics.num_hits, 31);
+    EXPECT_EQ(paths.frame.statistics.num_paths, static_cast<int64_t>(expected.size()));
+  }
+}
+
+// Arrays that have their room stay where they are.
+TEST(RecordWriter, ExpectedBlocksMoveNothing) {
+  std::vector<PathBlock> like(2);
+  const Hit ray[] = {hit(1), hit(2)};
+  for (int i = 0; i < 30; ++i) like[1].add(ray, 2, 0, Complex(1.0, 0.0), 0);
+  Paths paths;
+  RecordWriter record(paths);
+  record.expect(like, 100);
+  record.append({&like[1]});
+  const int64_t* const offsets = paths.offsets.data();
+  const auto* const weights = paths.weight.data();
+  for (int k = 1; k < 50; ++k) record.append({&like[1]});
+  EXPECT_EQ(paths.offsets.data(), offsets);
+  EXPECT_EQ(paths.weight.data(), weights);
+  record.finish();
+  EXPECT_EQ(paths.num_hits(), 3000);
 }
 
 TEST(PathBlock, ClearedBlockIsEmpty) {
@@ -142,7 +177,7 @@ TEST(PathBlock, ClearedBlockIsEmpty) {
   block.clear();
   EXPECT_EQ(block.num_paths(), 0u);
   EXPECT_EQ(block.num_hits(), 0u);
-  EXPECT_EQ(joined({block}).num_paths(), 0);
+  EXPECT_EQ(record_of({block}).num_paths(), 0);
 }
 
 }  // namespace

@@ -191,10 +191,10 @@ def _replay_lines(cases: list[dict]) -> list[str]:
 
 
 def _tracer_lines(rows: list[dict]) -> list[str]:
-    lines = ["", "tracer beside a bare loop over its own queries, packed alike",
-             " triangles  threads   queries   trace s    bare s   share of it"]
+    lines = ["", "tracer beside bare loops over its own queries: packed alike, and one by one",
+             " triangles  threads   queries   trace s    bare s   share of it   of one by one"]
     return lines + [f"{row['triangles']:>10,}{row['threads']:>9}{row['queries']:>10,}{row['trace_s']:10.4f}"
-                    f"{row['bare_s']:10.4f}{row['share']:12.2f}" for row in rows]
+                    f"{row['bare_s']:10.4f}{row['share']:12.2f}{row['single_share']:16.2f}" for row in rows]
 
 
 def _street_lines(street: dict) -> list[str]:

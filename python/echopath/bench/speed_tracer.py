@@ -42,9 +42,13 @@ def measure_tracer(*, quick: bool = False) -> list[dict]:
 
 
 def bare_share(scene, radar, num_rays: int, repetitions: int = REPETITIONS) -> dict:
-    """Queries of a trace, its seconds and those of the queries alone, by the clock and of the processor."""
+    """Queries of a trace, seconds by the clock of the trace and of the queries alone, packed alike, and processor time of the
+    queries, packed alike (`share`) and one by one (`single_share`), over that of the trace."""
     found = ep._core.bare_queries(scene, radar, num_rays=num_rays, repetitions=repetitions)
-    trace, bare = found["trace_seconds"], found["bare_seconds"]
-    return {"queries": found["num_queries"], "trace_s": float(np.median(trace["elapsed"])),
-            "bare_s": float(np.median(bare["elapsed"])),
-            "share": float(np.median(bare["processor"]) / np.median(trace["processor"]))}
+
+    def seconds(work: str, kind: str) -> float:
+        return float(np.median(found[f"{work}_seconds"][kind]))
+
+    trace_s = seconds("trace", "processor")
+    return {"queries": found["num_queries"], "trace_s": seconds("trace", "elapsed"), "bare_s": seconds("bare", "elapsed"),
+            "share": seconds("bare", "processor") / trace_s, "single_share": seconds("single", "processor") / trace_s}

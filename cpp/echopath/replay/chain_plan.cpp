@@ -18,7 +18,6 @@ void ChainPlan::clear() {
   inner_points.clear();
   inner.clear();
   chains.clear();
-  coherent.clear();
   others.clear();
 }
 
@@ -60,6 +59,9 @@ const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
 void ChainPlanner::clear() {
   plan_.clear();
   last_start_ = last_end_ = {};
+  last_hit_ = nullptr;
+  straight_.clear();
+  leg_over_mirrors_.clear();
   leg_of_.clear();
   for (SegmentIds& ids : inner_of_) ids.clear();
   for (DenseIds* ids : {&mirror_ids_, &image_ids_, &point_ids_, &leg_ids_}) ids->clear();
@@ -93,34 +95,35 @@ bool ChainPlanner::add_chain(size_t place, int64_t path) {
   if (!ends || ends->first < 0) return false;
   const bool is_coherent = paths_.diffuse[p] == 0;
   if (is_coherent && localise_.may_stretch(hits.hit(ends->last).mesh_id)) return false;
-  (is_coherent ? plan_.coherent : plan_.chains)
-      .push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends), hits.is_reversed,
-                  std::complex<double>(paths_.weight[p])});
+  plan_.chains.push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends),
+                          hits.is_reversed, is_coherent, std::complex<double>(paths_.weight[p])});
   return true;
 }
 
 // Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
 uint32_t ChainPlanner::start_leg(const TracedHits& hits, int first) {
+  if (first == 0) return straight_leg(hits.hit(0), hits.is_reversed);
   const Known run{hits.run(0, first), first + 1, hits.is_reversed};
   if (is_same(last_start_, run)) return last_start_.leg;
   uint32_t& known = leg_of_(run.hits, run.count, run.of_receivers);
   if (known == SegmentIds::kNone) {
     uint32_t image = 0;
     for (int k = 0; k < first; ++k) image = image_in(image, hits.hit(k));
-    known = leg(image, hits.hit(first), run.of_receivers);
+    known = leg_over_mirrors(image, hits.hit(first), run.of_receivers);
   }
   last_start_ = run;
   return last_start_.leg = known;
 }
 
 uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
+  if (last == hits.count - 1) return straight_leg(hits.hit(last), !hits.is_reversed);
   const Known run{hits.run(last, hits.count - 1), hits.count - last, !hits.is_reversed};
   if (is_same(last_end_, run)) return last_end_.leg;
   uint32_t& known = leg_of_(run.hits, run.count, run.of_receivers);
   if (known == SegmentIds::kNone) {
     uint32_t image = 0;
     for (int k = hits.count; --k > last;) image = image_in(image, hits.hit(k));
-    known = leg(image, hits.hit(last), run.of_receivers);
+    known = leg_over_mirrors(image, hits.hit(last), run.of_receivers);
   }
   last_end_ = run;
   return last_end_.leg = known;
@@ -135,17 +138,33 @@ uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
 }
 
 uint32_t ChainPlanner::point(const Hit& hit) {
+  if (&hit == last_hit_) return last_point_;
   const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id),
                                  pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)));
-  if (id == plan_.points.size()) plan_.points.push_back(hit);
-  return id;
+  if (id == plan_.points.size()) {
+    plan_.points.push_back(hit);
+    straight_.push_back({ChainPlan::kNone, ChainPlan::kNone});
+  }
+  last_hit_ = &hit;
+  return last_point_ = id;
 }
 
-uint32_t ChainPlanner::leg(uint32_t image, const Hit& hit, bool of_receivers) {
+uint32_t ChainPlanner::straight_leg(const Hit& hit, bool of_receivers) {
   const uint32_t at = point(hit);
-  const uint32_t id = leg_ids_(pair_key(image, at), of_receivers);
-  if (id == plan_.legs.size()) plan_.legs.push_back({image, at, of_receivers});
-  return id;
+  uint32_t& known = straight_[at][of_receivers];
+  if (known == ChainPlan::kNone) known = add_leg({0, at, of_receivers});
+  return known;
+}
+
+uint32_t ChainPlanner::leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers) {
+  const uint32_t at = point(hit), id = leg_ids_(pair_key(image, at), of_receivers);
+  if (id == leg_over_mirrors_.size()) leg_over_mirrors_.push_back(add_leg({image, at, of_receivers}));
+  return leg_over_mirrors_[id];
+}
+
+uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
+  plan_.legs.push_back(leg);
+  return static_cast<uint32_t>(plan_.legs.size() - 1);
 }
 
 uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends) {

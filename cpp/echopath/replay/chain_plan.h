@@ -1,6 +1,7 @@
 #pragma once
 // What the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path over each pair of the
 // mirror chains to its hits, so most paths are two legs that others have too.
+#include <array>
 #include <optional>
 #include <span>
 
@@ -35,6 +36,7 @@ struct ChainPlan {
     uint32_t start, end;       // legs, in the order in which the path was traced
     uint32_t inner;            // kNone: one material point, whose triangle keeps its area
     bool is_reversed;          // it starts at a receiver
+    bool is_coherent;          // it has a launch cell, at the point of its last leg
     std::complex<double> weight;
   };
 
@@ -44,8 +46,7 @@ struct ChainPlan {
   std::vector<Leg> legs;
   std::vector<uint32_t> inner_points;
   std::vector<Inner> inner;
-  std::vector<Chain> chains;          // diffuse paths
-  std::vector<Chain> coherent;        // paths with a launch cell, at the point of their last leg
+  std::vector<Chain> chains;          // by place
   std::vector<size_t> others;         // places of the paths that are evaluated one by one
 
   void clear();
@@ -80,7 +81,9 @@ class ChainPlanner {
   uint32_t end_leg(const TracedHits& hits, int last);
   uint32_t image_in(uint32_t parent, const Hit& hit);
   uint32_t point(const Hit& hit);
-  uint32_t leg(uint32_t image, const Hit& hit, bool of_receivers);
+  uint32_t straight_leg(const Hit& hit, bool of_receivers);
+  uint32_t add_leg(const ChainPlan::Leg& leg);
+  uint32_t leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers);
   uint32_t inner(const TracedHits& hits, const Ends& ends);
 
   const Paths& paths_;
@@ -88,8 +91,12 @@ class ChainPlanner {
   bool slides_;
   ChainPlan plan_;
   Known last_start_, last_end_;
-  SegmentIds leg_of_, inner_of_[2];  // inner parts: as recorded, reversed
+  const Hit* last_hit_ = nullptr;  // whose point was looked for last: an end of a path is often that of the next
+  uint32_t last_point_ = 0;
+  std::vector<std::array<uint32_t, 2>> straight_;  // [point] legs from the antennas themselves: of transmitters, of receivers
+  SegmentIds leg_of_, inner_of_[2];  // legs over mirrors; inner parts: as recorded, reversed
   DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
+  std::vector<uint32_t> leg_over_mirrors_;  // by leg_ids_
 };
 
 }  // namespace echopath

@@ -1,20 +1,25 @@
 #pragma once
 // Paths of a block at all nodes, from the legs that they share: a path costs a sum of lengths, a product of factors and, where it is
 // coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
+#include <array>
+
 #include "echopath/replay/amplitude.h"
 #include "echopath/replay/chain_tables.h"
+#include "echopath/replay/trace_cells.h"
 
 namespace echopath {
 
-// Where the values of one channel go, [node, num_paths]: lengths in m, amplitudes in sqrt(W).
+// Where the values of one channel go, a row of paths for each node: lengths (m) times `scale`, amplitudes in sqrt(W).
 struct ChannelNodes {
   double* length;
   std::complex<double>* amplitude;
-  size_t num_paths, first_path;  // places count from there
+  size_t stride;      // between nodes
+  size_t first_path;  // places count from there
+  double scale;
 
   void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
-    const size_t at = node * num_paths + first_path + place;
-    length[at] = length_there;
+    const size_t at = node * stride + first_path + place;
+    length[at] = scale * length_there;
     amplitude[at] = amplitude_there;
   }
 };
@@ -31,22 +36,31 @@ class ChainEvaluation {
   // Writes the paths of the plan that do not stand among its others. The antennas must have no phase (has_phase).
   void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
                   const ChannelSpan& channels);
+  // Of the plan and level of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
+  // the first antenna there between the first and the last node. Its amplitude has a root on the way.
+  void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
 
  private:
+  static constexpr size_t kTogether = 8;  // paths whose values are written side by side: a line of the cache for each node
+  using Chains = std::span<const ChainPlan::Chain>;
   struct Ends {
     size_t start, end;  // antennas of both
   };
   Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
-  PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale);
+  PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
-  void write_diffuse(const ChainPlan& plan, double scale, const ChannelSpan& channels);
-  void write_coherent(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
-                      const ChannelSpan& channels);
-  void put(size_t place, const ChannelNodes& to) const;
+  void add_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const RigidCell& cell, const LevelView& level,
+                CoherentPath& path) const;
+  void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void put(Chains chains, const ChannelNodes& to) const;
+  bool turns(uint32_t leg) const;
 
   ChainTables tables_;
-  NodeRows values_;  // of one path, PathToCombine::Row
+  NodeRows values_;                              // [slot], PathToCombine::Row
+  std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
   size_t num_receivers_ = 0;
+  const ChainKernels* kernels_ = nullptr;
 };
 
 // An antenna turns the phase of what it sends or receives, by direction.

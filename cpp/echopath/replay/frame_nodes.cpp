@@ -103,17 +103,24 @@ FrameNodes static_nodes(const Radar& radar, double time) {
   return nodes;
 }
 
-FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
-                           ChirpDerivatives derivatives) {
+FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
   require(order >= 2, "order", "must be >= 2", order);
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
-  const NodeSet set(order, derivatives);
+  const NodeSet set(order, ChirpDerivatives::kFirst);
   FrameNodes nodes;
   nodes.order = order;
   for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
   for (int n : {order - 2, order - 1}) {
     nodes.tail.insert(nodes.tail.end(), set.coefficients(n).begin(), set.coefficients(n).end());
   }
+  return nodes;
+}
+
+FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
+                           ChirpDerivatives derivatives) {
+  FrameNodes nodes = unsampled_chebyshev_nodes(radar, start_time, breakpoints, order);
+  const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
+  const NodeSet set(order, derivatives);
   for (int tx = 0; tx < radar.num_slots(); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_nodes = static_cast<int>(nodes.times.size());
@@ -156,6 +163,7 @@ TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   TimeSampling sampling;
   sampling.order = derivatives == ChirpDerivatives::kThird ? 4 : 2;
   sampling.num_nodes = num_chirps * sampling.order;
+  sampling.holds_derivatives = true;
   std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
   for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_nodes), 0.0);
   for (int chirp = 0; chirp < num_chirps; ++chirp) {

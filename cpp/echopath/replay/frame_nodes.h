@@ -28,6 +28,8 @@ FrameNodes static_nodes(const Radar& radar, double time);
 // at start_time. Derivatives are those of the same polynomial.
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives = ChirpDerivatives::kThird);
+// The same without their sampling, which is what costs.
+FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
 // `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle one at the window centre.
 FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter,
                        ChirpDerivatives derivatives = ChirpDerivatives::kThird);

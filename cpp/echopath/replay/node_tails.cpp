@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kShareOfBeforeLast = 0.25;
 
-// Values relative to those of the first node: the sums must not drown in the rounding of whole lengths.
+// Values relative to those of the first node: the sums must not drown in the rounding of whole delays.
 ECHOPATH_INLINE void add_node(const double* values, const double* first, double weight_before_last, double weight_last, size_t count,
                             double* __restrict before_last, double* __restrict last) {
   for (size_t i = 0; i < count; ++i) {
@@ -20,7 +20,7 @@ ECHOPATH_INLINE void add_node(const double* values, const double* first, double 
   }
 }
 
-ECHOPATH_INLINE void raise_by_lengths(const double* before_last, const double* last, size_t count, double* __restrict tail) {
+ECHOPATH_INLINE void raise_by_delays(const double* before_last, const double* last, size_t count, double* __restrict tail) {
   for (size_t i = 0; i < count; ++i) {
     tail[i] = std::max(tail[i], std::abs(last[i]) + kShareOfBeforeLast * std::abs(before_last[i]));
   }
@@ -69,14 +69,14 @@ class Coefficients {
 
 }  // namespace
 
-NodeTails node_tails(const FrameNodes& nodes, const Echoes& lengths) {
-  const auto num_paths = static_cast<size_t>(lengths.num_echoes);
-  const auto* amplitude = reinterpret_cast<const double*>(lengths.amplitude.data());
+NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
+  const auto num_paths = static_cast<size_t>(echoes.num_echoes);
+  const auto* amplitude = reinterpret_cast<const double*>(echoes.amplitude.data());
   NodeTails tails{std::vector<double>(num_paths), std::vector<double>(num_paths)};
-  Coefficients of_lengths(nodes, num_paths), of_amplitudes(nodes, 2 * num_paths);
+  Coefficients of_delays(nodes, num_paths), of_amplitudes(nodes, 2 * num_paths);
   for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
-    of_lengths.find(lengths.delay.data(), piece);
-    run_simd<raise_by_lengths>(of_lengths.before_last(), of_lengths.last(), num_paths, tails.length.data());
+    of_delays.find(echoes.delay.data(), piece);
+    run_simd<raise_by_delays>(of_delays.before_last(), of_delays.last(), num_paths, tails.delay.data());
     of_amplitudes.find(amplitude, piece);
     run_simd<raise_by_amplitudes>(of_amplitudes.before_last(), of_amplitudes.last(), num_paths, tails.amplitude.data());
   }
@@ -93,7 +93,7 @@ double tail_of(const FrameNodes& nodes, const std::vector<double>& values) {
   double tail = 0.0;
   for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
     coefficients.find(values.data(), piece);
-    run_simd<raise_by_lengths>(coefficients.before_last(), coefficients.last(), 1, &tail);
+    run_simd<raise_by_delays>(coefficients.before_last(), coefficients.last(), 1, &tail);
   }
   return tail;
 }

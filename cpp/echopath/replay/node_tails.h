@@ -8,12 +8,12 @@ namespace echopath {
 
 // The largest of all pieces.
 struct NodeTails {
-  std::vector<double> length;     // [P] m
+  std::vector<double> delay;      // [P] s
   std::vector<double> amplitude;  // [P] relative to the largest amplitude of the path; 0 where that is 0
 };
 
-// Of echoes at the nodes of chebyshev_nodes, with lengths in m in the place of delays.
-NodeTails node_tails(const FrameNodes& nodes, const Echoes& lengths);
+// Of echoes at the nodes of chebyshev_nodes.
+NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes);
 
 // Likewise of one sequence of values, [num_nodes].
 double tail_of(const FrameNodes& nodes, const std::vector<double>& values);

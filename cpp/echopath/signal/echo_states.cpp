@@ -49,6 +49,12 @@ ECHOPATH_INLINE void interpolate(Nodes nodes, int count, EchoStates* states) {
   for (; p < count; ++p) interpolate_some<1, kChirps>(nodes, p, states);
 }
 
+void copy_nodes(const Nodes& nodes, int count, EchoStates& state) {
+  std::copy_n(nodes.delay, count, state.delay);
+  std::copy_n(nodes.delay + nodes.stride, count, state.rate);
+  std::copy_n(nodes.amplitude, 2 * count, state.amplitude);
+}
+
 // As many chirps at once as there are registers for.
 template <int kChirps>
 void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
@@ -81,7 +87,8 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
     const Nodes nodes{echoes.delay.data() + first, reinterpret_cast<const double*>(echoes.amplitude.data() + first),
                       echoes.num_echoes, sampling.value.data() + row, sampling.slope.data() + row, sampling.order};
     const int shared = chirps_that_share_nodes(sampling, chirp, std::min(at_once, end - chirp));
-    if (shared == 4) interpolate_at<4>(nodes, count, states);
+    if (sampling.holds_derivatives) copy_nodes(nodes, count, *states);
+    else if (shared == 4) interpolate_at<4>(nodes, count, states);
     else if (shared > 1) interpolate_at<2>(nodes, count, states);
     else interpolate_at<1>(nodes, count, states);
     const int done = shared == 3 ? 2 : shared;

@@ -16,12 +16,13 @@ namespace {
 constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
 constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
-constexpr int64_t kLargestBlock = 8000;  // no power of two: rows of nodes would share the sets of the first-level cache
+// What a block has at its nodes stays in the second-level cache. No power of two: rows of nodes would share the sets of the first.
+constexpr int64_t kLargestBlock = 1000;
 
 // Echoes with nodes in every chirp: few at a time, whose memory the next take over; a page that is touched for the first time costs
 // as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
-constexpr int64_t kValuesInFlight = 1 << 19;
+constexpr int64_t kValuesInFlight = 500000;  // no power of two, likewise
 constexpr int64_t kLeastBlock = 32;
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
@@ -36,13 +37,13 @@ constexpr int64_t kPathsOfTask = 1 << 15;  // whose levels are found
 // Indices of the paths by level, in their order; at level 0 those on which nothing moves.
 class PathsByLevel {
  public:
-  PathsByLevel(const Replayer& replayer, int64_t num_paths, Job* job)
-      : num_levels_(static_cast<size_t>(replayer.num_levels()) + 2), level_(static_cast<size_t>(num_paths)) {
+  PathsByLevel(const NodeLevels& levels, int64_t num_paths, Job* job)
+      : num_levels_(static_cast<size_t>(levels.num_polynomials()) + 2), level_(static_cast<size_t>(num_paths)) {
     const int64_t num_tasks = (num_paths + kPathsOfTask - 1) / kPathsOfTask;
     place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(num_levels_));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();
-      find_levels(replayer, task);
+      find_levels(levels, task);
     });
     std::vector<std::vector<int64_t>> lists = lists_of_counts();
     parallel_for(num_tasks, [&](int64_t task) { fill(task, lists); });
@@ -56,10 +57,10 @@ class PathsByLevel {
     return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(level_.size()))};
   }
 
-  void find_levels(const Replayer& replayer, int64_t task) {
+  void find_levels(const NodeLevels& levels, int64_t task) {
     const auto [begin, end] = range_of(task);
     for (int64_t path = begin; path < end; ++path) {
-      const int level = replayer.is_static(path) ? 0 : replayer.first_level(path);
+      const int level = levels.first_level(path);
       level_[static_cast<size_t>(path)] = static_cast<uint8_t>(level);
       ++place_[static_cast<size_t>(task)][static_cast<size_t>(level)];
     }
@@ -91,10 +92,26 @@ class PathsByLevel {
   std::vector<std::vector<int64_t>> lists_;
 };
 
+// Paths less those that blocks of them left, in their order.
+std::vector<int64_t> without(const std::vector<std::vector<FailedPath>>& left, std::span<const int64_t> paths) {
+  std::vector<int64_t> rest;
+  rest.reserve(paths.size());
+  auto next = paths.begin();
+  for (const std::vector<FailedPath>& some : left) {
+    for (const FailedPath& failed : some) {
+      const auto end = std::find(next, paths.end(), failed.path);
+      rest.insert(rest.end(), next, end);
+      next = end + 1;
+    }
+  }
+  rest.insert(rest.end(), next, paths.end());
+  return rest;
+}
+
 }  // namespace
 
 void ReplayStream::run(const Sink& sink) const {
-  std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_, num_paths_, job_).take();
+  std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_.levels(), num_paths_, job_).take();
   add_still(by_level.front(), sink);
   by_level.front() = {};
   add_moving(std::move(by_level), sink);
@@ -106,9 +123,10 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink
 
 // Each path at the order that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
 void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const {
+  const NodeLevels& levels = replayer_.levels();
   std::vector<std::vector<int64_t>> by_chirp(by_level.size());
-  for (int level = 1; level <= replayer_.num_levels(); ++level) {
-    const Extent extent{0, num_channels(), replayer_.num_nodes(level)};
+  for (int level = 1; level <= levels.num_polynomials(); ++level) {
+    const Extent extent{0, num_channels(), levels.num_nodes(level)};
     const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
     for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, sink)) {
       (failed.by_chirp ? by_chirp : by_level)[static_cast<size_t>(failed.next_level)].push_back(failed.path);
@@ -120,14 +138,15 @@ void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, const 
 
 // The scene as posed at the chirps of one transmitter is all that is held. At the last level stand paths that no polynomial follows.
 void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, const Sink& sink) const {
+  const NodeLevels& levels = replayer_.levels();
   const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
-  for (int level = 1; level <= replayer_.num_levels(); ++level) {
+  for (int level = 1; level <= levels.num_polynomials(); ++level) {
     run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp()},
                [&](auto part, auto&) { return replayer_.by_chirp(part, level, transmitter); }, sink);
   }
-  run_blocks(by_level.back(), {first, num_receivers, replayer_.num_exact_nodes()},
+  run_blocks(by_level.back(), {first, num_receivers, levels.num_exact_nodes()},
              [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, sink);
-  replayer_.forget_chirps(transmitter);
+  levels.forget_chirps(transmitter);
 }
 
 // Blocks are replayed in parallel, a fixed number at a time, and handed over in their order. Returns the paths that `replay`
@@ -151,10 +170,11 @@ std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& pat
       std::vector<Echoes> channels = replay(part(i), left[static_cast<size_t>(i)]);
       for (size_t channel = 0; channel < channels.size(); ++channel) by_channel[channel][static_cast<size_t>(i)] = std::move(channels[channel]);
     });
-    const auto handed_over = static_cast<size_t>(std::min(size * num_blocks, num_paths - begin));
+    const auto num_done = static_cast<size_t>(std::min(size * num_blocks, num_paths - begin));
+    const std::vector<int64_t> handed_over = without(left, {paths.data() + begin, num_done});
     for (size_t channel = 0; channel < by_channel.size(); ++channel) {
       if (job_) job_->throw_if_cancelled();
-      sink(extent.first_channel + static_cast<int>(channel), by_channel[channel], {paths.data() + begin, handed_over});
+      sink(extent.first_channel + static_cast<int>(channel), by_channel[channel], handed_over);
       replayer_.recycle(by_channel[channel]);
     }
     for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
@@ -224,7 +244,7 @@ class ErrorOfBlock {
     EchoStates state;
     evaluate_states(echoes, chirp, static_cast<int64_t>(p), 1, state);
     const std::complex<double> amplitude(state.amplitude[0], state.amplitude[1]);
-    if (amplitude == 0.0) return;  // left to a later block, or dark
+    if (amplitude == 0.0) return;  // dark
     const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
     error.phase = std::max(error.phase, wavenumber * std::abs(kSpeedOfLight * state.delay[0] - lengths_[p]));
     largest = std::max(largest, std::abs(amplitudes_[p]));

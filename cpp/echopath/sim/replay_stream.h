@@ -11,8 +11,8 @@ namespace echopath {
 // Hands the echoes of all paths over in an order and in blocks that depend on the paths alone, many blocks at a time.
 class ReplayStream {
  public:
-  // Blocks of one channel, which may be changed, and the indices of the paths of all of them, one after the other. A path may
-  // come again with amplitude 0.
+  // Blocks of one channel, which may be changed, and the indices of the paths of all of them, one after the other. Each path
+  // comes once.
   using Sink = std::function<void(int channel, std::span<Echoes> blocks, std::span<const int64_t> indices)>;
 
   // Paths and radar must outlive the stream. Raises what Replayer does.

@@ -58,7 +58,7 @@ ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* pow
   }
 }
 
-// Of failed and of dark paths: 0 at all nodes.
+// Of dark paths: 0 at all nodes.
 bool is_dark(const Echoes& echoes, int64_t echo) {
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;

@@ -1,6 +1,8 @@
 // What turns away from the radar fades with the root of a cosine: its amplitude is that of each chirp, its length a polynomial.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "echopath/replay/replay.h"
 #include "echopath/signal/echo_states.h"
 #include "support/scenes.h"
@@ -55,7 +57,7 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
-  const int level = replayer.first_level(0);
+  const int level = replayer.levels().first_level(0);
   const std::vector<int64_t> indices = fading(paths, replayer, level);
   ASSERT_GT(indices.size(), 20u);
   std::vector<double> lengths, before, after;
@@ -84,6 +86,56 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
     }
   }
   EXPECT_LT(darkest, 1e-3 * brightest);
+}
+
+// Which side a hit's triangle shows to a point, at one time.
+bool shows_front(const Paths& paths, const Localiser& localise, const Radar& radar, int64_t path, double time) {
+  const Instant instant(*paths.scene, radar, localise.patches(), paths.frame.transmitter, time);
+  PosedHit posed;
+  pose_hit(localise.hit(*paths.hits_of(path)), instant, false, posed);
+  return posed.normal.dot(instant.transmitters.front().position - posed.point) > 0;
+}
+
+TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnce) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  const Localiser localise(paths, hit_patches(paths));
+  const int level = replayer.levels().first_level(0);
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  std::iota(indices.begin(), indices.end(), 0);
+  std::vector<FailedPath> failed;
+  const std::vector<Echoes> echoes = replayer.interpolated(indices, level, failed);
+  EXPECT_EQ(echoes.front().num_echoes, paths.num_paths() - static_cast<int64_t>(failed.size()));
+  const double start = paths.frame.start_time, end = start + radar.frame_duration();
+  int num_turned = 0;
+  for (const FailedPath& one : failed) {
+    if (shows_front(paths, localise, radar, one.path, start) == shows_front(paths, localise, radar, one.path, end)) continue;
+    ++num_turned;
+    EXPECT_TRUE(one.by_chirp);
+    EXPECT_EQ(one.next_level, level);
+  }
+  EXPECT_GT(num_turned, 20);
+}
+
+// Lengths and amplitudes of the paths that a polynomial follows are those of the paths alone, wherever they stand in their block.
+TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  const int level = replayer.levels().first_level(0);
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  std::iota(indices.begin(), indices.end(), 0);
+  std::vector<FailedPath> failed, none;
+  const std::vector<Echoes> all = replayer.interpolated(indices, level, failed);
+  ASSERT_GT(failed.size(), 20u);
+  for (const FailedPath& one : failed) std::erase(indices, one.path);
+  const std::vector<Echoes> alone = replayer.interpolated(indices, level, none);
+  EXPECT_TRUE(none.empty());
+  for (size_t channel = 0; channel < all.size(); ++channel) {
+    EXPECT_EQ(all[channel].delay, alone[channel].delay);
+    EXPECT_EQ(all[channel].amplitude, alone[channel].amplitude);
+  }
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Localiser localise(paths, hit_patches(paths));
   ChainPlanner planner(paths, localise, SpecularPoints::kMaterial);
   const ChainPlan& plan = planner(indices);
-  EXPECT_EQ(plan.chains.size() + plan.coherent.size() + plan.others.size(), indices.size());
+  EXPECT_EQ(plan.chains.size() + plan.others.size(), indices.size());
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
   EXPECT_LT(plan.points.size(), plan.legs.size());
   const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };

@@ -1,0 +1,153 @@
+#include "echopath/replay/node_levels.h"
+
+#include <algorithm>
+#include <array>
+
+#include "echopath/replay/motion_knots.h"
+#include "echopath/replay/node_tails.h"
+
+namespace echopath {
+namespace {
+
+constexpr std::array<int, 13> kOrders = {4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, NodeLevels::kHighestOrder};
+
+}  // namespace
+
+NodeLevels::NodeLevels(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const Localiser& localise)
+    : paths_(paths), radar_(radar), settings_(settings), localise_(localise) {
+  find_shapes();
+  levels_.resize(1 + shapes_.size() + 2 * radar.transmitters.size());
+}
+
+// Nodes in a chirp: value and slope in its middle, or its delay throughout.
+int NodeLevels::exact_order() const { return settings_.per_sample ? 5 : 3; }
+
+// Orders over whole smooth pieces and over those between knots, by the number of nodes; nothing is posed for those that cost
+// more than evaluation in every chirp.
+void NodeLevels::find_shapes() {
+  if (settings_.exact) return;
+  breakpoints_ = motion_breakpoints(*paths_.scene, radar_);
+  knots_ = motion_knots(*paths_.scene, radar_);
+  for (const int order : kOrders) {
+    shapes_.push_back({order, &breakpoints_});
+    if (num_nodes({1, &knots_}) > num_nodes({1, &breakpoints_})) shapes_.push_back({order, &knots_});
+  }
+  std::erase_if(shapes_, [&](const Shape& shape) { return num_nodes(shape) > num_exact_nodes(); });
+  std::stable_sort(shapes_.begin(), shapes_.end(), [&](const Shape& a, const Shape& b) { return num_nodes(a) < num_nodes(b); });
+}
+
+int64_t NodeLevels::num_nodes(const Shape& shape) const {
+  return shape.order * num_pieces(radar_, paths_.frame.start_time, *shape.cuts);
+}
+
+Instant NodeLevels::instant(double time) const {
+  return Instant(*paths_.scene, radar_, localise_.patches(), paths_.frame.transmitter, time);
+}
+
+// Behind the polynomials come two levels for each transmitter.
+FrameNodes NodeLevels::nodes_of(size_t index) const {
+  const double start = paths_.frame.start_time;
+  if (index == 0) return static_nodes(radar_, paths_.frame.trace_time);
+  if (index >= centre_level(0)) return centre_nodes(radar_, start, static_cast<int>(index - centre_level(0)));
+  if (index >= exact_level(0)) {
+    return exact_nodes(radar_, start, exact_order(), static_cast<int>(index - exact_level(0)), derivatives());
+  }
+  const Shape& shape = shapes_[index - 1];
+  return chebyshev_nodes(radar_, start, *shape.cuts, shape.order, derivatives());
+}
+
+std::vector<Instant> NodeLevels::instants_of(const FrameNodes& nodes, size_t index) const {
+  std::vector<Instant> instants;
+  if (index < tried_.size()) instants.swap(tried_[index]);
+  if (!instants.empty()) return instants;
+  for (const double time : nodes.times) {
+    Instant& posed = instants.emplace_back(instant(time));
+    if (index >= exact_level(0)) {
+      posed.transmitters = {posed.transmitters[(index - exact_level(0)) % radar_.transmitters.size()]};
+    }
+  }
+  return instants;
+}
+
+NodePoses NodeLevels::poses_of(const std::vector<Instant>& instants) const {
+  return node_poses(instants, static_cast<uint32_t>(paths_.scene->meshes().size()));
+}
+
+const NodeLevel& NodeLevels::level(size_t index) const {
+  const std::lock_guard lock(mutex_);
+  std::unique_ptr<const NodeLevel>& slot = levels_[index];
+  if (slot) return *slot;
+  auto made = std::make_unique<NodeLevel>();
+  made->nodes = nodes_of(index);
+  made->instants = instants_of(made->nodes, index);
+  made->poses = poses_of(made->instants);
+  slot = std::move(made);
+  return *slot;
+}
+
+NodeLevel NodeLevels::single(double time) const {
+  NodeLevel level;
+  level.instants.push_back(instant(time));
+  level.poses = poses_of(level.instants);
+  return level;
+}
+
+void NodeLevels::forget_chirps(int transmitter) const {
+  const std::lock_guard lock(mutex_);
+  for (const size_t index : {exact_level(transmitter), centre_level(transmitter)}) levels_[index].reset();
+}
+
+int NodeLevels::next_polynomial(int index, double needed_order) const {
+  const std::vector<double>* cuts = shapes_[static_cast<size_t>(index - 1)].cuts;
+  for (size_t next = static_cast<size_t>(index); next < shapes_.size(); ++next) {
+    const Shape& shape = shapes_[next];
+    if (shape.order >= needed_order || shape.cuts != cuts) return static_cast<int>(next) + 1;
+  }
+  return num_polynomials() + 1;
+}
+
+// The distances of vertices all over a mesh from the transmitters tell how many nodes its motion needs: an echo's length is
+// made of such distances.
+bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
+  const auto index = static_cast<size_t>(polynomial);
+  const Shape& shape = shapes_[index - 1];
+  const FrameNodes nodes = unsampled_chebyshev_nodes(radar_, paths_.frame.start_time, *shape.cuts, shape.order);
+  if (index >= tried_.size()) tried_.resize(index + 1);
+  if (tried_[index].empty()) tried_[index] = instants_of(nodes, index);
+  const std::vector<Instant>& instants = tried_[index];
+  const Node& node = paths_.scene->node_of(mesh_id);
+  const double wavenumber = radio_constants(paths_, radar_).wavenumber;
+  const auto vertices_at = [&](const Instant& instant) -> const std::vector<Vec3>& {
+    return node.deformation ? instant.deformed_vertices(mesh_id) : node.mesh->vertices();
+  };
+  const size_t num_vertices = vertices_at(instants.front()).size();
+  const size_t step = std::max<size_t>(1, num_vertices / 16);
+  for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
+    std::vector<double> distance;
+    for (const Instant& instant : instants) {
+      const Vec3 point = instant.rotation(mesh_id) * vertices_at(instant)[vertex] + instant.translation(mesh_id);
+      distance.push_back(2.0 * (point - instant.transmitters.front().position).norm());
+    }
+    if (wavenumber * tail_of(nodes, distance) > settings_.phase_tolerance) return false;
+  }
+  return true;
+}
+
+void NodeLevels::find_mesh_levels() const {
+  const std::lock_guard lock(mutex_);
+  for (uint32_t id = 0; id < paths_.scene->meshes().size(); ++id) {
+    const bool moves = paths_.scene->is_moving(id) || radar_.motion;
+    int& needed = mesh_level_.emplace_back(moves ? 1 : 0);
+    while (moves && needed <= num_polynomials() && !fits(needed, id)) ++needed;
+  }
+}
+
+int NodeLevels::first_level(int64_t path) const {
+  std::call_once(mesh_levels_made_, [&] { find_mesh_levels(); });
+  const Hit* hits = paths_.hits_of(path);
+  int needed = radar_.motion ? 1 : 0;
+  for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, mesh_level_[hits[k].mesh_id]);
+  return needed;
+}
+
+}  // namespace echopath

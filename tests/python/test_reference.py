@@ -3,16 +3,21 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.reference import Reference, blocked
-from support.reference_scenes import array_deviation, coherent_deviation, diffuse_deviation, polarized_deviation
-from support.shapes import METAL, WAVELENGTH, fields, make_radar, rectangle, scene_of
+from support.reference import Reference
+from support.reference_cells import blocked
+from support.reference_scenes import (array_deviation, coherent_deviation, curved_deviation, curved_diffuse_deviation,
+                                      diffuse_deviation, polarized_deviation, two_mirror_deviation,
+                                      two_mirror_diffuse_deviation)
+from support.shapes import METAL, WAVELENGTH, fields, make_radar, rectangle, scene_of, sphere
 
 pytestmark = pytest.mark.hard
 
 FIELD_SHARE = 0.01    # 2^16 rays, edges of shadows, and plates that partly cancel; most scenes are within 0.001
 SIGNAL_SHARE = 0.01   # likewise over three chirps: edges of shadows fall between cells of 1 mm, 1 % of a plate of 0.1 m
+RETURN_SHARE = 3e-3   # 2500 rays that reach a plate of 20 mm over two planes: most scenes are within 0.001
 STANDARD_ERRORS = 4.0
 CORNER_DB = 0.05      # 2^16 rays on two plates of 0.1 m
+SPHERE_SHARE = 1e-3   # of its radius and area: edges of 0.3 radii, whose curved triangles are right to the fourth power
 
 
 @pytest.mark.parametrize("seed", range(20, 26))
@@ -29,6 +34,28 @@ def test_field_vectors_are_those_of_the_reference(seed):
 
 def test_all_channels_of_a_moving_radar_have_the_samples_of_the_reference():
     assert array_deviation(40).cube < SIGNAL_SHARE
+
+
+@pytest.mark.parametrize("seed", [11, 12, 14, 15])
+def test_bent_panels_have_the_field_and_the_samples_of_the_reference(seed):
+    found = curved_deviation(seed)
+    assert found.field < FIELD_SHARE and found.cube < SIGNAL_SHARE
+
+
+@pytest.mark.parametrize("seed", [2, 11, 15])
+def test_returns_over_two_mirrors_have_the_field_and_the_samples_of_the_reference(seed):
+    found = two_mirror_deviation(seed)
+    assert found.field < RETURN_SHARE and found.cube < RETURN_SHARE
+
+
+@pytest.mark.parametrize("seed", [80, 94])
+def test_rough_panels_have_the_mean_power_of_the_reference(seed):
+    assert curved_diffuse_deviation(seed).power < STANDARD_ERRORS
+
+
+@pytest.mark.parametrize("seed", [80, 94])
+def test_rough_plates_between_two_mirrors_have_the_mean_power_of_the_reference(seed):
+    assert two_mirror_diffuse_deviation(seed).power < STANDARD_ERRORS
 
 
 @pytest.mark.parametrize("seed", range(20, 26))
@@ -58,3 +85,13 @@ def test_the_reference_sees_shadows():
     ends = np.array([[2.0, 0, 0], [2, 3, 0], [0.5, 0, 0], [2, 0, 0]])
     own = np.array([-1, -1, -1, 0])
     assert list(blocked(np.zeros((4, 3)), ends, screen, own)) == [True, False, False, False]
+
+
+def test_cells_of_the_reference_lie_on_the_sphere_that_a_smooth_mesh_stands_for():
+    centre, radius = np.array([5.0, 1.0, -2.0]), 0.4
+    reference = Reference(scene_of(ball=(sphere(centre, radius, 2), METAL, True)), make_radar((0, 0, 0)), spacing=0.01,
+                          trace_time=0.0)
+    cells = reference.cells(0.0)
+    assert np.linalg.norm(cells.points - centre, axis=1) == pytest.approx(radius, rel=SPHERE_SHARE)
+    assert cells.areas.sum() == pytest.approx(4 * np.pi * radius**2, rel=SPHERE_SHARE)
+    assert np.linalg.norm(cells.normals - (cells.points - centre) / radius, axis=1).max() < 0.02

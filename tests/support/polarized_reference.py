@@ -6,7 +6,8 @@ An antenna launches and receives along the unit part of its polarisation that li
 """
 import numpy as np
 
-from .reference import Reference, _unit
+from .reference import Reference
+from .reference_cells import unit
 
 
 class PolarizedReference(Reference):
@@ -21,7 +22,7 @@ class PolarizedReference(Reference):
             incident = self._launched(one, time)
             facing = np.einsum("ij,ij->i", cells.normals, one.toward)
             normals = cells.normals * np.where(facing < 0, -1.0, 1.0)[:, None]
-            for two, received in receive:
+            for two, received in ((leg, seen) for leg, seen in receive if self.is_path(one.planes, leg.planes)):
                 lit = np.einsum("ij,ij->i", normals, two.toward) > 0
                 field = self._radiated(incident, -one.toward, normals, two.toward, cells.mesh)
                 ways = (one.gain != 0) * (two.gain != 0) * lit * cells.areas / (one.length * two.length)
@@ -50,31 +51,24 @@ class PolarizedReference(Reference):
         """Unit polarisation [M, 3] of the transmitter (side 0) or receiver across directions of travel [M, 3]."""
         antenna = (self.radar.transmitters if side == 0 else self.radar.receivers)[0]
         polarization = np.asarray(antenna.polarization, float)
-        return _unit(polarization - (direction @ polarization)[:, None] * direction)
-
-    def _plane_normal(self, mesh, time):
-        corners, owner = self.triangles(time)
-        a, b, c = corners[np.flatnonzero(owner == mesh)[0]]
-        return _unit(np.cross(b - a, c - a))
+        return unit(polarization - (direction @ polarization)[:, None] * direction)
 
     def _launched(self, leg, time):
         """Fields [M, 3] at the cells of a unit launch over a leg from the transmitter."""
-        field = self._axis(0, leg.leaving).astype(complex)
-        if leg.plane < 0:
-            return field
-        return self._mirrored(field, leg.leaving, leg.plane, self._plane_normal(leg.plane, time))
+        return self._sent_over(leg, self._axis(0, leg.leaving), time)
 
     def _seen_from_cells(self, leg, time):
         """Along which field [M, 3] the receiver sees: by reciprocity what its own axis becomes on the way to the cells."""
-        axis = self._axis(1, leg.leaving).astype(complex)
-        if leg.plane < 0:
-            return axis
-        return self._mirrored(axis, leg.leaving, leg.plane, self._plane_normal(leg.plane, time))
+        return self._sent_over(leg, self._axis(1, leg.leaving), time)
 
-    def _mirrored(self, field, direction, mesh, normal):
-        cosine = np.abs(direction @ normal)
-        reflected, _ = reflect(field, direction, np.broadcast_to(normal, direction.shape), self.modes(mesh, cosine))
-        return reflected * self.shares(mesh, cosine)[0][:, None]
+    def _sent_over(self, leg, field, time):
+        direction = leg.leaving
+        for mesh in leg.planes:
+            normal = np.broadcast_to(self.plane(mesh, time).normal, direction.shape)
+            cosine = np.abs(np.einsum("ij,ij->i", direction, normal))
+            field, direction = reflect(field, direction, normal, self.modes(mesh, cosine))
+            field = field * self.shares(mesh, cosine)[0][:, None]
+        return field
 
     def _radiated(self, incident, direction, normals, out, meshes):
         """Fields [M, 3] that the cells radiate along `out` [M, 3], without spreading."""
@@ -94,7 +88,7 @@ def reflect(field, direction, normals, modes):
     across = np.cross(direction, normals)
     sine = np.linalg.norm(across, axis=1)
     anywhere = np.cross(direction, [0.3, 0.5, 0.8])  # at normal incidence any plane will do
-    te = _unit(np.where((sine > 1e-9)[:, None], across, anywhere))
+    te = unit(np.where((sine > 1e-9)[:, None], across, anywhere))
     behind = direction - 2 * np.einsum("ij,ij->i", direction, normals)[:, None] * normals
     along_te = modes[0] * np.einsum("ij,ij->i", te, field)
     along_tm = modes[1] * np.einsum("ij,ij->i", np.cross(te, direction), field)

@@ -1,0 +1,99 @@
+"""Points of surfaces for slow sums: triangles cut into small cells, on the curved surfaces that smooth meshes stand for; and
+what stands in the way, by trying all triangles."""
+import dataclasses
+import functools
+
+import numpy as np
+
+CLEAR = 1e-6  # m: both ends of a segment that are not looked at
+
+
+@dataclasses.dataclass
+class Cells:
+    """Cells of surfaces: points [M, 3], normals [M, 3], areas [M] in m^2, mesh [M], triangle [M] among all; facets [M, 3]:
+    the points of the flat triangles below, from which shadows are looked for."""
+
+    points: np.ndarray
+    normals: np.ndarray
+    areas: np.ndarray
+    mesh: np.ndarray
+    triangle: np.ndarray
+    facets: np.ndarray
+
+
+def cells_of(corners, normals, pieces, mesh, triangle):
+    """Cells [pieces^2] of one triangle of corners [3, 3]; normals [3, 3] of its vertices, or None where it is flat."""
+    weights = _grid(pieces)
+    facets, edges = weights @ corners, corners[1:] - corners[0]
+    if normals is None:
+        points, (along_u, along_v) = facets, np.broadcast_to(edges[:, None], (2, len(facets), 3))
+    else:
+        points, (along_u, along_v) = _lifted(facets, edges, corners, normals, weights)
+    across = np.cross(along_u, along_v)
+    areas = 0.5 * np.linalg.norm(across, axis=1) / len(weights)
+    return Cells(points, unit(across if normals is None else weights @ normals), areas, np.full(len(points), mesh),
+                 np.full(len(points), triangle), facets)
+
+
+def _lifted(facets, edges, corners, normals, weights):
+    """p' = p + 1/2 sum b_i [(p_i - p).n_i] n_i [M, 3] and its derivatives to the second and third weight."""
+    heights = np.einsum("mij,ij->mi", corners - facets[:, None], normals)
+    derivatives = []
+    for k, edge in enumerate(edges):
+        change = np.array([-1.0, 1.0 - k, float(k)])
+        derivatives.append(edge + 0.5 * (change * heights - weights * (normals @ edge)) @ normals)
+    return facets + 0.5 * (weights * heights) @ normals, derivatives
+
+
+def joined(parts):
+    """One Cells of several."""
+    names = [field.name for field in dataclasses.fields(Cells)]
+    return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+@functools.lru_cache
+def _grid(pieces):
+    """Barycentric middles [pieces^2, 3] of equal small triangles."""
+    weights = []
+    for i in range(pieces):
+        for j in range(pieces - i):
+            weights.append(((i + 1 / 3) / pieces, (j + 1 / 3) / pieces))
+            if i + j < pieces - 1:
+                weights.append(((i + 2 / 3) / pieces, (j + 2 / 3) / pieces))
+    uv = np.array(weights)
+    return np.column_stack([1 - uv.sum(axis=1), uv])
+
+
+def unit(vectors):
+    """Vectors [..., 3] of length 1; zero stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, 1.0)
+
+
+def inside(points, triangle, margin=1e-12):
+    """Whether points [M, 3] of a triangle's plane lie in it."""
+    a, b, c = triangle
+    normal = np.cross(b - a, c - a)
+    scale = normal @ normal
+    u = np.cross(points - a, c - a) @ normal / scale
+    v = np.cross(b - a, points - a) @ normal / scale
+    return (u >= -margin) & (v >= -margin) & (u + v <= 1 + margin)
+
+
+def blocked(starts, ends, corners, own, leave_out=()):
+    """Whether a triangle [F, 3, 3] meets the open segments between points [M, 3]; own: triangle [M] that does not count."""
+    line = ends - starts
+    length = np.linalg.norm(line, axis=1)
+    found = np.zeros(len(starts), bool)
+    for index, (a, b, c) in enumerate(corners):
+        if index in leave_out:
+            continue
+        normal = np.cross(b - a, c - a)
+        slope = line @ normal
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(slope != 0, ((a - starts) @ normal) / slope, -1.0)
+        between = (share * length > CLEAR) & ((1 - share) * length > CLEAR) & (own != index)
+        if between.any():
+            point = starts[between] + share[between, None] * line[between]
+            found[np.flatnonzero(between)[inside(point, corners[index])]] = True
+    return found

@@ -145,19 +145,81 @@ TEST(ManyEchoes, EchoAHundredDecibelsDownKeepsItsLevel) {
   EXPECT_NEAR(20.0 * std::log10(std::abs(correlation) / energy), 0.0, kWeakEchoDb);
 }
 
-TEST(ManyEchoes, GroupsOfACrowdAddUpToIt) {
+// Those of one group, by themselves.
+Echoes echoes_of_group(const Echoes& all, uint32_t group) {
+  Echoes part;
+  part.sampling = all.sampling;
+  for (int k = 0; k < all.sampling.num_nodes; ++k) {
+    for (int64_t p = 0; p < all.num_echoes; ++p) {
+      if (all.group[static_cast<size_t>(p)] != group) continue;
+      part.delay.push_back(all.delay[static_cast<size_t>(k * all.num_echoes + p)]);
+      part.amplitude.push_back(all.amplitude[static_cast<size_t>(k * all.num_echoes + p)]);
+    }
+  }
+  part.num_echoes = static_cast<int64_t>(part.delay.size()) / all.sampling.num_nodes;
+  return part;
+}
+
+TEST(ManyEchoes, GroupsOfACrowdHoldTheirOwnAndAddUpToIt) {
   const ChirpSequence w = few_chirps();
+  constexpr double kTolerance = 1e-9;
   Echoes echoes = crowd(w, 3000, 400 * cell_delay(w), 12, 1);
-  const auto whole = testing::synthesize(w, echoes, {.method = Method::kNufft});
+  const auto whole = testing::synthesize(w, echoes, {kTolerance, Method::kNufft});
   for (int p = 0; p < 3000; ++p) echoes.group.push_back(static_cast<uint32_t>(p * 7919 % 5));
-  Synthesizer parts(w, 1, 5, 3000, {.method = Method::kNufft});
+  Synthesizer parts(w, 1, 5, 3000, {kTolerance, Method::kNufft});
   parts.add(0, echoes);
   std::vector<Complex> sum(whole.size());
   for (int g = 0; g < 5; ++g) {
-    const auto part = parts.cube(g);
+    const Echoes own = echoes_of_group(echoes, static_cast<uint32_t>(g));
+    const auto part = parts.cube(g), alone = testing::synthesize(w, own, {.method = Method::kDirect});
+    EXPECT_LT(rms_error(part, alone, testing::sum_of_magnitudes(own.amplitude)), kTolerance) << g;
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
   }
   EXPECT_LT(testing::largest_difference(sum, whole), kAdditivity * 3000);
+}
+
+// tau = a + b x + c x^2 through three nodes, x the share of the frame: each chirp has a rate of its own.
+TEST(ManyEchoes, AcceleratingEchoesHaveTheRateOfEachChirp) {
+  ChirpSequence w = few_chirps();
+  w.num_samples = 64;
+  constexpr int kCount = 500;
+  constexpr double kTolerance = 1e-9, kRounding = 1e-10;  // of slopes between nodes, as phase
+  const double span = w.num_chirps * w.chirp_interval;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<double> start, drift, bend;
+  for (int p = 0; p < kCount; ++p) {
+    start.push_back((30.0 + 5.0 * unit(random)) * cell_delay(w));
+    drift.push_back(1e-11 * unit(random));
+    bend.push_back(2e-11 * unit(random));  // s: the beat frequency changes by 3 % of a cell from chirp to chirp
+  }
+  const std::vector<Complex> amplitude(kCount, {0.6, -0.8});
+  Echoes echoes;
+  echoes.num_echoes = kCount;
+  echoes.sampling.num_nodes = echoes.sampling.order = 3;
+  echoes.sampling.first_node.assign(w.num_chirps, 0);
+  for (const double x : {0.0, 0.5, 1.0}) {
+    for (int p = 0; p < kCount; ++p) echoes.delay.push_back(start[p] + x * (drift[p] + x * bend[p]));
+    echoes.amplitude.insert(echoes.amplitude.end(), amplitude.begin(), amplitude.end());
+  }
+  std::vector<Complex> expected;
+  for (int j = 0; j < w.num_chirps; ++j) {
+    const double x = (j + 0.5) / w.num_chirps;
+    const double values[] = {2 * (x - 0.5) * (x - 1), 4 * x * (1 - x), 2 * x * (x - 0.5)};  // Lagrange's polynomials
+    const double slopes[] = {4 * x - 3, 4 - 8 * x, 4 * x - 1};
+    for (const double value : values) echoes.sampling.value.push_back(value);
+    for (const double slope : slopes) echoes.sampling.slope.push_back(slope / span);
+    std::vector<double> delay, rate;
+    for (int p = 0; p < kCount; ++p) {
+      delay.push_back(start[p] + x * (drift[p] + x * bend[p]));
+      rate.push_back((drift[p] + 2 * x * bend[p]) / span);
+    }
+    const auto chirp = testing::slow_chirp(w, delay, rate, amplitude);
+    expected.insert(expected.end(), chirp.begin(), chirp.end());
+  }
+  for (const Method method : {Method::kNufft, Method::kDirect, Method::kRecurrence}) {
+    EXPECT_LT(rms_error(testing::synthesize(w, echoes, {kTolerance, method}), expected, kCount), kTolerance + kRounding);
+  }
 }
 
 TEST(ManyEchoes, BlocksAtOnceEqualBlocksOneByOne) {
@@ -173,7 +235,8 @@ TEST(ManyEchoes, BlocksAtOnceEqualBlocksOneByOne) {
 
 TEST(ManyEchoes, SameBitsForAnyNumberOfThreads) {
   const ChirpSequence w = few_chirps(41);
-  const std::vector<Echoes> moving = {crowd(w, 2000, 400 * cell_delay(w), 12, 4), crowd(w, 2000, 405 * cell_delay(w), 300, 1)};
+  const std::vector<Echoes> moving = {crowd(w, 2000, 400 * cell_delay(w), 12, 4),
+                                      crowd(w, 2000, 405 * cell_delay(w), 300, 1)};
   Echoes still = testing::static_echoes(w.num_chirps, moving[1].delay, moving[1].amplitude);
   still.num_echoes = 4000;
   std::vector<std::vector<Complex>> cubes;

@@ -52,6 +52,21 @@ TEST(Chance, CoinsAreFairAndIndependent) {
   EXPECT_LT(std::abs(phase), 5 / std::sqrt(double{kRays}));
 }
 
+// The next hit, the next ray of as many digits, another seed in its high half, and the directions have chance of their own.
+TEST(Chance, HitsRaysAndSeedsAreIndependent) {
+  constexpr int kRays = 40000;
+  constexpr int64_t kFar = int64_t{1} << 32;
+  double depth = 0.0, far = 0.0, seed = 0.0, direction = 0.0;
+  for (int ray = 0; ray < kRays; ++ray) {
+    const double coin = hit_chance(11, ray, 1).survival_coin;
+    depth += coin * hit_chance(11, ray, 2).survival_coin / kRays;
+    far += coin * hit_chance(11, kFar + ray, 1).survival_coin / kRays;
+    seed += coin * hit_chance(kFar + 11, ray, 1).survival_coin / kRays;
+    direction += coin * scatter_point(11, 0, ray, 0)[1] / kRays;
+  }
+  for (const double product : {depth, far, seed, direction}) EXPECT_NEAR(product, 0.25, 5 * std::sqrt(7.0 / 144 / kRays));
+}
+
 // Lambert: the density is cos/pi, so that the mean of the direction is 2/3 along the normal and that of its square 1/2.
 TEST(Chance, LobeIsThatOfLambert) {
   constexpr int kSide = 200;

@@ -47,6 +47,16 @@ TEST(LaunchCones, DensityIsTheSumOfTheConesThatHoldTheDirection) {
   }
 }
 
+// At the rim of a cone its own rays are inside, whatever rounding says.
+TEST(LaunchCones, RaysAtTheRimAreOfTheirCone) {
+  const std::vector<Stratum> strata = {cone({1, 2, 3}, 0.1, 3.0), cone({-1, 0, 0}, 0.1, 5.0)};
+  const LaunchCones cones(strata);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 direction = cones.direction(0, {std::cos(0.1 * i), std::sin(0.1 * i)});
+    EXPECT_EQ(cones.density_of_ray(direction, 0), 3.0) << i;
+  }
+}
+
 // Equal areas: of an even set of the disc as many directions lie in each ring of equal solid angle.
 TEST(LaunchCones, ProjectionKeepsAreas) {
   for (const double half_angle : {0.01, 1.0, 3.14159}) {
@@ -55,6 +65,9 @@ TEST(LaunchCones, ProjectionKeepsAreas) {
     for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
       const Vec3 direction = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.6, -0.8));
       EXPECT_NEAR(direction.norm(), 1.0, 1e-15);
+      // A quarter of a turn about the axis stays one.
+      const Vec3 turned = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.8, 0.6));
+      EXPECT_LT((turned - stratum.axis.cross(direction) - stratum.axis.dot(direction) * stratum.axis).norm(), 1e-14);
       EXPECT_NEAR(0.5 * (direction - stratum.axis).squaredNorm(), share * stratum.versine, 1e-14);
     }
   }

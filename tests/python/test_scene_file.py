@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.cli.run import simulate_file
 from echopath.scene_file import schema as scene_schema
 from support.scene_text import WAVEFORM
 
@@ -131,6 +132,14 @@ quad = "T 'quad' R"
     assert scene_file.partitions() == {"route": {"direct": "T . R"}, "body": {"quad": "T 'quad' R"}}
 
 
+@pytest.mark.filterwarnings("ignore::echopath.GuardWarning")  # one path has half of the power
+def test_the_guard_is_on_unless_the_file_turns_it_off(write):
+    scene = mesh_object('material = "metal"') + "\n[trace]\nnum_rays = 2000\n"
+    for text, is_on in (("", True), ("guard = true\n", True), ("guard = false\n", False)):
+        frame = simulate_file(ep.load_scene(write(text + RADAR + scene, radar="")))
+        assert bool(frame.checks) == is_on
+
+
 def test_angles_are_keywords_of_range_azimuth_in_radians(write):
     assert ep.load_scene(write("")).angle_settings() == {
         "method": "bartlett", "combine": "peak", "window": "rect", "elevation": 0.0, "diagonal_loading": 0.01,
@@ -162,6 +171,8 @@ FAULTS = [
     (RADAR.replace("1e9", "nan"), "radar.waveform.bandwidth: must be finite, got nan"),
     (RADAR.replace("num_chirps = 8", "num_chirps = 8.5"), "radar.waveform.num_chirps: must be an integer, got 8.5"),
     (RADAR.replace("[0.0, 0.01, 1.0]", "[0.0, 1.0]"), "radar.receivers[0].position: must have at least 3 entries"),
+    ("guard = 'off'\n" + RADAR, "guard: must be true or false, got 'off'"),
+    ("guard = 0\n" + RADAR, "guard: must be true or false, got 0"),
     (RADAR + "[tracer]\nnum_rays = 3", "tracer: unknown key; did you mean 'trace'?"),
     (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
     (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),

@@ -23,6 +23,7 @@ constexpr int kSamples = ProbedChirp::kSamples;
 constexpr int kMostChirps = 2;  // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
+constexpr size_t kSumsOfShare = 4;             // side by side: one would wait for itself
 
 // Sums of kSamples samples; also offsets of these in samples from the first of the chirp.
 using SampleSums = std::array<double, kSamples>;
@@ -51,11 +52,25 @@ int draw(uint64_t seed, int64_t index, int dimension, int count) {
   return std::min(count - 1, static_cast<int>(unit * count));
 }
 
-ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* power, double* root) {
-  for (int p = 0; p < count; ++p) {
-    power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
-    root[p] = std::sqrt(power[p]);
+// Of some echoes, in kLanes sums side by side.
+struct PowerSums {
+  static constexpr int kLanes = 8;
+  double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
+};
+
+// Powers of echoes, as many as fill whole lanes: those behind the last are 0.
+ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
+  PowerSums sums;
+  for (int p = 0; p < count; p += PowerSums::kLanes) {
+    for (int lane = 0; lane < PowerSums::kLanes; ++lane) {
+      const double re = amplitude[2 * (p + lane)], im = amplitude[2 * (p + lane) + 1], here = re * re + im * im;
+      power[p + lane] = here;
+      sums.power[lane] += here;
+      sums.root[lane] += std::sqrt(here);
+      sums.largest[lane] = std::max(sums.largest[lane], here);
+    }
   }
+  *out = sums;
 }
 
 // Of dark paths: 0 at all nodes.
@@ -79,6 +94,15 @@ DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
 }
 
+// power: room for EchoStates::kCapacity of them, W.
+PowerSums powers_of(EchoStates& states, int count, double* power) {
+  const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
+  std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
+  PowerSums sums;
+  run_simd<find_powers>(states.amplitude, filled, power, &sums);
+  return sums;
+}
+
 // At most kEchoesOfChirp: the strongest half and an even choice of the others.
 void thin_out(std::vector<DrawnEcho>& echoes) {
   if (echoes.size() <= kEchoesOfChirp) return;
@@ -94,7 +118,9 @@ void thin_out(std::vector<DrawnEcho>& echoes) {
 // The few strongest of the echoes that are shown to it, strongest first.
 class PassProbe::Strongest {
  public:
-  void show(const double* power, int64_t first, int count) {
+  // largest: of these, W.
+  void show(const double* power, double largest, int64_t first, int count) {
+    if (largest <= best_.back().first) return;
     for (int p = 0; p < count; ++p) {
       if (power[p] > best_.back().first) insert(power[p], first + p);
     }
@@ -116,9 +142,9 @@ class PassProbe::Strongest {
 
 // Of one block.
 struct PassProbe::Seen {
-  explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares) {}
+  explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
   std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
-  std::vector<double> power;    // W of these, by share
+  std::vector<double> power;    // W of these, [share, kSumsOfShare] whose sum it is
   double power_sum = 0.0, strongest = 0.0;  // W
   double amplitude_sum = 0.0;
   std::vector<DrawnEcho> drawn;
@@ -186,15 +212,16 @@ void PassProbe::add(const Seen& some, Seen& all) {
 void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const {
   constexpr int kCapacity = EchoStates::kCapacity;
   EchoStates states;
-  alignas(64) double power[kCapacity], root[kCapacity];
+  alignas(64) double power[kCapacity];
   uint32_t row[kCapacity];
   Strongest strongest;
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
     evaluate_states(block, aim.chirp, begin, count, states);
-    run_simd<find_powers>(states.amplitude, count, power, root);
-    seen.amplitude_sum = std::accumulate(root, root + count, seen.amplitude_sum);
-    strongest.show(power, begin, count);
+    const PowerSums sums = powers_of(states, count, power);
+    seen.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), seen.amplitude_sum);
+    seen.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), seen.power_sum);
+    strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);
     sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, seen);
     add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, seen);
   }
@@ -204,16 +231,17 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
 // The row of each path. `power`: W of each.
 void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const {
   const auto images = static_cast<uint32_t>(num_shares() - 1);
+  double strongest = seen.strongest;
   for (size_t i = 0; i < paths.size(); ++i) {
     const auto path = static_cast<size_t>(paths[i]);
     const uint8_t batch = paths_.batch[path];
     const uint32_t share = batch == kNoBatch ? images : 2u * batch + ((paths_.flags[path] & kSecondHalf) != 0 ? 1u : 0u);
     const bool is_rough = paths_.diffuse[path] != 0;
     row[i] = is_rough ? images + 1 : share;
-    if (is_rough) seen.power[share] += power[i];
-    if (share != images) seen.strongest = std::max(seen.strongest, power[i]);
-    seen.power_sum += power[i];
+    seen.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
+    if (share != images) strongest = std::max(strongest, power[i]);
   }
+  seen.strongest = strongest;
 }
 
 void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
@@ -274,7 +302,10 @@ void PassProbe::sum_up(const Aim& aim, ProbedChirp& chirp) const {
       chirp.shares[share].field[s] = {seen.rows[share].re[s], seen.rows[share].im[s]};
     }
   }
-  for (size_t share = 0; share < num_shares(); ++share) chirp.shares[share].power = seen.power[share];
+  for (size_t share = 0; share < num_shares(); ++share) {
+    const auto first = seen.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
+    chirp.shares[share].power = std::accumulate(first, first + kSumsOfShare, 0.0);
+  }
 }
 
 void PassProbe::compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const {

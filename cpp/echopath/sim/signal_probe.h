@@ -46,7 +46,7 @@ struct SignalProbe {
   std::vector<ProbedChirp> chirps;
 };
 
-// Looks at the echoes of one pass, at one chirp, or at two where there are several channels. Costs about 3 % of trace and
+// Looks at the echoes of one pass, at one chirp, or at two where there are several channels. Costs 2 to 3 % of trace and
 // synthesis of one channel, less of more. Same bits for any number of threads.
 class PassProbe {
  public:

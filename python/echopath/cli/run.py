@@ -48,7 +48,7 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
                     **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
                     labels=scene_file.label_settings() if labels is None else labels,
-                    detections=scene_file.detection_settings(), progress=progress)
+                    detections=scene_file.detection_settings(), guard=scene_file.guard, progress=progress)
 
 
 def chosen_partition(texts, taken) -> dict:

@@ -30,7 +30,7 @@ class SceneFile:
     path: of the file; title: one line; scene, radar: ready to trace; trace, replay, spectrum, angle: settings, as keywords
     by `trace_settings()`, `replay_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one
     partition), {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise; labels, detections:
-    likewise, by `label_settings()` and `detection_settings()`, None: none are asked for.
+    likewise, by `label_settings()` and `detection_settings()`, None: none are asked for; guard: of `ep.simulate`.
     """
 
     path: Path
@@ -45,6 +45,7 @@ class SceneFile:
     noise_seed: int
     labels: LabelsTable | None = None
     detections: DetectionsTable | None = None
+    guard: bool = True
 
     def trace_settings(self) -> dict:
         """Keywords of `ep.trace`, all but progress."""
@@ -106,7 +107,7 @@ def load_scene(path) -> SceneFile:
                                radar=_build_radar(settings.radar, path.parent), trace=settings.trace,
                                replay=settings.replay, spectrum=settings.spectrum, angle=settings.angle,
                                parts=dict(settings.parts), noise_seed=settings.noise.seed, labels=settings.labels,
-                               detections=settings.detections)
+                               detections=settings.detections, guard=settings.guard)
         with _blame("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)

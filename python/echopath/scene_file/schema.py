@@ -317,6 +317,7 @@ PartsValue = Annotated[
 
 class SceneTable(Table):
     title: str = Field("", description="one line about the scene")
+    guard: bool = Field(True, description="whether a run is held against slower ways at a few random places")
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
     trace: TraceTable = TraceTable()

@@ -133,6 +133,9 @@ py::tuple synthesis_trial(const ChirpSequence& waveform, const py::object& delay
 }  // namespace
 
 void bind_sim(py::module_& m) {
+  const ReplaySettings aims;
+  m.attr("PHASE_TOLERANCE") = aims.phase_tolerance;
+  m.attr("AMPLITUDE_TOLERANCE") = aims.amplitude_tolerance;
   m.def("trial_node_times", [](const ChirpSequence& waveform, int num_nodes) {
     return to_numpy(trial_nodes(radar_of(waveform), num_nodes).times);
   }, py::arg("waveform"), py::arg("num_nodes"), "Times [num_nodes] in s of the nodes of synthesis_trial.");
@@ -144,7 +147,7 @@ void bind_sim(py::module_& m) {
     ReplaySettings settings;
     settings.phase_tolerance = phase_tolerance;
     return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
-  }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = 1e-5,
+  }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
         "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels and returns how many that were.");
   m.def("replay_error", [](const Paths& paths, const Radar& radar, const std::vector<int>& chirps, double phase_tolerance) {
     ReplaySettings settings;
@@ -152,11 +155,11 @@ void bind_sim(py::module_& m) {
     const ReplayError error =
         run_job("replay", py::none(), [&](Job& job) { return replay_error(paths, radar, settings, chirps, &job); });
     return py::make_tuple(error.phase, error.amplitude);
-  }, py::arg("paths"), py::arg("radar"), py::arg("chirps"), py::kw_only(), py::arg("phase_tolerance") = 1e-5,
+  }, py::arg("paths"), py::arg("radar"), py::arg("chirps"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
         "How far interpolated paths are from paths evaluated at these chirps, for benchmarks: largest errors of phase (rad) and of amplitude (share).");
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance, py::arg("retrace") = "never",
         py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
         R"(The noise-free IF signal of paths.
 
@@ -176,7 +179,7 @@ probe: a SignalProbe, filled with spot checks of this signal, or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = 1e-5, py::arg("retrace") = "never",
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance, py::arg("retrace") = "never",
         py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
         R"(The signals of parts of the paths, several views of them replayed once.
 

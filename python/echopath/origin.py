@@ -16,7 +16,8 @@ def origin_texts(seed=None, noise_seed=None) -> dict:
     seed: of the rays; noise_seed: of the thermal noise
     """
     seeds = {"Seed": seed, "Noise seed": noise_seed}
-    return {"Software": f"echopath {_core.__version__}"} | {name: str(value) for name, value in seeds.items() if value is not None}
+    told = {name: str(value) for name, value in seeds.items() if value is not None}
+    return {"Software": f"echopath {_core.__version__}"} | told
 
 
 def mark_png(path, texts: dict) -> None:

@@ -8,8 +8,8 @@ def to_xarray(map):
     """A map as xarray with named axes; its arrays are not copied.
 
     map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
-        RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of the
-        beams) and velocity (m/s, of the cells, where only some were taken)
+        RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
+        the beams) and velocity (m/s, of the cells, where only some were taken)
         Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
         dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
     Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no

@@ -75,7 +75,8 @@ int main() {
   std::printf("nodes  cells  width:");
   for (int width = 4; width <= 14; ++width) std::printf("%7d", width);
   for (const int num_nodes : {4, 8}) {
-    for (const auto& [cells, is_sorted] : {std::pair{1.0, true}, {16.0, true}, {64.0, true}, {16.0, false}, {1000.0, true}}) {
+    for (const auto& [cells, is_sorted] :
+         {std::pair{1.0, true}, {16.0, true}, {64.0, true}, {16.0, false}, {1000.0, true}}) {
       const Trial trial(num_nodes, cells, is_sorted);
       std::printf("\n%5d %6g %6s", num_nodes, cells, is_sorted ? "sorted" : "mixed");
       for (int width = 4; width <= 14; ++width) {

@@ -352,7 +352,8 @@ def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkey
 
 
 def test_retraced_frames_label_what_comes_out_of_hiding():
-    """A plate behind a screen that leaves: hidden in the middle of the frame, when it is traced, and bare at the end of it."""
+    """A plate behind a screen that leaves: hidden in the middle of the frame, when it is traced, and bare at the end of
+    it."""
     scene, radar = ep.Scene(), make_radar()
     add_plate(scene, "plate", (9, 0, 1))
     leaving = ep.LinearMotion(velocity=(0, 2.0 / radar.frame_duration, 0))  # half its width until the middle, 1 m by then

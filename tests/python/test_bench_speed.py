@@ -40,6 +40,18 @@ def test_records_have_the_paths_that_were_asked_for():
     assert 20_000 <= paths <= 21_000
 
 
+def test_the_street_counts_the_paths_that_move_and_adds_up_its_floor():
+    """What moves is the pedestrian alone."""
+    street = speed_frames.street()
+    for row in speed_frames.measure_street(quick=True):
+        paths = ep.trace(street.scene, street.radar, num_rays=row["rays"])
+        assert (row["paths"], row["chirps"]) == (paths.num_paths, street.radar.waveform.num_chirps)
+        assert row["moving_paths"] == paths.select("T .* 'pedestrian' .* R").num_paths > 0
+        floor = row["floor"]
+        assert floor["moving_s"] == pytest.approx(5e-9 * row["moving_paths"] * row["chirps"] / ep.num_threads())
+        assert row["floor_s"] == pytest.approx(floor["queries_s"] + floor["moving_s"] + floor["still_s"])
+
+
 def test_kept_geometry_gives_the_same_hits():
     rows = speed_retrace.measure_retrace(quick=True)
     assert len(rows) == 4 and all(row["same_hits"] and row["paths"] > 1000 for row in rows)

@@ -52,8 +52,8 @@ def field_of_the_dish(transmitter, points, num=200):
 
 @both_models
 def test_a_plate_behind_both_foci_of_a_dish(model):
-    # The dish focuses .56 m before itself; the plate stands .8 m behind that. All planes of incidence are nearly horizontal, so
-    # that V is TE. A field turns by a quarter at each of the two caustics.
+    # The dish focuses .56 m before itself; the plate stands .8 m behind that. All planes of incidence are nearly horizontal,
+    # so that V is TE. A field turns by a quarter at each of the two caustics.
     transmitter, receiver, target = np.array((0, .6, 0)), np.array((4.3, -2, 0)), np.array((3.6, -.168, 0))
     to_dish = np.array((5.0, 0, 0)) - target
     arrival, departure = -to_dish / np.linalg.norm(to_dish), receiver - target
@@ -100,8 +100,8 @@ def bent_mesh(shape, num=61):
 
 
 def echo_over_integral(shape, distance, side=.03):
-    """Field mirror -> plate -> receiver, the plate `distance` behind the mirror and turned back to the transmitter: traced over
-    that of Kirchhoff's integral over the mirror, its rim faded out, at 5 x 5 Gauss points of the plate."""
+    """Field mirror -> plate -> receiver, the plate `distance` behind the mirror and turned back to the transmitter: traced
+    over that of Kirchhoff's integral over the mirror, its rim faded out, at 5 x 5 Gauss points of the plate."""
     source = SOURCE * np.array((np.cos(SLANT), np.sin(SLANT), 0))
     arrival = np.array((np.cos(SLANT), -np.sin(SLANT), 0))
     target = distance * arrival
@@ -146,7 +146,8 @@ def test_the_echo_at_a_focus_is_rough_but_finite(shape, distance):
 # --- The rim of a dish ---
 
 def cap_rcs(radius, aperture):
-    """Physical optics of a dish far off on its axis: the integral over its depth x, in which its area grows as (radius - x)."""
+    """Physical optics of a dish far off on its axis: the integral over its depth x, in which its area grows as
+    (radius - x)."""
     depth, turn = radius - np.sqrt(radius**2 - aperture**2), 2j * WAVE_NUMBER
 
     def antiderivative(x):

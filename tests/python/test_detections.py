@@ -194,8 +194,8 @@ def test_the_paths_behind_a_detection_make_its_cell_and_the_others_do_not(sphere
 
 @pytest.fixture(scope="module")
 def movers():
-    """(radar, paths, signal) of limbs, which speed up during the frame, and of a plate at 30 m/s, which shows three axes away
-    and goes on by three cells of range; two transmitters in turn."""
+    """(radar, paths, signal) of limbs, which speed up during the frame, and of a plate at 30 m/s, which shows three axes
+    away and goes on by three cells of range; two transmitters in turn."""
     radar = radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6)
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)

@@ -14,9 +14,12 @@ import echopath as ep
 NO_QUANTITY = {
     "actor", "args", "arguments", "clothing", "exponent", "footprint", "glob", "interpolation", "keywords", "kwargs", "max",
     "max_bounces", "mesh", "method", "min", "mirror", "mesh_or_actor", "multiplexing", "name", "noise_seed", "num_rays",
-    "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene", "seed",
-    "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform", "window", "zero_pad",
-    "batches", "evaluate", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason", "subdivisions", "material", "motion", "unknown",
+    "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene",
+    "seed",
+    "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform",
+    "window", "zero_pad",
+    "batches", "evaluate", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason", "subdivisions",
+    "material", "motion", "unknown",
 }
 UNITS = r"(m|s|Hz|W|K|rad|sr|dB|dBm|m/s|rad/s|m/s\^2|Hz/s|S/m|1/s|m\^2|J/K|sqrt\(W\)|degrees|cycles|[Ll]inear|metres)"
 QUANTITY = re.compile(rf"\[[\w, *]+\]|(?<![\w/]){UNITS}(?![\w/])")

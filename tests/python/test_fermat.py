@@ -131,7 +131,8 @@ def room(radius=0.5, smooth=True):
 def test_reversed_paths_move_with_the_receiver():
     """Between antennas apart the way back over the wall is that of the other antenna: images put together here."""
     receiver = np.array([0.0, 0.0, 0.05])
-    paths = ep.trace(room(radius=1.5, smooth=False), frame_radar(receivers=[receiver]), num_rays=60000).select("T 'ball' 'wall' R")
+    traced = ep.trace(room(radius=1.5, smooth=False), frame_radar(receivers=[receiver]), num_rays=60000)
+    paths = traced.select("T 'ball' 'wall' R")
     paths = paths.select((np.asarray(paths.flags) & 1 == 1) & (paths.diffuse < 2))  # the wall reflects
     times = np.array([0.0, paths.frame.trace_time, 0.02])
     in_wall = receiver * [1, -1, 1] + [0, 6, 0]

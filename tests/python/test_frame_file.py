@@ -9,15 +9,12 @@ import echopath as ep
 from echopath import frame_file, path_subset
 from echopath.frame_file import paths as frame_paths
 from echopath.path_subset import power_of_strongest, strongest, subset
+from support.shapes import quad
 
 SUM_TOLERANCE = 1e-12  # sums of doubles in another order
 PATH_COLUMNS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
 HIT_COLUMNS = ("mesh_id", "triangle_id", "u", "v")
 PARTS = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"fan": "T .* 'fan' .* R"}}
-
-
-def quad(*corners):
-    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
 
 
 def fan():

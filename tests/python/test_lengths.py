@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from support import slow_lengths
 from support.arm import make_arm
+from support.shapes import quad
 
 import echopath as ep
 
@@ -16,10 +17,6 @@ def make_radar(motion=None):
                                 chirp_interval=1e-4)
     return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in TRANSMITTERS],
                     receivers=[ep.Antenna(p) for p in RECEIVERS], motion=motion)
-
-
-def quad(*corners):
-    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
 
 
 def wall():

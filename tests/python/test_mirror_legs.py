@@ -16,8 +16,8 @@ CLUTTER_TOLERANCE = 0.01     # relative, Monte-Carlo error of 2e5 rays
 
 MIRROR = ep.Material.metal(mirror=True)
 ANTENNA = np.array((0.0, 0.0, 1.0))
-# The antenna and its images in a metal corner, wall at y = 3 and ground at z = 0, by number of mirrors; the coefficient is -1
-# for each. Planes at right angles have one image for both orders.
+# The antenna and its images in a metal corner, wall at y = 3 and ground at z = 0, by number of mirrors; the coefficient is
+# -1 for each. Planes at right angles have one image for both orders.
 IMAGES = [(0, ANTENNA), (1, ANTENNA * (1, 1, -1)), (1, ANTENNA + (0, 6, 0)), (2, ANTENNA * (1, 1, -1) + (0, 6, 0))]
 LONGEST = 5                  # bounces of a path over two mirrors on both legs
 

@@ -156,8 +156,8 @@ def test_bistatic_smooth_sphere_against_mie(bistatic_deg):
     assert abs(decibel(found / ep.mie_rcs(RADIUS, FREQUENCY, angle))) < SMOOTH_TOLERANCE_DB
 
 
-# The footprint filter takes away the wave that physical optics sends from the shadow's edge: 1 % at ka = 50 for any number of
-# rays in reach, while at smaller ka 2^18 rays resolve the edge.
+# The footprint filter takes away the wave that physical optics sends from the shadow's edge: 1 % at ka = 50 for any number
+# of rays in reach, while at smaller ka 2^18 rays resolve the edge.
 @pytest.mark.parametrize("ka, footprint", [(1, "none"), (5, "none"), (10, "none"), (50, "none"), (1, "second_order"),
                                            (5, "second_order"), (10, "second_order")])
 @every_polarization

@@ -40,7 +40,8 @@ def mirror(**keywords):
 
 def walking_scene():
     scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1), motion=ep.LinearMotion(velocity=(-2, 0.3, 0)))
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(12, 0.5, 1),
+              motion=ep.LinearMotion(velocity=(-2, 0.3, 0)))
     scene.add(wall_mesh(), name="wall", material=mirror(scattering=0.3))
     return scene
 
@@ -104,7 +105,8 @@ def test_a_pendulum_swings_at_its_speed_and_period():
 
 def test_wall_ghosts_stand_in_the_map():
     scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.1), name="target", material=ROUGH, position=(20, 0, 0), motion=ep.LinearMotion(velocity=(-5, 0, 0)))
+    scene.add(ep.actors.sphere(0.1), name="target", material=ROUGH, position=(20, 0, 0),
+              motion=ep.LinearMotion(velocity=(-5, 0, 0)))
     scene.add(wall_mesh(), name="wall", material=ep.Material.metal(mirror=True))
     radar = make_radar(num_chirps=128, transmitters=[(0, 0, 0)], receivers=[(0, 0, 0)])
     paths = ep.trace(scene, radar, num_rays=20000)
@@ -175,7 +177,8 @@ def rotor_scene(rate, radius):
 
 @pytest.mark.hard
 def test_fast_rotor_has_the_delay_of_every_sample():
-    """Blade tip of 0.3 m at 800 rad/s: the signal of one path is the phase model at every sample, its delay that of the circle."""
+    """Blade tip of 0.3 m at 800 rad/s: the signal of one path is the phase model at every sample, its delay that of the
+    circle."""
     rate, radius = 800.0, 0.3
     radar = make_radar(num_chirps=16)
     paths = ep.trace(rotor_scene(rate, radius), radar, num_rays=200, max_bounces=1)

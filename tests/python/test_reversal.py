@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.shapes import rectangle
 
 RECIPROCITY = 1e-6  # relative, of the power of a path when the antennas change places
 POLARIZED_RECIPROCITY = 1e-4  # likewise: matrices are kept in single precision, and some receivers are nearly crossed
@@ -65,11 +66,6 @@ def test_a_small_plate_is_no_mirror():
 
 HERE, THERE = (0.0, 0.0, 0.0), (0.0, 0.3, 0.2)
 FLAT = ep.Material(reflectivity=0.5, scattering=1.0)     # the same at all angles: its lobe is reciprocal
-
-
-def rectangle(corner, edge_a, edge_b):
-    corner, a, b = (np.asarray(value, float) for value in (corner, edge_a, edge_b))
-    return ep.Mesh([corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]])
 
 
 def chains(paths):

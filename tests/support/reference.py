@@ -4,7 +4,8 @@ Every surface is cut into small cells. Each cell radiates what reaches it over e
 one or two flagged planes by their images, or over an unflagged one as the wall of a corner) along every leg to the receiver
 (directly or over flagged planes): by physical optics where the surface is smooth, by Lambert's law where it is rough. Cells
 of meshes with interpolated normals lie on the curved surface that those stand for (p' of `reference_cells`). What stands in
-the way is found by trying all triangles. Time factor e^{+jwt}; lengths in m, amplitudes in sqrt(W), fields without their phase.
+the way is found by trying all triangles. Time factor e^{+jwt}; lengths in m, amplitudes in sqrt(W), fields without their
+phase.
 
     a    = j sqrt(Pt Gt Gr)/(4 pi) Gamma s g_in g_out cos_in dS / (L_in L_out)          physical optics, obliquity cos_in
     |a|^2 = Pt Gt/(4 pi) |g_in g_out|^2 |Gamma|^2 S^2/pi cos_in cos_out dS lambda^2 Gr/(4 pi) / (L_in L_out)^2     diffuse

@@ -12,9 +12,13 @@ def lambert(reflectivity):
     return ep.Material(reflectivity=reflectivity, scattering=1.0)
 
 
+def quad(*corners):
+    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
+
+
 def rectangle(corner, edge_a, edge_b):
     corner, a, b = (np.asarray(value, float) for value in (corner, edge_a, edge_b))
-    return ep.Mesh([corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]])
+    return quad(corner, corner + a, corner + a + b, corner + b)
 
 
 def plate(centre, normal, side, up=(0.0, 0.0, 1.0)):

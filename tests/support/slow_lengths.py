@@ -55,7 +55,8 @@ def _hit(paths, row, posed):
 
 
 def surface(scene, mesh, time, trace_time):
-    """World vertices [V, 3], triangles [F, 3]; of smooth meshes vertex normals [V, 3] and which triangles are [F], else None."""
+    """World vertices [V, 3], triangles [F, 3]; of smooth meshes vertex normals [V, 3] and which triangles are [F], else
+    None."""
     node = scene.nodes[mesh.node]
     matrix, shift = world_from_node(scene, mesh.node, time)
     triangles = np.asarray(mesh.triangles, int)

@@ -1,5 +1,6 @@
 #pragma once
 // e^{j pi x} and e^{j 2 pi x}, written for doubles in loops that compilers vectorise and for vectors of doubles alike.
+#include "echopath/base/scalar_math.h"
 #include "echopath/base/simd.h"
 
 namespace echopath {
@@ -13,11 +14,7 @@ ECHOPATH_INLINE Real round_to_integer(Real x) {
   return (x + kRoundingShift) - kRoundingShift;
 }
 
-template <class Real>
-struct PhasorOf {
-  Real re, im;
-};
-using Phasor = PhasorOf<double>;
+using Phasor = ComplexOf<double>;
 
 // How far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
 enum class PhasorError { kRounding, k1em12, k7em6 };
@@ -25,7 +22,7 @@ enum class PhasorError { kRounding, k1em12, k7em6 };
 // e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At kRounding
 // off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
 template <PhasorError kError = PhasorError::kRounding, class Real>
-ECHOPATH_INLINE PhasorOf<Real> phasor_of_half_turns(Real x) {
+ECHOPATH_INLINE ComplexOf<Real> phasor_of_half_turns(Real x) {
   const Real y = x * x;
   Real c, s;
   if constexpr (kError == PhasorError::kRounding) {

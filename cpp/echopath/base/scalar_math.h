@@ -6,6 +6,7 @@
 
 namespace echopath {
 
+// Of numbers or of vectors of them.
 template <class Real>
 struct ComplexOf {
   Real re, im;

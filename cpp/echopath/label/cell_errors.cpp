@@ -148,7 +148,8 @@ ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches,
   };
   const auto count = static_cast<int64_t>(num_cells);
   parallel_for((count + kCellsPerTask - 1) / kCellsPerTask, [&](int64_t task) {
-    for (int64_t i = task * kCellsPerTask; i < std::min((task + 1) * kCellsPerTask, count); ++i) label(static_cast<size_t>(i));
+    const int64_t end = std::min((task + 1) * kCellsPerTask, count);
+    for (int64_t i = task * kCellsPerTask; i < end; ++i) label(static_cast<size_t>(i));
   }, job);
   return errors;
 }

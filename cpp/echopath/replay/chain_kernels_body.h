@@ -61,7 +61,7 @@ struct LaneMath {
     constexpr double kPerPi = 0.3183098861837907, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
     const Vec shifted = x * kPerPi + kRoundingShift, half_turns = shifted - kRoundingShift;
     const Vec rest = exact_multiply_add(half_turns, all(-kPiHigh), x) - half_turns * kPiLow;
-    const PhasorOf<Vec> phasor = phasor_of_half_turns(rest * kPerPi);
+    const ComplexOf<Vec> phasor = phasor_of_half_turns(rest * kPerPi);
     const Mask sign = bits(shifted) << 63;
     return {from_bits(bits(phasor.re) ^ sign), from_bits(bits(phasor.im) ^ sign)};
   }

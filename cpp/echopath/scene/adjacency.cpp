@@ -48,7 +48,8 @@ std::vector<Edge> sorted_edges(const std::vector<Vec3>& vertices, const std::vec
 
 }  // namespace
 
-std::vector<std::array<uint32_t, 3>> edge_neighbours(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+std::vector<std::array<uint32_t, 3>> edge_neighbours(const std::vector<Vec3>& vertices,
+                                                     const std::vector<Triangle>& triangles) {
   std::vector<std::array<uint32_t, 3>> neighbours(triangles.size(), {kNoTriangle, kNoTriangle, kNoTriangle});
   const std::vector<Edge> edges = sorted_edges(vertices, triangles);
   for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {

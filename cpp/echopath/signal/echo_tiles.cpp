@@ -109,7 +109,8 @@ void EchoTiles::set_bits(std::span<const Echoes> blocks, int num_groups, int num
   require(delay_bits_ >= 0, "num_groups", "leaves too few bits for so many echoes", num_groups);
 }
 
-std::vector<uint64_t> EchoTiles::keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts) const {
+std::vector<uint64_t> EchoTiles::keys(std::span<const Echoes> blocks, double longest_delay,
+                                      const DriftClasses& drifts) const {
   std::vector<int64_t> first(blocks.size() + 1);
   for (size_t b = 0; b < blocks.size(); ++b) first[b + 1] = first[b] + blocks[b].num_echoes;
   const double steps = static_cast<double>((uint64_t{1} << delay_bits_) - 1) / longest_delay;

@@ -39,7 +39,7 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   const Vecs<kCount> beside = tau * (rest - tau * model.slope) + frequency * (2.0 * model.reference_offset);
   const Vecs<kCount> turns = (tau * centre + beside) + kRoundingShift;
   const Vecs<kCount> left = exact_multiply_add(tau, centre, kRoundingShift - turns) + beside;
-  const PhasorOf<Vecs<kCount>> phasor = phasor_of_half_turns<kError>(left);
+  const ComplexOf<Vecs<kCount>> phasor = phasor_of_half_turns<kError>(left);
   Tones<kCount> out;
 #pragma GCC unroll 8
   for (int i = 0; i < kCount; ++i) {

@@ -17,8 +17,8 @@ using Real = long double;
 constexpr double kToneError[] = {8.8e-3, 8.9e-4, 1.0e-4, 8.7e-6, 8.9e-7, 9.7e-8, 1.25e-8,
                                  1.45e-9, 1.6e-10, 1.65e-11, 1.75e-12, 2.0e-13, 6.5e-14, 0.0};
 
-// Of pi width (1 - 1 / 4), where the kernel's spectrum begins to alias: near 0.98 for the least error; that of width 8, which the
-// default tolerance takes, found to a finer step.
+// Of pi width (1 - 1 / 4), where the kernel's spectrum begins to alias: near 0.98 for the least error; that of width 8,
+// which the default tolerance takes, found to a finer step.
 double beta_share(int width) { return width == 8 ? 0.985 : 0.98; }
 
 Real kernel_value(Real beta, int width, Real u) {

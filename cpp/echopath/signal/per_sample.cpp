@@ -50,35 +50,36 @@ ECHOPATH_INLINE void add_bent(CarrierModel model, Bent echo, int num_samples, do
   }
 }
 
-}  // namespace
-
-void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, int64_t row_length, Rows rows) const {
+// Calls visit(echo, index) for each of the echoes [begin, begin + count) of a chirp that pass the filter.
+template <class Visit>
+void visit_echoes(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count, Visit visit) {
   EchoStates states;
   EchoBends bends;
   evaluate_states(echoes, chirp, begin, count, states, &bends);
   for (int p = 0; p < count; ++p) {
-    const Bent echo = bent_echo(model_, states, bends, p);
-    if (!passes_filter(model_, echo)) continue;
-    const uint32_t group = echoes.group.empty() ? 0 : echoes.group[static_cast<size_t>(begin + p)];
-    double* row = rows.first + group * rows.stride;
-    run_simd<add_bent>(model_, echo, num_samples_, row, row + row_length);
+    const Bent echo = bent_echo(model, states, bends, p);
+    if (passes_filter(model, echo)) visit(echo, static_cast<size_t>(begin + p));
   }
+}
+
+}  // namespace
+
+void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, int64_t row_length, Rows rows) const {
+  visit_echoes(model_, echoes, chirp, begin, count, [&](const Bent& echo, size_t index) {
+    double* row = rows.first + (echoes.group.empty() ? 0 : echoes.group[index]) * rows.stride;
+    run_simd<add_bent>(model_, echo, num_samples_, row, row + row_length);
+  });
 }
 
 void PerSample::add_samples(const Echoes& echoes, int chirp, int64_t begin, int count, std::span<const double> samples,
                             std::span<double> re, std::span<double> im) const {
-  EchoStates states;
-  EchoBends bends;
-  evaluate_states(echoes, chirp, begin, count, states, &bends);
-  for (int p = 0; p < count; ++p) {
-    const Bent echo = bent_echo(model_, states, bends, p);
-    if (!passes_filter(model_, echo)) continue;
+  visit_echoes(model_, echoes, chirp, begin, count, [&](const Bent& echo, size_t) {
     for (size_t s = 0; s < samples.size(); ++s) {
       const Phasor value = value_at(model_, echo, samples[s]);
       re[s] += value.re;
       im[s] += value.im;
     }
-  }
+  });
 }
 
 }  // namespace echopath

@@ -210,7 +210,8 @@ void Synthesizer::add_tiles(const TimeSampling& sampling, int first_chirp, int n
     for (int i = 0; i < num_chirps; i += kChirpGroup) {
       const int chirp = first_chirp + i;
       const size_t weights = static_cast<size_t>(chirp) * sampling.order;
-      const TileAtChirps at{tiles_.nodes(tile), tile.count, sampling.num_nodes, sampling.order, std::min(kChirpGroup, num_chirps - i),
+      const int count = std::min(kChirpGroup, num_chirps - i);
+      const TileAtChirps at{tiles_.nodes(tile), tile.count, sampling.num_nodes, sampling.order, count,
                             &sampling.first_node[chirp], &sampling.value[weights], &sampling.slope[weights]};
       double* row = rows + (int64_t{i} * num_groups_ + tile.group) * stride;
       signal_kernels().add_tile(*model_, spreading, at, row, stride * num_groups_);
@@ -254,7 +255,8 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
     parallel_for(num_chirps, [&](int64_t chirp) {
       if (job) job->throw_if_cancelled();
       std::complex<double>* samples = out.data() + (channel * num_chirps + chirp) * num_samples;
-      if (!rows.moving.empty()) write_row(rows.moving.data() + (chirp * num_groups_ + group) * row_size(true), true, samples);
+      const int64_t moving = (chirp * num_groups_ + group) * row_size(true);
+      if (!rows.moving.empty()) write_row(rows.moving.data() + moving, true, samples);
       for (int64_t n = 0; n < num_samples; ++n) samples[n] += still[n];
     });
   }

@@ -68,7 +68,8 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
       im[e * kColumns + c] = columns(e, c).imag();
     }
   }
-  run_simd<add_squares_of_block>(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine, power.data());
+  run_simd<add_squares_of_block>(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine,
+                                 power.data());
 }
 
 Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {

@@ -102,7 +102,8 @@ struct ColumnForm {
     if (job) job->throw_if_cancelled();
     const Eigen::MatrixXd form = noise.quadratic_form(column, TrainingNoise::Rows::kOdd);
     if (form.rows() == 0) return;
-    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form, Eigen::EigenvaluesOnly).eigenvalues();
     for (const double value : values) odd.push_back(std::max(value, 0.0));
     if (job) job->throw_if_cancelled();
   }
@@ -142,7 +143,8 @@ double coupled_multiplier(const ColumnForm& form, const CfarDesign& design, Job*
 std::vector<int> computed_columns(const CfarWindow& cells, Eigen::Index num_degrees) {
   const int last = cells.reach_range(), dense = num_degrees <= kFewDegrees ? last : 2 * cells.guard_range;
   std::vector<int> columns;
-  for (int column = 0; column < last; column = column < dense ? column + 1 : std::max(2 * column, 1)) columns.push_back(column);
+  const auto following = [&](int column) { return column < dense ? column + 1 : std::max(2 * column, 1); };
+  for (int column = 0; column < last; column = following(column)) columns.push_back(column);
   columns.push_back(last);
   return columns;
 }

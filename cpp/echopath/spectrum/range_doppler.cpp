@@ -41,11 +41,11 @@ std::vector<std::complex<double>> range_transform(const std::complex<double>* cu
   return profiles;
 }
 
-// A strip of neighbouring columns of one map, in[chirp * num_ranges + column] -> out[velocity * num_ranges + column], zero velocity
-// in the middle. All columns of a row at once: rows are often a power of two apart and share their cache sets, so that a line
-// would be gone before the next column asks for it.
-void transform_strip(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, int64_t num_columns,
-                     std::complex<double>* out) {
+// A strip of neighbouring columns of one map, in[chirp * num_ranges + column] -> out[velocity * num_ranges + column], zero
+// velocity in the middle. All columns of a row at once: rows are often a power of two apart and share their cache sets, so
+// that a line would be gone before the next column asks for it.
+void transform_strip(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges,
+                     int64_t num_columns, std::complex<double>* out) {
   std::vector<FftBuffer> columns;
   for (int64_t k = 0; k < num_columns; ++k) columns.emplace_back(fft.size());
   for (size_t i = 0; i < taper.weight.size(); ++i, in += num_ranges) {

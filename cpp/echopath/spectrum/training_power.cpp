@@ -8,8 +8,8 @@
 namespace echopath {
 namespace {
 
-// sum[i] = values[i] + ... + values[i + width - 1] for i in [0, num_sums), by doubling: sums of 1, 2, 4, ... numbers in `level`
-// [count], which holds the values at first.
+// sum[i] = values[i] + ... + values[i + width - 1] for i in [0, num_sums), by doubling: sums of 1, 2, 4, ... numbers in
+// `level` [count], which holds the values at first.
 ECHOPATH_INLINE void add_levels(double* level, int64_t count, int64_t width, int64_t num_sums, double* sum) {
   int64_t done = 0;
   for (int64_t size = 1; size <= width; size *= 2) {

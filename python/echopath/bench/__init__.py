@@ -1,6 +1,6 @@
 """Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces,
-`run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases, `run_speed(folder)` of synthesis,
-frames and memory."""
+`run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases, `run_speed(folder)` of
+synthesis, frames and memory."""
 from .labels import run_labels
 from .physics import run_physics
 from .replay import run_replay

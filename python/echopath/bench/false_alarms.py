@@ -39,8 +39,8 @@ def measure_false_alarms(num_cells: int = 10_000_000, *, maps=MAPS, rates=RATES)
 
     num_cells: at least, for each row; maps: NoiseMap of each row; rates: of false alarms
     Of real samples the cells within the main lobe of range 0 are left out, where the image leaks.
-    Returns rows {map, method, rate, cells, false_alarms, ratio, standard_error, holds}: ratio is that of the false alarms per
-    cell to the rate, with its standard error from the scatter between maps; holds: within 10 % and three of these.
+    Returns rows {map, method, rate, cells, false_alarms, ratio, standard_error, holds}: ratio is that of the false alarms
+    per cell to the rate, with its standard error from the scatter between maps; holds: within 10 % and three of these.
     """
     return [row for of_map in maps for row in _measure(num_cells, of_map, rates)]
 

@@ -14,7 +14,8 @@ from ..origin import FIXED_SEEDS
 def machine() -> dict:
     """Processor, threads, versions and seeds, as the JSON of a benchmark has them."""
     return {"processor": _processor(), "threads": ep.num_threads(), "instruction_set": ep._core.instruction_set(),
-            "system": platform.platform(), "python": platform.python_version(), "numpy": np.__version__, "echopath": ep.__version__,
+            "system": platform.platform(), "python": platform.python_version(),
+            "numpy": np.__version__, "echopath": ep.__version__,
             "seeds": FIXED_SEEDS}
 
 

@@ -43,7 +43,8 @@ SAMPLERS = (Variant("second_order", "fibonacci"), Variant("second_order", "r2"),
 
 
 def run_physics(folder, *, rays_max: int = 2 ** 16, quick: bool = False, progress=None) -> dict:
-    """Runs all targets, writes physics.json, physics.csv, costs.csv and physics.png into `folder`; returns what the JSON holds.
+    """Runs all targets, writes physics.json, physics.csv, costs.csv and physics.png into `folder`; returns what the JSON
+    holds.
 
     rays_max: most rays of a trace; quick: few shifts and rays, for a look; progress: callable (stage, fraction) or None
     """

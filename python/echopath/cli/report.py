@@ -5,6 +5,7 @@ import textwrap
 
 import numpy as np
 
+from ..labels.report import peak_words
 from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
@@ -79,7 +80,8 @@ def stages(all_stages) -> list[str]:
 
 def powers(whole, parts: dict) -> list[str]:
     """Mean received power of the whole and of each part of each partition, without noise."""
-    lines = ["received power, without noise, of one realisation of the random phases", line("whole", _power_text(power_dbm(whole)))]
+    lines = ["received power, without noise, of one realisation of the random phases",
+             line("whole", _power_text(power_dbm(whole)))]
     for partition, cubes in parts.items():
         lines.append(f"received power, {partition}")
         lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
@@ -161,9 +163,7 @@ def _level(power: float) -> str:
 def _peak(label) -> str:
     if label.peak is None:
         return ""
-    distance, row, _ = label.peak
-    across = f"{row:+6.2f} m/s" if hasattr(label.peak, "velocity") else f"{np.degrees(row):+6.1f} deg"
-    return f"{distance:6.2f} m {across}"
+    return peak_words(label.peak, width=6)
 
 
 def _table(rows: list, right=()) -> list[str]:

@@ -24,8 +24,8 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
     window, directions by `estimate_angles`. A detection has the label of the largest power in its cell without noise; it is
-    "noise" where echoes hold less than half of its power: those of the parts or labels in all channels, of paths alone by a model
-    of their fields in at most 8 channels, compared with the power in those.
+    "noise" where echoes hold less than half of its power: those of the parts or labels in all channels, of paths alone by a
+    model of their fields in at most 8 channels, compared with the power in those.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells

@@ -68,9 +68,9 @@ class Detections:
     def paths(self, i: int) -> tuple:
         """The paths behind detection i: (indices i64 [N], shares [N] of the power), largest share first.
 
-        Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for the
-        first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that hold
-        99.99 % of the sum of the powers of single paths, of which the shares are.
+        Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for
+        the first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that
+        hold 99.99 % of the sum of the powers of single paths, of which the shares are.
         i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, IndexError.
         """
         if self.echoes is None:
@@ -84,8 +84,8 @@ class Detections:
     def to_csv(self, path) -> None:
         """Writes a table with a row for each detection, whole or not at all.
 
-        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds; unknown
-        numbers are left empty. Raises ep.FileError.
+        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds;
+        unknown numbers are left empty. Raises ep.FileError.
         """
         columns = [getattr(self, name) for name in _FIELDS] + [self.is_noise.astype(int), *self.cells.T]
         seeds = ["" if seed is None else str(seed) for seed in (self.seed, self.noise_seed)]

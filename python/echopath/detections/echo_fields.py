@@ -25,8 +25,8 @@ class Response:
     """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
 
     In parts, one for each segment of the samples. reach: bins, within which it is known
-    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep bends
-    it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
+    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep
+    bends it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
     Memory: the table has 8 bytes for each segment, sweep (257 / S^2 at most) and sixteenth of a bin: 33 kB a sample at most.
     """
 

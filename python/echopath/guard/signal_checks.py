@@ -3,13 +3,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._core import AMPLITUDE_TOLERANCE, PHASE_TOLERANCE
 from .check import Check
 
 LARGEST_OF_RMS = 6.0    # how much a NUFFT may err in one sample, over its rms of all samples
 ROUNDING = 1e-13        # of the sum of |amplitude|: of the direct sums
 BEYOND_TAIL = 10.0      # what a polynomial leaves out may add up to, over its last two coefficients, which the aims are for
-PHASE_TOLERANCE = 1e-5      # rad, the aim of `synthesize`
-AMPLITUDE_TOLERANCE = 1e-4  # relative, likewise
 
 
 def check_signal(cube, probe, *, tolerance: float = 1e-7, phase_tolerance: float = PHASE_TOLERANCE) -> list[Check]:

@@ -39,9 +39,9 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
     objects: as in `families`, what to report on
     plane: "range_doppler" or "range_azimuth" (beams of each part); window, zero_pad: as in `range_doppler`
     angles: keywords of `range_azimuth` for that plane, None: {"combine": "peak"}; Bartlett beams only
-    noise: False: no cell is in the noise; noise_margin_db: dB, cells count as above the noise where the power of the whole is
-        this much above the mean of the noise in a cell (k T0 F fs and the noise bandwidths of the window; of a range-azimuth
-        map, measured on noise alone). Noise alone passes 10 dB in one cell of 22 000, of one channel
+    noise: False: no cell is in the noise; noise_margin_db: dB, cells count as above the noise where the power of the whole
+        is this much above the mean of the noise in a cell (k T0 F fs and the noise bandwidths of the window; of a
+        range-azimuth map, measured on noise alone). Noise alone passes 10 dB in one cell of 22 000, of one channel
     dynamic_range_db: dB below the strongest cell that the mask goes down to, None: no limit
     errors: True: standard errors too, which needs trace(batches=2 or more; 8 are good) and one more pass over the paths
     progress: callable (stage, fraction) or None
@@ -108,7 +108,8 @@ def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler"
 
 
 def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict, settings: dict) -> dict:
-    """{partition: Labels} from ViewPowers of the families and {partition: ViewPowers}; objects and ghosts are the same in all.
+    """{partition: Labels} from ViewPowers of the families and {partition: ViewPowers}; objects and ghosts are the same in
+    all.
 
     selections: {partition: {name: selection}}; settings: signal settings
     """

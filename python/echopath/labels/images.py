@@ -20,7 +20,8 @@ MAX_PALETTE = 256                   # colours of a PNG; with more labels it hold
 
 
 def colours_of(names) -> list[tuple]:
-    """A colour (red, green, blue), 0 to 255, for each of the names [N]; grey for "other"; the same ones for the same names."""
+    """A colour (red, green, blue), 0 to 255, for each of the names [N]; grey for "other"; the same ones for the same
+    names."""
     counted = iter(range(len(names)))
     return [REST_COLOUR if name == "other" else _colour(next(counted)) for name in names]
 

@@ -97,10 +97,10 @@ class ObjectLabel:
 class GhostLabel:
     """What a map shows of one ghost: an object's echoes over the same mirrors, of the same type and order.
 
-    The echoes of types 1 and 2 of order 2 over one mirror are the same way there and back: where transmitter and receiver stand
-    side by side, no map tells them apart. Ghosts of an object over the same mirrors, of the same order, therefore compete for
-    cells by the power of their common field; a cell that they win has the strongest of them by itself, the first of those
-    within 0.1 dB: of a pair from one place type 1 has all cells and type 2 none.
+    The echoes of types 1 and 2 of order 2 over one mirror are the same way there and back: where transmitter and receiver
+    stand side by side, no map tells them apart. Ghosts of an object over the same mirrors, of the same order, therefore
+    compete for cells by the power of their common field; a cell that they win has the strongest of them by itself, the first
+    of those within 0.1 dB: of a pair from one place type 1 has all cells and type 2 none.
     object: full name of the object; via: names of the children of the scene root that mirrored it, tuple of str
     ghost_type: 1 (last bounce on the object) or 2 (last bounce on a mirror); order: number of bounces
     class_code: of the Radar Ghost Dataset (Kraus et al.)
@@ -135,7 +135,8 @@ class Labels:
         dynamic range
     objects: list of ObjectLabel, in the order of the scene; object_map: i16 [V, R], index into it, -1: none
     ghosts: list of GhostLabel; ghost_map: i16 [V, R], index into it, -1: none. A cell of the mask belongs to the object, the
-        ghost (all types of its order over the same mirrors as one field) or the surroundings that have the largest power there
+        ghost (all types of its order over the same mirrors as one field) or the surroundings that have the largest power
+        there
     mean_power: [K, V, R] W, over the random phases of rough surfaces; mean_share: [K, V, R], the shares of these powers
     power_error, share_error: [K, V, R] standard errors of mean_power in W and of mean_share, from the batches of rays
     certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;

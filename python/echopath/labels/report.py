@@ -47,6 +47,12 @@ def _ghost(label) -> str:
 def _cells(label) -> str:
     if label.peak is None:
         return ""
-    distance, row, power = label.peak
-    where = f"{row:+.2f} m/s" if hasattr(label.peak, "velocity") else f"{np.degrees(row):+.1f} degrees"
-    return f", {label.cells} cells, peak {distance:.2f} m {where} {in_dbm(power):.0f} dBm"
+    return f", {label.cells} cells, peak {peak_words(label.peak)} {in_dbm(label.peak.power):.0f} dBm"
+
+
+def peak_words(peak, width: int = 0) -> str:
+    """Where the peak of a label lies, in m and m/s or degrees; each number at least `width` characters wide."""
+    distance, row, _ = peak
+    if hasattr(peak, "velocity"):
+        return f"{distance:{width}.2f} m {row:+{width}.2f} m/s"
+    return f"{distance:{width}.2f} m {np.degrees(row):+{width}.1f} deg"

@@ -133,7 +133,8 @@ def _unseen(labels) -> str:
 
 
 def _shown(labels):
-    """(first, beyond the last) row and column: about the cells of objects and ghosts, about the mask where there are none."""
+    """(first, beyond the last) row and column: about the cells of objects and ghosts, about the mask where there are
+    none."""
     is_meant = (labels.object_map >= 0) | (labels.ghost_map >= 0)
     margins = VELOCITY_MARGIN if labels.azimuth is None else AZIMUTH_MARGIN, RANGE_MARGIN
     return [_with_margin(axis, np.flatnonzero((is_meant if is_meant.any() else labels.mask).any(axis=1 - side)), margin)

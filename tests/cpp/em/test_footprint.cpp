@@ -18,7 +18,8 @@ std::complex<double> gaussian_mean(const FootprintPhase& phase, double spread) {
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; j <= kSteps; ++j) {
       const double x = -reach + i * step, y = -reach + j * step;
-      const double angle = phase.g1 * x + phase.g2 * y + 0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y);
+      const double angle =
+          phase.g1 * x + phase.g2 * y + 0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y);
       sum += std::exp(-0.5 * (x * x + y * y) / (spread * spread)) * std::polar(1.0, -angle);
     }
   }

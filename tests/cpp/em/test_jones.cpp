@@ -44,7 +44,8 @@ TEST(Jones, ConductorIsItsPhysicalOptics) {
     const double cos_incidence = -at.direction.dot(at.normal);
     const FieldVector radiated =
         radiated_field(at.field, at.direction, at.normal, at.out, mode_coefficients(metal, 77e9, cos_incidence));
-    FieldVector expected = -(at.field * cos_incidence + dot(at.normal, at.field) * at.direction.cast<std::complex<double>>());
+    FieldVector expected =
+        -(at.field * cos_incidence + dot(at.normal, at.field) * at.direction.cast<std::complex<double>>());
     expected -= dot(at.out, expected) * at.out.cast<std::complex<double>>();
     EXPECT_LT((radiated - expected).norm(), kRounding * 10);
   }
@@ -60,7 +61,8 @@ TEST(Jones, SpecularRadiationIsTheReflectedFieldTimesTheCosine) {
     const ModeCoefficients modes = mode_coefficients(glass, 77e9, cos_incidence);
     const Vec3 mirrored = at.direction + 2.0 * cos_incidence * at.normal;
     const FieldVector reflected = reflected_field(at.field, at.direction, at.normal, modes);
-    EXPECT_LT((radiated_field(at.field, at.direction, at.normal, mirrored, modes) - cos_incidence * reflected).norm(), 10 * kRounding);
+    EXPECT_LT((radiated_field(at.field, at.direction, at.normal, mirrored, modes) - cos_incidence * reflected).norm(),
+              10 * kRounding);
     EXPECT_LT(std::abs(dot(mirrored, reflected)), kRounding);
     EXPECT_LT(std::abs(modes.te - fresnel_te(*glass.permittivity, cos_incidence)), kRounding);
   }
@@ -141,8 +143,8 @@ TEST(Scattering, MeanPowersAreThoseOfSurfacesWithoutAxis) {
       std::complex<double> coherence = 0.0;
       for (int i = 0; i < kAxes; ++i) {
         const auto echo = [&](const Vec3& sent, const Vec3& received) {
-          return dot(received, scattered_field(sent.cast<std::complex<double>>(), Vec3::UnitX(), -Vec3::UnitX(), -Vec3::UnitX(),
-                                               {-1.0, 1.0}, {share, kPi * i / kAxes}));
+          return dot(received, scattered_field(sent.cast<std::complex<double>>(), Vec3::UnitX(), -Vec3::UnitX(),
+                                               -Vec3::UnitX(), {-1.0, 1.0}, {share, kPi * i / kAxes}));
         };
         co_power += std::norm(echo(co, co)) / kAxes;
         cross_power += std::norm(echo(co, cross)) / kAxes;

@@ -1,4 +1,5 @@
-// Ten million random materials, angles and cells: nothing is ever NaN or infinite, and no surface reflects more than it gets.
+// Ten million random materials, angles and cells: nothing is ever NaN or infinite, and no surface reflects more than it
+// gets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,8 @@ TEST(RandomDraws, ReflectionIsFiniteAndPassive) {
 TEST(RandomDraws, FootprintsAreFiniteAndNoGain) {
   int64_t num_bad = 0;
   for (uint64_t i = 0; i < kDraws; ++i) {
-    const auto a = uniform2(12, Stream::kBounce, i, 0), b = uniform2(12, Stream::kBounce, i, 1), c = uniform2(12, Stream::kBounce, i, 2);
+    const auto a = uniform2(12, Stream::kBounce, i, 0), b = uniform2(12, Stream::kBounce, i, 1),
+               c = uniform2(12, Stream::kBounce, i, 2);
     const auto draw = [](double unit) { return (unit < 0.5 ? -1.0 : 1.0) * decades(std::abs(2 * unit - 1), -6, 6); };
     const FootprintPhase phase{draw(a[0]), draw(a[1]), draw(b[0]), draw(b[1]), draw(c[0])};
     if (!(std::abs(second_order_footprint(phase, 0.3 + c[1])) <= 1.0 + kRounding)) ++num_bad;

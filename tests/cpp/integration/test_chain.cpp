@@ -70,8 +70,11 @@ struct Peak {
 
 Peak strongest(const Cube& cube, const Radar& radar) {
   const RangeDoppler map = range_doppler(cube.values, radar, Window::named("hann"), 2);
-  const auto norm_less = [](const std::complex<double>& a, const std::complex<double>& b) { return std::norm(a) < std::norm(b); };
-  const auto at = static_cast<size_t>(std::max_element(map.values.begin(), map.values.end(), norm_less) - map.values.begin());
+  const auto norm_less = [](const std::complex<double>& a, const std::complex<double>& b) {
+    return std::norm(a) < std::norm(b);
+  };
+  const auto at =
+      static_cast<size_t>(std::max_element(map.values.begin(), map.values.end(), norm_less) - map.values.begin());
   return {map.range[at % map.range.size()], map.velocity[at / map.range.size()]};
 }
 
@@ -83,7 +86,8 @@ TEST(Chain, MeshFileBecomesADecomposedMap) {
   settings.num_rays = 20000;
   const Paths paths = trace(scene, radar, settings);
   const Selection ghosts = Selection::touches("wall") & Selection::touches("car/front") & Selection::num_bounces(2, 2);
-  const Grouping route = by_selections({{"front", "T 'car/front' R"}, {"back", "T 'car/back' R"}, {"wall", "T .* 'wall' .* R"}});
+  const Grouping route =
+      by_selections({{"front", "T 'car/front' R"}, {"back", "T 'car/back' R"}, {"wall", "T .* 'wall' .* R"}});
   const Grouping bounces = by_selections({{"one", Selection::num_bounces(1, 1)}, {"ghosts", ghosts}});
   const auto views = decompose(paths, radar, {route, bounces});
   ASSERT_EQ(views.size(), 2u);
@@ -137,7 +141,8 @@ TEST(Chain, EmptySceneGivesZeros) {
   const Radar radar = frame_radar();
   const Cube cube = synthesize(trace(Scene(), radar, {}), radar);
   ASSERT_EQ(cube.values.size(), size_t{128} * 512);
-  EXPECT_TRUE(std::all_of(cube.values.begin(), cube.values.end(), [](const auto& s) { return s == std::complex<double>(0.0); }));
+  EXPECT_TRUE(
+      std::all_of(cube.values.begin(), cube.values.end(), [](const auto& s) { return s == std::complex<double>(0.0); }));
 }
 
 TEST(Chain, CancellingStopsSynthesis) {

@@ -86,7 +86,8 @@ TEST(Families, AreSortedWithTheBackgroundLast) {
 TEST(Families, PartsDifferWhateverObjectsAreCalled) {
   std::vector<HandMadePath> paths;
   for (const Known& known : kKnown) paths.push_back(path_over(known.meshes));
-  const std::vector<NamedGlobs> objects{{"background", {"pedestrian"}}, {"background: type 1, order 2 via wall", {"street/floor"}}};
+  const std::vector<NamedGlobs> objects{{"background", {"pedestrian"}},
+                                        {"background: type 1, order 2 via wall", {"street/floor"}}};
   const Families found = find_families(make_paths(paths), map_surfaces(*make_street(), objects));
   const std::vector<std::string> names = found.partition().names;
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), found.families.size());

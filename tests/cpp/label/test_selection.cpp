@@ -97,7 +97,8 @@ TEST(Selection, JoinedTextIsTheAlgebra) {
   const Paths paths = make_paths(some_paths());
   const Selection a = "T 'pedestrian' | 'street' R", b = Selection::touches("street"), c = "T .* D R";
   const std::string street = "T .* 'street' .* R";
-  EXPECT_EQ(Selection("T 'pedestrian' | 'street' R | " + street + " & ~T .* D R").matches(paths), (a | (b & ~c)).matches(paths));
+  EXPECT_EQ(Selection("T 'pedestrian' | 'street' R | " + street + " & ~T .* D R").matches(paths),
+            (a | (b & ~c)).matches(paths));
   EXPECT_EQ(Selection("(T 'pedestrian' | 'street' R | " + street + ")&~ ~(T .* D R)").matches(paths),
             ((a | b) & c).matches(paths));
 }

@@ -113,7 +113,8 @@ TEST(Skin, WeightsNearlyOneAreScaledAndTheirOwnStay) {
 }
 
 TEST(Skin, RowsKeepOnlyWhatCounts) {
-  const SkinWeights weights = Skin({{0, 0, 0}, {1, 0, 0}}, two_links(), rows(3, {0, 1, 0, 1, 0, 0}, {0, 1, 0, 0.5, 0.5, 0})).weights();
+  const SkinWeights weights =
+      Skin({{0, 0, 0}, {1, 0, 0}}, two_links(), rows(3, {0, 1, 0, 1, 0, 0}, {0, 1, 0, 0.5, 0.5, 0})).weights();
   EXPECT_EQ(weights.per_vertex, 2);
   EXPECT_EQ(weights.joint, (std::vector<uint32_t>{1, 0, 1, 0}));
   EXPECT_EQ(weights.weight, (std::vector<double>{1, 0, 0.5, 0.5}));

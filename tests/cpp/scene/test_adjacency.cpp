@@ -14,7 +14,8 @@ TEST(Adjacency, TrianglesOfASquareMeetAtItsDiagonalAlone) {
 }
 
 TEST(Adjacency, SeamsOfRepeatedVerticesDoNotCount) {
-  const auto across = edge_neighbours({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {3, 4, 5}});
+  const auto across =
+      edge_neighbours({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {3, 4, 5}});
   EXPECT_EQ(across[0][2], 1u);
   EXPECT_EQ(across[1][0], 0u);
 }
@@ -31,7 +32,8 @@ TEST(Adjacency, ClosedSurfaceHasNeighboursEverywhereAndEachNeighbourKnowsItsOwn)
 }
 
 TEST(Adjacency, EdgeOfThreeTrianglesLeadsNowhere) {
-  const auto across = edge_neighbours({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  const auto across =
+      edge_neighbours({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
   for (const auto& sides : across) EXPECT_EQ(std::count(sides.begin(), sides.end(), kNoTriangle), 3);
 }
 

@@ -133,8 +133,10 @@ Skin halves(const Mesh& mesh, uint32_t num_vertices) {
     vertices[mesh.original_vertex()[v]] = mesh.vertices()[v];
     weights.joint[mesh.original_vertex()[v]] = mesh.vertices()[v].x() > 2.5 ? 2 : 0;
   }
-  return Skin(vertices, {Joint{"left", -1, Transform::Identity(), nullptr, {}}, Joint{"idle", 0, Transform::Identity(), nullptr, {}},
-                         Joint{"right", 0, Transform::Identity(), nullptr, {}}}, weights);
+  return Skin(vertices,
+              {Joint{"left", -1, Transform::Identity(), nullptr, {}}, Joint{"idle", 0, Transform::Identity(), nullptr, {}},
+               Joint{"right", 0, Transform::Identity(), nullptr, {}}},
+              weights);
 }
 
 TEST(PartsByJoint, EveryTriangleIsInOnePart) {

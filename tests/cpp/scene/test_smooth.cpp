@@ -22,7 +22,8 @@ TEST(VertexNormals, AreExactOnASphereOfAnyTessellation) {
   std::vector<Triangle> triangles;
   const double angles[] = {0.0, 0.9, 2.0, 2.7, 4.4, 5.1}, reach[] = {0.3, 0.5, 0.2, 0.6, 0.4, 0.35};
   for (int i = 0; i < 6; ++i) {
-    vertices.push_back({std::sin(reach[i]) * std::cos(angles[i]), std::sin(reach[i]) * std::sin(angles[i]), std::cos(reach[i])});
+    vertices.push_back(
+        {std::sin(reach[i]) * std::cos(angles[i]), std::sin(reach[i]) * std::sin(angles[i]), std::cos(reach[i])});
   }
   for (uint32_t i = 0; i < 6; ++i) triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
   EXPECT_LT((vertex_normals(vertices, triangles)[0] - Vec3::UnitZ()).norm(), 1e-14);

@@ -78,7 +78,8 @@ TEST(Methods, LongRecurrenceDoesNotDrift) {
   EXPECT_LT(tone_error(*make_recurrence(kSamples), kSamples).largest, 4.0 * kLastPhaseRounding);
 }
 
-// A product of frequency and sample, rounded before its whole turns are removed, would leave 1e-11 rad without fused operations.
+// A product of frequency and sample, rounded before its whole turns are removed, would leave 1e-11 rad without fused
+// operations.
 TEST(Methods, LongDirectSumKeepsItsPhase) {
   EXPECT_LT(tone_error(*make_direct(65536), 65536).largest, kToneRounding);
 }

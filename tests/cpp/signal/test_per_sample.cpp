@@ -60,7 +60,9 @@ double phase_error(const ChirpSequence& w, const std::function<double(double, in
 }
 
 TEST(PerSample, FastPointHasItsExactPhase) {
-  const auto delay = [](double t, int order) { return order == 0 ? 2.0 / kC * (20.0 + 60.0 * t) : order == 1 ? 120.0 / kC : 0.0; };
+  const auto delay = [](double t, int order) {
+    return order == 0 ? 2.0 / kC * (20.0 + 60.0 * t) : order == 1 ? 120.0 / kC : 0.0;
+  };
   EXPECT_LT(phase_error(testing::reference_waveform(), delay, true), kRounding);
   EXPECT_NEAR(phase_error(testing::reference_waveform(), delay, false), 0.0160, 1e-4);  // 2 pi slope taudot (Tc / 2)^2
 }

@@ -57,7 +57,8 @@ Complex slow(const RangeDoppler& map, const Radar& radar, const VirtualArray& ar
       mean += map.values[(channel * map.velocity.size() + velocity) * map.range.size() + range] * std::polar(1.0, -slot);
     }
     mean /= static_cast<double>(element.channels.size());
-    sum += mean * std::polar(1.0, k * (element.position - array.centre()).dot(u)) / static_cast<double>(array.elements.size());
+    sum +=
+        mean * std::polar(1.0, k * (element.position - array.centre()).dot(u)) / static_cast<double>(array.elements.size());
   }
   return sum;
 }

@@ -55,7 +55,8 @@ double integrated(double alpha, int n, double m) {
 TEST(Cfar, SeveralChannelsHaveTheBetaDistribution) {
   for (const int n : {2, 3, 12}) {
     const double alpha = 2.2 / 50.0;
-    EXPECT_NEAR(false_alarm_probability(alpha, std::vector<double>(50, 1.0), n) / integrated(alpha, n, 50.0 * n), 1.0, 1e-7) << n;
+    EXPECT_NEAR(false_alarm_probability(alpha, std::vector<double>(50, 1.0), n) / integrated(alpha, n, 50.0 * n), 1.0, 1e-7)
+        << n;
   }
 }
 

@@ -29,7 +29,8 @@ std::vector<Complex> tone(const Radar& radar, int zero_pad, double velocity, dou
   for (size_t c = 0; c < radar.receivers.size(); ++c) {
     for (int j = 0; j < kChirps; ++j) {
       for (int n = 0; n < kSamples; ++n) {
-        const double cycles = (velocity / zero_pad * j / kChirps + range / zero_pad * n / kSamples) + 0.3 * static_cast<double>(c);
+        const double cycles =
+            (velocity / zero_pad * j / kChirps + range / zero_pad * n / kSamples) + 0.3 * static_cast<double>(c);
         cube.push_back(std::polar(std::sqrt(power), kTwoPi * cycles) + Complex(normal(random), normal(random)));
       }
     }
@@ -94,7 +95,8 @@ TEST(Peaks, RealSamplesHaveNoNeighboursBeyondTheirRanges) {
   auto cube = tone(radar, 1, 3.2, 0.0, 1e-12);
   for (Complex& value : cube) value = std::sqrt(2.0) * value.real();
   const Peaks peaks = peaks_of(cube, radar, {WindowKind::kHann}, 1);
-  const auto at_the_end = std::find_if(peaks.cells.begin(), peaks.cells.end(), [](const auto& cell) { return cell[1] == 0; });
+  const auto at_the_end =
+      std::find_if(peaks.cells.begin(), peaks.cells.end(), [](const auto& cell) { return cell[1] == 0; });
   ASSERT_NE(at_the_end, peaks.cells.end());
   EXPECT_EQ(peaks.range_offset[at_the_end - peaks.cells.begin()], 0.0);
   cube = tone(radar, 1, 3.2, 12.3, 1e-12);

@@ -60,7 +60,8 @@ std::vector<Expected> pairs(const Legs& legs, size_t max_bounces) {
       std::vector<uint32_t> meshes = legs.in[i];
       meshes.push_back(0);
       meshes.insert(meshes.end(), legs.out[j].begin(), legs.out[j].end());
-      if (meshes.size() <= max_bounces) all.push_back({meshes, uint64_t{1} << legs.in[i].size(), factor(i, false) * factor(j, true)});
+      if (meshes.size() > max_bounces) continue;
+      all.push_back({meshes, uint64_t{1} << legs.in[i].size(), factor(i, false) * factor(j, true)});
     }
   }
   return all;

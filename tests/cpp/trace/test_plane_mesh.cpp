@@ -64,7 +64,9 @@ TEST(PlaneMesh, HasNoCracks) {
   const HoledRectangle mesh;
   const PlaneMesh plane(0, mesh.corners(), mesh.along.cross(mesh.across).normalized());
   for (int i = 0; i <= 4 * HoledRectangle::kColumns; ++i) {
-    for (int row = 0; row <= HoledRectangle::kRows; ++row) EXPECT_TRUE(plane.locate(mesh.at(0.25 * i, row)) || (row > 4 && row < 8));
+    for (int row = 0; row <= HoledRectangle::kRows; ++row) {
+      EXPECT_TRUE(plane.locate(mesh.at(0.25 * i, row)) || (row > 4 && row < 8));
+    }
   }
 }
 

@@ -12,7 +12,8 @@ from .qt import Qt, QtCore, QtGui, QtWidgets
 from .ticks import nice_ticks, tick_text
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
-HINT = "Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what moves or everything."
+HINT = ("Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what "
+        "moves or everything.")
 
 
 class MapArea(QtWidgets.QWidget):

@@ -4,7 +4,7 @@ import pytest
 
 import echopath as ep
 from support import shapes
-from support.slides import TRANSMITTER, Ball, Plane, bisector, excess_by_search, frozen, stationary_length
+from support.slides import TRANSMITTER, Plane, bisector, excess_by_search, frozen, mirrors_over, stationary_length
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 STEP_LIMIT = 1e-3         # rad: what one Newton step may leave where the frozen point errs by less than 1 rad
@@ -23,8 +23,7 @@ def residual(mirrors, slides, at, **keywords):
 @pytest.mark.parametrize("radius", [np.inf, 0.1, 0.5, 3.0, -60.0, -2.0])
 def test_one_step_over_one_mirror_finds_the_point_of_reflection(radius, direction):
     at, top = np.array([16.0, 1.0, 2.5]), np.array([9.0, 3.0, 0.5])
-    normal = bisector(top, TRANSMITTER, at)
-    mirror = Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
+    mirror, = mirrors_over([top], at, [radius])
     probe = 0.005 * np.array(DIRECTIONS[direction])
     slides = [probe * np.sqrt(0.9 / abs(WAVENUMBER * excess_by_search([mirror], [probe], at)))]
     before, after = residual([mirror], slides, at)
@@ -35,10 +34,7 @@ def test_one_step_over_one_mirror_finds_the_point_of_reflection(radius, directio
 def test_one_step_over_two_mirrors_finds_both_points(radii):
     """Each moves the other: single steps would leave a good part of the error."""
     at, tops = np.array([17.0, 2.0, 1.0]), [np.array([7.0, 3.0, 0.5]), np.array([12.0, -2.0, 0.0])]
-    chain = [TRANSMITTER, *tops, at]
-    normals = [bisector(chain[k], chain[k - 1], chain[k + 1]) for k in (1, 2)]
-    mirrors = [Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
-               for top, normal, radius in zip(tops, normals, radii)]
+    mirrors = mirrors_over(tops, at, radii)
     probe = 0.005 * np.array([[0.8, 0.6], [-0.3, 0.9]])
     before, after = residual(mirrors, probe * np.sqrt(0.9 / abs(WAVENUMBER * excess_by_search(mirrors, probe, at))), at)
     assert 0.8 < abs(before) < 1.0 and abs(after) < STEP_LIMIT

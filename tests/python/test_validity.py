@@ -7,7 +7,7 @@ import pytest
 import echopath as ep
 from echopath.materials import data_folder
 from support import shapes
-from support.slides import TARGET, TRANSMITTER, ROUGH, Ball, Plane, bisector, excess_by_search, frozen
+from support.slides import TARGET, TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of transmitter and target, 3 m aside
@@ -47,8 +47,7 @@ DIRECTIONS = {"in": (1.0, 0.0), "across": (0.0, 1.0), "oblique": (0.6, -0.8)}
 def test_phase_error_of_one_slide_is_that_of_a_search(radius, direction):
     """Plane, convex, weakly and strongly hollow (the length is largest at the true point); seen at an angle."""
     at, top = np.array([16.0, 1.0, 2.5]), np.array([9.0, 3.0, 0.5])
-    normal = bisector(top, TRANSMITTER, at)
-    mirror = Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
+    mirror, = mirrors_over([top], at, [radius])
     incidence = mirror.axes @ (at - TRANSMITTER)
     turn = np.array([[incidence[0], -incidence[1]], [incidence[1], incidence[0]]]) / np.linalg.norm(incidence)
     probe = 0.01 * turn @ DIRECTIONS[direction]
@@ -62,10 +61,7 @@ def test_phase_error_of_one_slide_is_that_of_a_search(radius, direction):
 def test_phase_error_of_two_slides_is_that_of_a_search(radii):
     """Both points move each other: the sum over the single slides would be wrong."""
     at, tops = np.array([17.0, 2.0, 1.0]), [np.array([7.0, 3.0, 0.5]), np.array([12.0, -2.0, 0.0])]
-    chain = [TRANSMITTER, *tops, at]
-    normals = [bisector(chain[k], chain[k - 1], chain[k + 1]) for k in (1, 2)]
-    mirrors = [Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
-               for top, normal, radius in zip(tops, normals, radii)]
+    mirrors = mirrors_over(tops, at, radii)
     slides = [0.02 * np.array([0.8, 0.6]), 0.015 * np.array([-0.3, 0.9])]
     expected = WAVENUMBER * abs(excess_by_search(mirrors, slides, at))
     assert 0.001 < expected < 1.0

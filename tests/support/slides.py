@@ -118,3 +118,12 @@ def excess_by_search(mirrors, slides, at):
 def bisector(point, before, behind):
     both = (before - point) / np.linalg.norm(before - point) + (behind - point) / np.linalg.norm(behind - point)
     return both / np.linalg.norm(both)
+
+
+def mirrors_over(tops, at, radii):
+    """Planes or balls (finite radii in m, negative: hollow) that reflect the path from TRANSMITTER over the points `tops` to
+    `at`, all [3]."""
+    chain = [TRANSMITTER, *tops, at]
+    normals = [bisector(chain[k], chain[k - 1], chain[k + 1]) for k in range(1, len(chain) - 1)]
+    return [Plane(top, normal) if np.isinf(radius) else Ball(top, normal, radius)
+            for top, normal, radius in zip(tops, normals, radii)]

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "echopath/replay/received_power.h"
+#include "support/sanitized.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -15,6 +16,7 @@ using namespace testing;
 constexpr int kSeeds = 1000;
 constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
 constexpr double kFourSigma = 4.0;
+constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
            Footprint footprint = Footprint::kSecondOrder, int max_bounces = 4) {
@@ -75,6 +77,7 @@ Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays,
 }
 
 TEST(ReceivedPower, ErrorOfACoherentEchoIsItsSpread) {
+  if (test::kIsSanitized) GTEST_SKIP() << kStatistics;
   const Spread sphere = spread_of(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2048);
   EXPECT_LT(sphere.spread / sphere.mean_power, 0.01);
   EXPECT_NEAR(sphere.rms_error / sphere.spread, 1.0, kErrorOfErrors);
@@ -82,6 +85,7 @@ TEST(ReceivedPower, ErrorOfACoherentEchoIsItsSpread) {
 
 // Off the main lobe of a plate the error is that of its edges, and lies along the field.
 TEST(ReceivedPower, ErrorOfATiltedPlateIsItsSpread) {
+  if (test::kIsSanitized) GTEST_SKIP() << kStatistics;
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const Spread plate = spread_of(tilted_plate(), radar, 4096);
   EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
@@ -89,12 +93,14 @@ TEST(ReceivedPower, ErrorOfATiltedPlateIsItsSpread) {
 }
 
 TEST(ReceivedPower, ErrorOfADiffuseEchoIsItsSpread) {
+  if (test::kIsSanitized) GTEST_SKIP() << kStatistics;
   const Spread plate = spread_of(lambert_plate(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2048);
   EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
 }
 
 // Without the filter and with few rays the field is mostly noise: |mean|^2 is far too high, the estimate is not.
 TEST(ReceivedPower, HasNoBiasWhereTheFieldIsNoise) {
+  if (test::kIsSanitized) GTEST_SKIP() << kStatistics;
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const Spread noisy = spread_of(metal_sphere(), radar, 2048, Footprint::kNone);
   const double truth = std::norm(coherent_sum(shot(metal_sphere(), radar, 1 << 19, 1, 1, Footprint::kNone, 1)));

@@ -8,6 +8,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/trace/kept_geometry.h"
+#include "support/sanitized.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -236,9 +237,7 @@ int64_t resident_bytes() {
 
 // A geometry lost at each move would take 300 kB each time.
 TEST(KeptGeometry, AThousandMovesTakeNoMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers hold back what was freed";
-#endif
+  if (test::kIsSanitized) GTEST_SKIP() << "sanitizers hold back what was freed";
   const Scene scene = street();
   EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
   const auto move = [&](int k) { kept.update(scene, Pose(scene, 0.0025 * k), Vec3::Zero()); };

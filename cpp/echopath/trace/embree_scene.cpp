@@ -34,7 +34,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Embree picks the best instruction set, too, unless another one is asked for (base/simd.h).
 const char* device_options() {
-#ifdef ECHOPATH_X86_KERNELS
+#if defined(ECHOPATH_THREAD_SANITIZER)
+  return "threads=1";  // what TBB's workers do in libraries that are not instrumented would look like races
+#elif defined(ECHOPATH_X86_KERNELS)
   const char* asked = std::getenv("ECHOPATH_INSTRUCTION_SET");
   if (!asked || !*asked || instruction_set() == InstructionSet::kAvx512) return nullptr;
   return instruction_set() == InstructionSet::kAvx2 ? "isa=avx2" : "isa=sse2";

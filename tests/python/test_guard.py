@@ -9,6 +9,8 @@ import echopath as ep
 from echopath.guard import check_rays
 from echopath.guard.ray_checks import quantile
 
+pytestmark = pytest.mark.hard
+
 FREQUENCY = 77e9
 EXACT = 1e-9         # of the sum of |a|: rates by differences of lengths 1e-7 s apart
 SEEDS = 40

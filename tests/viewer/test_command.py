@@ -72,6 +72,7 @@ def test_without_the_extra_it_says_what_to_install():
     assert done.returncode == 2 and "pip install 'echopath[viewer]'" in done.stderr
 
 
+@pytest.mark.hard
 @pytest.mark.skipif(not HAS_SCREEN, reason="needs a screen")
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_ends_the_work_and_closes_the_window(frame, tmp_path, name):

@@ -95,7 +95,8 @@ PathFinding FrameCheck::check(const LocalPath& path, Scratch& scratch) const {
   PathFinding found;
   evaluate(path, scratch, found);
   trace_view_->probe.cosines(path, scratch.probe, scratch.probe.reference);
-  for (const auto& view : views_) merge(view->probe.check(path, scratch.probe), found.state);
+  scratch.known.resize(views_.size());
+  for (size_t i = 0; i < views_.size(); ++i) merge(views_[i]->probe.check(path, scratch.probe, scratch.known[i]), found.state);
   return found;
 }
 

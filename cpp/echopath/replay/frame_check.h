@@ -23,6 +23,7 @@ class FrameCheck {
   struct Scratch {
     ProbeScratch probe;
     EvaluationScratch evaluation;
+    std::vector<LegMemo> known;  // by time, of the paths that were checked with this scratch
     explicit Scratch(int longest);  // hits of a path
   };
 

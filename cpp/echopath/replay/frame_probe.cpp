@@ -33,6 +33,36 @@ void store_shadows(const LocalPath& path, const LegShadows& shadows, PathState& 
   state.blocked = recorded_order(path, shadows.blocked >> 1 | uint64_t{shadows.is_end_blocked} << (path.count - 1));
 }
 
+// Which legs of a path are meant.
+enum class Part : uint64_t { kStart, kInner, kEnd };
+struct Run {
+  int first, last;  // hits, in the order of the trace
+  Part part;
+};
+
+// All on which the legs of a run depend but the hits themselves: the order in which they are passed, whether the last material
+// point is posed with its triangle, and of inner ones which of them are images.
+constexpr int kMostHits = 58;  // hits of a run whose events fit beside the rest
+uint64_t kind_of(const LocalPath& path, const Run& run) {
+  const bool has_cell = path.diffuse == 0 && run.last >= path.last_material;
+  const uint64_t events = run.part == Part::kInner ? path.diffuse >> run.first & ((uint64_t{1} << (run.last - run.first + 1)) - 1) : 0;
+  return static_cast<uint64_t>(run.part) | uint64_t{path.is_reversed} << 2 | uint64_t{has_cell} << 3 | events << 4;
+}
+
+LegShadows shifted(const LegShadows& shadows, int by) {
+  const auto shift = [by](uint64_t bits) { return by < 0 ? bits >> -by : bits << by; };
+  return {shift(shadows.blocked), shadows.is_end_blocked, shift(shadows.off_mirror)};
+}
+
+// Bits are kept as if the run began with hit 0: it may stand anywhere in the next path.
+template <class Find>
+LegShadows known_part(const LocalPath& path, const Run& run, LegMemo& known, Find find) {
+  const int count = run.last - run.first + 1;
+  if (count > kMostHits) return find();
+  const Hit* hits = path.recorded + (path.is_reversed ? path.count - 1 - run.last : run.first);
+  return shifted(known(hits, count, kind_of(path, run), [&] { return shifted(find(), -run.first); }), run.first);
+}
+
 std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Antenna>& antennas) {
   std::vector<Antenna> out = {antennas[0]};
   out[0].position = carried;
@@ -67,11 +97,12 @@ Radar probe_radar(const Paths& paths, const Radar& radar) {
   return probe;
 }
 
-PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch) const {
+PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch, LegMemo& known) const {
   PathState state;
   pose_hits(path, instant_, scratch.hits.data());
   if (path.sliding != 0) check_slides(path, scratch, state);
-  check_shadows(path, scratch.hits.data(), state);
+  const PosedHit* hits = scratch.hits.data();
+  store_shadows(path, path.first_material < 0 ? shadows_of_images(path, hits) : shadows_of(path, hits, known), state);
   check_cosines(path, scratch, state);
   return state;
 }
@@ -145,18 +176,35 @@ void FrameProbe::check_slides(const LocalPath& path, ProbeScratch& scratch, Path
   state.left = recorded_order(path, left);
 }
 
-void FrameProbe::check_shadows(const LocalPath& path, const PosedHit* hits, PathState& state) const {
+LegShadows FrameProbe::shadows_of_images(const LocalPath& path, const PosedHit* hits) const {
   LegTester tester(geometry_, path, hits);
-  if (path.first_material < 0) {
-    for (const PosedAntenna& start : starts(path)) {
-      for (const PosedAntenna& end : ends(path)) tester.test_images(start.position, end.position);
-    }
-  } else {
-    for (const PosedAntenna& start : starts(path)) tester.test_start(start.position);
-    tester.test_inner();
-    for (const PosedAntenna& end : ends(path)) tester.test_end(end.position);
+  for (const PosedAntenna& start : starts(path)) {
+    for (const PosedAntenna& end : ends(path)) tester.test_images(start.position, end.position);
   }
-  store_shadows(path, tester.shadows(), state);
+  return tester.shadows();
+}
+
+// Legs before, between and behind the material points: what becomes of them follows from their own hits.
+LegShadows FrameProbe::shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const {
+  const int first = path.first_material, last = path.last_material;
+  LegShadows all;
+  all.add(known_part(path, {0, first, Part::kStart}, known, [&] {
+    LegTester tester(geometry_, path, hits);
+    for (const PosedAntenna& start : starts(path)) tester.test_start(start.position);
+    return tester.shadows();
+  }));
+  all.add(known_part(path, {last, path.count - 1, Part::kEnd}, known, [&] {
+    LegTester tester(geometry_, path, hits);
+    for (const PosedAntenna& end : ends(path)) tester.test_end(end.position);
+    return tester.shadows();
+  }));
+  if (first == last) return all;
+  all.add(known_part(path, {first, last, Part::kInner}, known, [&] {
+    LegTester tester(geometry_, path, hits);
+    tester.test_inner();
+    return tester.shadows();
+  }));
+  return all;
 }
 
 void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const {

@@ -3,7 +3,7 @@
 // something blocks, how the surfaces have turned.
 #include <memory>
 
-#include "echopath/replay/leg_shadows.h"
+#include "echopath/replay/leg_memo.h"
 #include "echopath/replay/local_paths.h"
 #include "echopath/replay/specular_slide.h"
 #include "echopath/replay/surface_walk.h"
@@ -50,8 +50,8 @@ class FrameProbe {
 
   // Signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
   void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
-  // scratch.reference: the cosines at the trace time. Thread-safe.
-  PathState check(const LocalPath& path, ProbeScratch& scratch) const;
+  // scratch.reference: the cosines at the trace time. known: of this probe alone. Thread-safe.
+  PathState check(const LocalPath& path, ProbeScratch& scratch, LegMemo& known) const;
 
  private:
   struct Slides;
@@ -59,7 +59,8 @@ class FrameProbe {
   uint64_t find_stepped(const LocalPath& path, ProbeScratch& scratch, uint64_t& left) const;
   Slides slides_from(const LocalPath& path, const Vec3& start, ProbeScratch& scratch) const;
   bool move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const;
-  void check_shadows(const LocalPath& path, const PosedHit* hits, PathState& state) const;
+  LegShadows shadows_of_images(const LocalPath& path, const PosedHit* hits) const;
+  LegShadows shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const;
   void check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
   const std::vector<PosedAntenna>& starts(const LocalPath& path) const {
     return path.is_reversed ? instant_.receivers : instant_.transmitters;

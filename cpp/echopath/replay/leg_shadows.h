@@ -12,6 +12,12 @@ struct LegShadows {
   uint64_t blocked = 0;        // bit per hit: the leg that arrives there is blocked
   bool is_end_blocked = false;  // the leg from the last hit
   uint64_t off_mirror = 0;     // bit per hit: the image's point of reflection is not on its mirror
+
+  void add(const LegShadows& other) {
+    blocked |= other.blocked;
+    is_end_blocked |= other.is_end_blocked;
+    off_mirror |= other.off_mirror;
+  }
 };
 
 // Tests of one path against the triangles of `geometry`, whose origin is that of the posed hits. Legs over flagged mirrors are

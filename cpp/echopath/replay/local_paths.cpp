@@ -104,6 +104,7 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
   const auto p = static_cast<size_t>(index);
   LocalPath path;
   path.hits = block.hits.data() + block.hits.size();
+  path.recorded = paths_.hits_of(index);
   path.count = paths_.num_bounces[p];
   path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
   if (!paths_.jones.empty()) path.jones = &paths_.jones[p];

@@ -42,6 +42,7 @@ struct LaunchCell {
 // What of a path does not depend on time.
 struct LocalPath {
   const LocalHit* hits = nullptr;
+  const Hit* recorded = nullptr;   // the same in the order of the record
   int count = 0;
   bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
   uint64_t diffuse = 0;

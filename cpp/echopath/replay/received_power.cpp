@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/phasor.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -38,10 +39,11 @@ class BatchSums {
  public:
   explicit BatchSums(const Paths& paths)
       : field(static_cast<size_t>(paths.frame.num_batches) + 1), power(field.size()), paths_(paths),
-        wavenumber_(kTwoPi * paths.radar.waveform.start_frequency / kSpeedOfLight) {}
+        turns_per_metre_(paths.radar.waveform.start_frequency / kSpeedOfLight) {}
 
   void add(int64_t path, double length, std::complex<double> amplitude) {
-    const std::complex<double> arriving = amplitude * std::polar(1.0, -std::fmod(wavenumber_ * length, kTwoPi));
+    const Phasor phase = phasor_of_product(turns_per_metre_, length);
+    const std::complex<double> arriving = amplitude * std::complex<double>(phase.re, -phase.im);
     const auto p = static_cast<size_t>(path);
     const size_t batch = std::min<size_t>(paths_.batch[p], field.size() - 1);
     if (paths_.diffuse[p] == 0) {
@@ -70,7 +72,7 @@ class BatchSums {
 
  private:
   const Paths& paths_;
-  double wavenumber_;
+  double turns_per_metre_;
   size_t open_batch_ = 0;
   std::vector<Hit> open_hits_;
   std::complex<double> open_field_ = 0.0;

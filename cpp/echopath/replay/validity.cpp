@@ -9,6 +9,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/phasor.h"
 #include "echopath/replay/frame_check.h"
 
 namespace echopath {
@@ -96,8 +97,8 @@ class Certificate {
               Job* job)
       : paths_(paths), check_(paths, radar, times, settings.specular, job), keeps_arrays_(settings.arrays), job_(job) {
     const ChirpSequence& waveform = radar.waveform;
-    first_wavenumber_ = kTwoPi * (waveform.start_frequency + 0.5 * waveform.bandwidth / kNumFrequencies) / kSpeedOfLight;
-    wavenumber_step_ = kTwoPi * waveform.bandwidth / kNumFrequencies / kSpeedOfLight;
+    first_turns_ = (waveform.start_frequency + 0.5 * waveform.bandwidth / kNumFrequencies) / kSpeedOfLight;
+    turns_step_ = waveform.bandwidth / kNumFrequencies / kSpeedOfLight;
     report_.num_paths = paths.num_paths();
     report_.times = times;
     report_.has_array = check_.has_array();
@@ -159,8 +160,9 @@ class Certificate {
   }
 
   void add_field(const PathFinding& found, Tally& tally) const {
-    std::complex<double> value = found.amplitude * std::polar(1.0, -std::fmod(first_wavenumber_ * found.length, kTwoPi));
-    const std::complex<double> turn = std::polar(1.0, -std::fmod(wavenumber_step_ * found.length, kTwoPi));
+    const Phasor first = phasor_of_product(first_turns_, found.length), step = phasor_of_product(turns_step_, found.length);
+    std::complex<double> value = found.amplitude * std::complex<double>(first.re, -first.im);
+    const std::complex<double> turn(step.re, -step.im);
     for (std::complex<double>& sum : tally.field) {
       sum += value;
       value *= turn;
@@ -217,7 +219,7 @@ class Certificate {
   FrameCheck check_;
   bool keeps_arrays_;
   Job* job_;
-  double first_wavenumber_, wavenumber_step_;  // rad/m
+  double first_turns_, turns_step_;            // 1/m
   std::vector<ValidityShares> of_object_;      // by node index
   Validity report_;
 };

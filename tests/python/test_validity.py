@@ -235,6 +235,26 @@ def test_arrays_name_the_leg_that_is_blocked():
         assert not report.left.any(), select
 
 
+def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
+    """Legs are shared by the paths over all pairs of mirror chains to a hit: alone, each path is asked for itself."""
+    rough, tall = ep.Material(reflectivity=0.5, scattering=0.6), shapes.rectangle((0, 4, -2), (14, 0, 0), (0, 0, 6))
+    floor = shapes.rectangle((0, -4, 0), (14, 0, 0), (0, 8, 0))
+    scene = scene_of(wall=(tall, rough.replace(mirror=True), (0, 0, 0), None), floor=(floor, rough.replace(mirror=True), (0, 0, 0), None),
+                     ball=(BALL, rough, (10, 0, 1), moving(velocity=(0, 30, 0))), block=(ep.actors.box((1, 1, 1)), rough, (9, 1.6, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.5), ROUGH, (4, -1.5, 1), moving(velocity=(0, 400, 0))))
+    apart = ep.Radar(radar_of(num_chirps=1).waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, -2, 1))])
+    paths = ep.trace(scene, apart, num_rays=3000)
+    times = [paths.frame.trace_time + lateness for lateness in (0.5 / 400, 1.5 / 400)]
+    kinds = ("blocked", "receiver_blocked", "left")
+    together = ep.validity(paths, times=times, arrays=True)
+    findings = np.stack([getattr(together, kind) for kind in kinds] + [paths.num_bounces, paths.diffuse == 0, paths.flags & 1])
+    last_of_kind = {tuple(column): path for path, column in enumerate(findings.T)}
+    assert len(last_of_kind) > 40
+    for path in sorted(last_of_kind.values())[::len(last_of_kind) // 40]:
+        alone = ep.validity(paths.select(np.arange(paths.num_paths) == path), times=times, arrays=True)
+        assert [getattr(alone, kind)[0] for kind in kinds] == [getattr(together, kind)[path] for kind in kinds], path
+
+
 def test_arrays_name_the_mirror_that_a_point_has_left():
     wall = shapes.rectangle((4, 4, -2), (3, 0, 0), (0, 0, 6))
     scene = scene_of(wall=(wall, shapes.METAL.replace(mirror=True), (0, 0, 0), None),

@@ -22,7 +22,7 @@ constexpr int64_t kLargestBlock = 1000;
 // Echoes with nodes in every chirp: few at a time, whose memory the next take over; a page that is touched for the first time costs
 // as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
-constexpr int64_t kValuesInFlight = 500000;  // no power of two, likewise
+constexpr int64_t kValuesInFlight = 150000;  // no power of two, likewise
 constexpr int64_t kLeastBlock = 32;
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {

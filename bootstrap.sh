@@ -13,7 +13,7 @@ viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbco
 build_dir=$PWD/build/default
 sanitized_dir=$PWD/build/asan
 # The same tests on one instruction set after the other are not run sanitized.
-per_instruction_set='_(baseline|avx2|avx512)$'
+per_instruction_set='_(baseline|avx2)$'
 python=.venv/bin/python
 
 usage() {

@@ -8,7 +8,8 @@ endif()
 if(ECHOPATH_SANITIZE)
   target_compile_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   if(ECHOPATH_SANITIZE MATCHES address AND ECHOPATH_SANITIZE MATCHES undefined)
-    # What the address sanitizer sees by itself at each access, and what vector loads fault on: a third of the time of compiling.
+    # Left out for a third of the time of compiling. The address sanitizer sees accesses through null and outside of objects
+    # by itself; misaligned ones, and references to null that nothing is read through, are not seen.
     target_compile_options(echopath_options INTERFACE -fno-sanitize=null,object-size,alignment)
   endif()
   target_link_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE})

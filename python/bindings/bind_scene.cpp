@@ -395,7 +395,7 @@ void bind_scene_tree(py::module_& m) {
 
 time: s; max_distance: m, up to which two triangles count that are nowhere further apart where one lies over the other
 Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
-label are those of the one that is met. Neither does triangles any harm that no ray reaches, as under a box on the ground.
+label are those of the one that is met. Where no ray reaches, as under a box on the ground, it does no harm.
 Triangles that merely touch, overlap by less than max_distance, or cross do not count.
 Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
 time outside a motion.)")

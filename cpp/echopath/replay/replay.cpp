@@ -228,11 +228,13 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
   }
 }
 
-// Amplitudes that a polynomial follows late or never are left to the chirps: those of surfaces that turn, and those that one did
-// not follow whose order their own tail had named.
+// Amplitudes that a polynomial follows late or never are left to the chirps: those of surfaces that turn, and those that an order
+// named by their own tail did not follow.
 FailedPath Replayer::failed(int64_t path, int index, const NeededOrder& needed, bool turned) const {
   const int next = levels_.next_polynomial(index, std::max(needed.length, turned ? 0.0 : needed.amplitude));
-  const bool is_late = turned || levels_.first_level(path) < index || next > levels_.num_polynomials() || levels_.num_nodes(next) * kWorthOfANode >= radar_.waveform.num_chirps;
+  const bool was_tried_before = levels_.first_level(path) < index;
+  const bool is_costly = next > levels_.num_polynomials() || levels_.num_nodes(next) * kWorthOfANode >= radar_.waveform.num_chirps;
+  const bool is_late = turned || was_tried_before || is_costly;
   if (needed.length == 0.0 && is_late) return {path, index, true};
   return {path, next, false};
 }

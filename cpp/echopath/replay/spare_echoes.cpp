@@ -9,12 +9,13 @@ Echoes SpareEchoes::take(size_t num_values) {
   Echoes echoes;
   {
     const std::lock_guard lock(mutex_);
-    auto found = by_size_.lower_bound(num_values);
-    if (found != by_size_.end()) echoes = std::move(found->second);
-    else if (!by_size_.empty()) found = std::prev(by_size_.end());
-    if (found != by_size_.end()) by_size_.erase(found);
+    auto found = by_room_.lower_bound(num_values);
+    if (found != by_room_.end()) echoes = std::move(found->second);
+    else if (!by_room_.empty()) found = std::prev(by_room_.end());
+    if (found != by_room_.end()) by_room_.erase(found);
   }
   echoes.group.clear();
+  echoes.sampling = {};
   echoes.delay.resize(num_values);
   echoes.amplitude.resize(num_values);
   return echoes;
@@ -23,8 +24,8 @@ Echoes SpareEchoes::take(size_t num_values) {
 void SpareEchoes::give(std::span<Echoes> echoes) {
   const std::lock_guard lock(mutex_);
   for (Echoes& one : echoes) {
-    const size_t size = one.delay.size();
-    if (size > 0) by_size_.emplace(size, std::move(one));
+    const size_t room = one.delay.capacity();  // its size is that of the paths that were followed
+    if (room > 0) by_room_.emplace(room, std::move(one));
   }
 }
 

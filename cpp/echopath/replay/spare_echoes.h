@@ -18,7 +18,7 @@ class SpareEchoes {
 
  private:
   std::mutex mutex_;
-  std::multimap<size_t, Echoes> by_size_;  // number of delays
+  std::multimap<size_t, Echoes> by_room_;  // for delays
 };
 
 }  // namespace echopath

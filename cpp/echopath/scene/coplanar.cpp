@@ -27,7 +27,7 @@ struct Laid {
 };
 
 bool has_area(const Corners& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0.0;  // not so where not finite, either
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0.0;
 }
 
 PosedTriangles pose_triangles(const Scene& scene, double time) {

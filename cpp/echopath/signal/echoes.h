@@ -17,7 +17,8 @@ struct TimeSampling {
   std::vector<double> slope;     // [T, order], 1/s
   // [T, order] each, second and third derivative in 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
   std::vector<double> bend, twist;
-  // The nodes of a chirp hold its value, its slope and what follows: weights 1 of themselves.
+  // The nodes of a chirp are no values at several times but what it needs itself: its value, its slope, its second and third
+  // derivative, as many as the order.
   bool holds_derivatives = false;
   // All chirps see the one node: the echoes do not move, and are synthesised once for all chirps.
   bool is_static() const { return num_nodes == 1; }

@@ -42,6 +42,9 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
     num_hits += static_cast<double>(block.num_hits());
   }
   const double times = kMargin * static_cast<double>(num_blocks) / static_cast<double>(like.size());
+  const auto has = [&](const auto& column) {
+    return std::any_of(like.begin(), like.end(), [&](const PathBlock& block) { return !(block.*column).empty(); });
+  };
   const auto rows = static_cast<size_t>(times * num_paths);
   hits_->reserve(static_cast<size_t>(times * num_hits));
   paths_.offsets.reserve(rows);
@@ -51,6 +54,8 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   paths_.stratum.reserve(rows);
   paths_.batch.reserve(rows);
   paths_.flags.reserve(rows);
+  if (has(&PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
+  if (has(&PathBlock::jones)) paths_.jones.reserve(rows);
 }
 
 // All columns at once: the first touch of their memory is what takes time. The optional ones are there from the first block that

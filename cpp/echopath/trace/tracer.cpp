@@ -102,6 +102,23 @@ std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
   return ahead;
 }
 
+// The blocks [begin, begin + wave.size()), as far as there are so many: those that were shot ahead, others in `wave`.
+std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
+                                                 std::vector<PathBlock>& wave, Job* job) const {
+  std::vector<const PathBlock*> blocks(static_cast<size_t>(std::min(std::ssize(wave), num_blocks() - begin)));
+  const auto shoot = [&](int64_t k) {
+    const int64_t index = begin + k;
+    const bool is_ahead = !ahead.empty() && index % step == 0;
+    PathBlock& own = wave[static_cast<size_t>(k)];
+    blocks[static_cast<size_t>(k)] = is_ahead ? &ahead[static_cast<size_t>(index / step)] : &own;
+    if (is_ahead) return;
+    own.clear();
+    shoot_block(index, own);
+  };
+  parallel_for(std::ssize(blocks), shoot, job);
+  return blocks;
+}
+
 // In waves: what a block holds is still in the cache when it becomes part of the record, and the next wave has its memory.
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
@@ -110,25 +127,12 @@ Paths Tracer::run(Job* job) const {
   add_mirror_paths(geometry_, mirrors_, sbr_, over_mirrors);
   record.append({&over_mirrors}, job);
   if (job) job->start(num_blocks());
-  const int64_t per_wave = std::max(kBlocksPerWave, kBlocksPerThread * num_threads());
-  const int64_t step = num_blocks() > per_wave ? (num_blocks() + kBlocksAhead - 1) / kBlocksAhead : 0;
-  const std::vector<PathBlock> ahead = step > 0 ? shoot_ahead(step, job) : std::vector<PathBlock>();
+  std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
+  const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;
+  if (num_blocks() > std::ssize(wave)) ahead = shoot_ahead(step, job);
   record.expect(ahead, num_blocks());
-  std::vector<PathBlock> wave(static_cast<size_t>(std::min(per_wave, num_blocks())));
-  for (int64_t begin = 0; begin < num_blocks(); begin += per_wave) {
-    std::vector<const PathBlock*> blocks;
-    for (int64_t i = begin; i < std::min(begin + per_wave, num_blocks()); ++i) {
-      const bool is_ahead = step > 0 && i % step == 0;
-      blocks.push_back(is_ahead ? &ahead[static_cast<size_t>(i / step)] : &wave[static_cast<size_t>(i - begin)]);
-    }
-    const auto shoot = [&](int64_t k) {
-      PathBlock& block = wave[static_cast<size_t>(k)];
-      if (blocks[static_cast<size_t>(k)] != &block) return;
-      block.clear();
-      shoot_block(begin + k, block);
-    };
-    parallel_for(std::ssize(blocks), shoot, job);
-    record.append(blocks, job);
+  for (int64_t begin = 0; begin < num_blocks(); begin += std::ssize(wave)) {
+    record.append(shoot_wave(begin, ahead, step, wave, job), job);
   }
   record.finish();
   return paths;

@@ -22,6 +22,8 @@ class Tracer {
 
  private:
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
+  std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
+                                           std::vector<PathBlock>& wave, Job* job) const;
   LaunchPlan plan_rays(const TraceSettings& settings);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
 

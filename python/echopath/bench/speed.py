@@ -19,8 +19,8 @@ from .timing import processor_time
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
 REPLAY_REPEATS = 7
-REPLAY_AIM, REPLAY_TARGET = 1e-5, 1.0   # rad; processor time over that of the trace
-PHASE_TOLERANCES = (1e-1, 1e-3, 1e-5, 1e-7)
+REPLAY_AIM, REPLAY_TARGET = ep._core.PHASE_TOLERANCE, 1.0   # rad; processor time over that of the trace
+PHASE_TOLERANCES = (1e-1, 1e-3, REPLAY_AIM, 1e-7)
 COLUMNS = ("tolerance", "ns", "error", "scattered_ns", "finufft_ns", "finufft_error", "gain", "scattered_gain")
 
 
@@ -36,6 +36,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results = {"machine": machine(), "finufft": speed_synthesis.finufft_version(), "quick": quick}
     results["synthesis"] = speed_synthesis.measure_synthesis(quick=quick, tell=tell)
     results["frames"] = speed_frames.measure_frames(quick=quick, tell=tell)
+    results["linear"] = [] if quick else speed_frames.measure_linearity()
     results["replay"] = [_replay(case, quick) for case in replay_cases.all_cases()]
     tell()
     results["tracer"] = speed_tracer.measure_tracer(quick=quick)
@@ -109,7 +110,7 @@ def verdicts(results: dict) -> list[dict]:
                      fastest["per_second_of_free_cores"]))
     over = max(row["error"] / row["tolerance"] for row in results["synthesis"]["slow"])
     rows.append(_row("error of all methods over the tolerance, 1 to 1e6 echoes", 1.0, over, most=True))
-    excess = speed_frames.linearity(results["frames"]["paths"])
+    excess = speed_frames.linearity(results["linear"])
     if excess is not None:
         rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
     most = max(row["peak_bytes"] for rows_of in results["frames"].values() for row in rows_of)
@@ -140,7 +141,8 @@ def describe(results: dict) -> list[str]:
     found = results["machine"]
     lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
-             *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_replay_lines(results["replay"]),
+             *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_linear_lines(results["linear"]),
+             *_replay_lines(results["replay"]),
              *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
              *(line for street in results["street"] for line in _street_lines(street)), *speed_guard.describe_guard(results["guard"]), "",
              "must reach" + " " * 52 + "limit     measured"]
@@ -179,6 +181,12 @@ def _frame_lines(frames: dict) -> list[str]:
             lines.append(f"  {row[kind]:>12,} {kind:<22}{row['wall_s']:12.3f}{row['processor_s']:13.3f}"
                          f"{row['peak_bytes'] / 2 ** 20:11,.0f}{each}")
     return lines
+
+
+def _linear_lines(rows: list[dict]) -> list[str]:
+    """Time per path of frames of all sizes in turn."""
+    each = ", ".join(f"{1e9 * row['processor_s'] / row['paths']:.1f} ns of {row['paths']:,}" for row in rows)
+    return ["", f"processor time per path, all sizes in turn: {each}"] if rows else []
 
 
 def _replay_lines(cases: list[dict]) -> list[str]:

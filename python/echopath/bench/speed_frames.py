@@ -15,6 +15,7 @@ from .timing import processor_time, wall_time
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
+LINEAR_ROUNDS = 9
 TRIAL_RAYS = 2_000                              # that tell how many paths come of a ray
 MARGIN = 1.02                                   # of rays, since records differ in paths per ray by a per cent
 FRAME_CHIRPS = 16                               # of the frames that the number of paths is varied of
@@ -95,6 +96,23 @@ def _parts(scene, count: int) -> dict:
     names = [mesh.name for mesh in scene.meshes]
     pairs = [(name, bounces) for bounces in (1, 2, 3, 4) for name in names][:count - 1]
     return {f"{name}, {bounces}": ep.hits(name) & (ep.num_bounces == bounces) for name, bounces in pairs}
+
+
+def measure_linearity() -> list[dict]:
+    """Rows {paths, processor_s} of frames from LINEAR_FROM paths on. All sizes in turn, since machines have faster and slower
+    minutes; medians of the rounds."""
+    scene = street()
+    few = with_frame(scene.radar, FRAME_CHIRPS)
+    records = [record_of(scene, count) for count in PATHS if count >= LINEAR_FROM]
+    rounds = [[_frame_seconds(paths, few) for paths in records] for _ in range(LINEAR_ROUNDS)]
+    return [{"paths": paths.num_paths, "processor_s": seconds}
+            for paths, seconds in zip(records, np.median(rounds, axis=0).tolist())]
+
+
+def _frame_seconds(paths, radar) -> float:
+    """Processor time of a frame, the mean over as many as take about as long as one of MEASURED_PATHS // 4 paths."""
+    repeats = max(1, MEASURED_PATHS // 4 // paths.num_paths)
+    return processor_time(lambda: [ep.synthesize(paths, radar) for _ in range(repeats)])[0] / repeats
 
 
 def linearity(rows: list[dict]) -> float | None:

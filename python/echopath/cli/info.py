@@ -38,7 +38,8 @@ def describe_file(path, selections=()) -> list[str]:
 
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
-    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace.start_time),
+    trace_time = trace.start_time + 0.5 * scene_file.radar.frame_duration
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace_time),
              *_describe_radar(scene_file.radar), "trace", report.line("rays", f"{trace.num_rays:,}"),
              report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:

@@ -159,15 +159,18 @@ TEST(RecordWriter, ExpectedBlocksMoveNothing) {
   std::vector<PathBlock> like(2);
   const Hit ray[] = {hit(1), hit(2)};
   for (int i = 0; i < 30; ++i) like[1].add(ray, 2, 0, Complex(1.0, 0.0), 0);
+  like[1].set_curved_cell({1, 2, 3, 4, 5, 6, 7});
   Paths paths;
   RecordWriter record(paths);
   record.expect(like, 100);
   record.append({&like[1]});
   const int64_t* const offsets = paths.offsets.data();
   const auto* const weights = paths.weight.data();
+  const auto* const cells = paths.curved_cell.data();
   for (int k = 1; k < 50; ++k) record.append({&like[1]});
   EXPECT_EQ(paths.offsets.data(), offsets);
   EXPECT_EQ(paths.weight.data(), weights);
+  EXPECT_EQ(paths.curved_cell.data(), cells);
   record.finish();
   EXPECT_EQ(paths.num_hits(), 3000);
 }

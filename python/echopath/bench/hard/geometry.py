@@ -63,7 +63,8 @@ def utm_hits() -> float:
     met = [_core.first_hits(street_scene(offset), np.broadcast_to(offset, directions.shape), directions)
            for offset in (np.zeros(3), UTM)]
     (mesh, triangle, distance, _), (other_mesh, other_triangle, other_distance, _) = met
-    assert np.mean(mesh != NO_MESH) > 0.3
+    if np.mean(mesh != NO_MESH) < 0.3:
+        return 1.0  # nothing to compare
     return float(np.mean((mesh != other_mesh) | (triangle != other_triangle) | (np.abs(distance - other_distance) > 1e-6)))
 
 

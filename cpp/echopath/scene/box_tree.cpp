@@ -7,6 +7,8 @@ namespace {
 
 using Middle = std::array<float, 3>;
 
+constexpr uint32_t kTrianglesBetweenLooks = 1 << 14;  // at the job: some milliseconds
+
 Middle middle_of(const Corners& corners) {
   const Eigen::Vector3f middle = box_of(corners).center().cast<float>();
   return {middle.x(), middle.y(), middle.z()};
@@ -30,18 +32,19 @@ size_t longest_axis(const std::vector<Middle>& middles, const uint32_t* begin, c
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<Corners>& triangles) : order_(triangles.size()) {
+BoxTree::BoxTree(const std::vector<Corners>& triangles, const Job* job) : order_(triangles.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
   std::vector<Middle> middles;
   middles.reserve(triangles.size());
   for (const Corners& corners : triangles) middles.push_back(middle_of(corners));
-  halve(0, size(), middles);
+  halve(0, size(), middles, job);
   triangles_.reserve(triangles.size());
   for (const uint32_t index : order_) triangles_.push_back(triangles[index]);
   fit_boxes();
 }
 
-void BoxTree::halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles) {
+void BoxTree::halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, const Job* job) {
+  if (job && end - begin >= kTrianglesBetweenLooks) job->throw_if_cancelled();
   const size_t index = branches_.size();
   branches_.push_back({Box(), begin, end, 0});
   if (end - begin <= kLeafSize) return;
@@ -52,9 +55,9 @@ void BoxTree::halve(uint32_t begin, uint32_t end, const std::vector<Middle>& mid
   std::nth_element(first, order_.data() + half, last, [&](uint32_t a, uint32_t b) {
     return middles[a][axis] != middles[b][axis] ? middles[a][axis] < middles[b][axis] : a < b;
   });
-  halve(begin, half, middles);
+  halve(begin, half, middles, job);
   branches_[index].second_half = static_cast<uint32_t>(branches_.size());
-  halve(half, end, middles);
+  halve(half, end, middles, job);
 }
 
 void BoxTree::fit_boxes() {

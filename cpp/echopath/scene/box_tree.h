@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
+#include "echopath/base/job.h"
 
 namespace echopath {
 
@@ -23,8 +24,8 @@ inline Box box_of(const Corners& corners) {
 // n log n steps, about 110 bytes a triangle. It puts the triangles in an order of its own, and names them by their places.
 class BoxTree {
  public:
-  // `triangles` [n]: corners in m, finite; at most 2^31.
-  explicit BoxTree(const std::vector<Corners>& triangles);
+  // `triangles` [n]: corners in m, finite; at most 2^31. Raises Cancelled when the job is.
+  explicit BoxTree(const std::vector<Corners>& triangles, const Job* job = nullptr);
 
   uint32_t size() const { return static_cast<uint32_t>(order_.size()); }
   const Corners& triangle(uint32_t place) const { return triangles_[place]; }
@@ -43,7 +44,7 @@ class BoxTree {
     uint32_t second_half = 0;     // its branch; the first half's follows this one. 0 for a leaf
   };
   using Middle = std::array<float, 3>;
-  void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles);
+  void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, const Job* job);
   void fit_boxes();
 
   std::vector<uint32_t> order_;

@@ -30,13 +30,14 @@ bool has_area(const Corners& corners) {
   return (corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0.0;
 }
 
-PosedTriangles pose_triangles(const Scene& scene, double time) {
+PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   PosedTriangles posed;
   const auto count = static_cast<size_t>(scene.num_triangles());
   posed.corners.reserve(count);
   posed.mesh_id.reserve(count);
   Vec3 origin = Vec3::Zero();
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (job) job->throw_if_cancelled();
     const std::vector<Vec3> vertices = world_vertices(scene, id, time);
     if (id == 0) origin = vertices.front();
     for (const Triangle& t : scene.node_of(id).mesh->triangles()) {
@@ -51,8 +52,8 @@ PosedTriangles pose_triangles(const Scene& scene, double time) {
 
 class OverlapSearch {
  public:
-  OverlapSearch(const Scene& scene, double time, double max_distance)
-      : OverlapSearch(pose_triangles(scene, time), max_distance) {}
+  OverlapSearch(const Scene& scene, double time, double max_distance, const Job* job)
+      : OverlapSearch(pose_triangles(scene, time, job), max_distance, job) {}
 
   // All pairs, in an order that threads do not change.
   std::vector<Laid> run(Job* job) const {
@@ -71,8 +72,8 @@ class OverlapSearch {
   }
 
  private:
-  OverlapSearch(const PosedTriangles& posed, double max_distance)
-      : tree_(posed.corners), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
+  OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
+      : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
 
   void search_behind(uint32_t place, std::vector<Laid>& found) const {
     const FacetPlane plane(tree_.triangle(place));
@@ -121,7 +122,7 @@ std::vector<CoplanarOverlap> coplanar_overlaps(const Scene& scene, double time, 
   require(max_distance > 0.0 && std::isfinite(max_distance), "max_distance", "must be positive and finite, m", max_distance);
   require(scene.num_triangles() < int64_t{1} << 31, "scene", "must have fewer than 2^31 triangles", scene.num_triangles());
   if (scene.num_triangles() == 0) return {};
-  std::vector<Laid> pairs = OverlapSearch(scene, time, max_distance).run(job);
+  std::vector<Laid> pairs = OverlapSearch(scene, time, max_distance, job).run(job);
   std::stable_sort(pairs.begin(), pairs.end(), [](const Laid& a, const Laid& b) { return a.meshes() < b.meshes(); });
   std::vector<CoplanarOverlap> overlaps;
   for (const Laid *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {

@@ -7,6 +7,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
 #include "echopath/motion/motion.h"
+#include "echopath/scene/box_tree.h"
 #include "echopath/scene/coplanar.h"
 #include "support/expect_error.h"
 
@@ -242,6 +243,14 @@ TEST(Coplanar, EmptySceneAndBadInput) {
   Job job;
   job.cancel();
   EXPECT_THROW(coplanar_overlaps(scene, 0.0, kCoplanarDistance, &job), Cancelled);
+}
+
+// Building the tree of ten million triangles takes seconds.
+TEST(Coplanar, TreesHearCancellation) {
+  Job job;
+  job.cancel();
+  const std::vector<Corners> many(100'000, Corners{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()});
+  EXPECT_THROW(BoxTree(many, &job), Cancelled);
 }
 
 }  // namespace

@@ -9,18 +9,11 @@ namespace echopath {
 // hundredth of the page faults. Does nothing where there are none.
 void prefer_large_pages(void* data, size_t num_bytes);
 
-// Gives an empty vector room for `count` elements. Room for several is best asked for before one of them is filled: pages
-// then go across their ends.
-template <class T>
-void reserve_large(std::vector<T>& values, size_t count) {
-  values.reserve(count);
-  prefer_large_pages(values.data(), count * sizeof(T));
-}
-
 // Makes an empty vector `count` elements long.
 template <class T>
 void resize_large(std::vector<T>& values, size_t count) {
-  reserve_large(values, count);
+  values.reserve(count);
+  prefer_large_pages(values.data(), count * sizeof(T));
   values.resize(count);
 }
 

@@ -44,7 +44,9 @@ inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::
   return {words[0][0], words[1][0], words[2][0], words[3][0]};
 }
 
-inline std::array<uint32_t, 2> philox_key(uint64_t seed) { return {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)}; }
+ECHOPATH_INLINE std::array<uint32_t, 2> philox_key(uint64_t seed) {
+  return {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)};
+}
 
 // Uniform in [0, 1) with 53 bits.
 ECHOPATH_INLINE double unit_interval(uint32_t high, uint32_t low) {

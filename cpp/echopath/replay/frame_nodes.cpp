@@ -58,8 +58,9 @@ std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>
 // Lobatto nodes of one piece, and weights for values and derivatives inside it.
 class NodeSet {
  public:
-  explicit NodeSet(int order, ChirpDerivatives derivatives)
+  NodeSet(int order, ChirpDerivatives derivatives)
       : order_(order), num_derivatives_(derivatives == ChirpDerivatives::kThird ? 3 : 1) {
+    require(order >= 2, "order", "must be >= 2", order);
     for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
   }
   const std::vector<double>& coefficients(int n) const { return rows_[static_cast<size_t>(n)]; }
@@ -94,6 +95,17 @@ class NodeSet {
   std::vector<std::vector<double>> rows_;  // [n, k]: Chebyshev coefficient n from the values at the nodes
 };
 
+// At the nodes of all pieces, without the chirps.
+FrameNodes nodes_of(const std::vector<Piece>& pieces, int order, const NodeSet& set) {
+  FrameNodes nodes;
+  nodes.order = order;
+  for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
+  for (const int n : {order - 2, order - 1}) {
+    nodes.tail.insert(nodes.tail.end(), set.coefficients(n).begin(), set.coefficients(n).end());
+  }
+  return nodes;
+}
+
 }  // namespace
 
 FrameNodes static_nodes(const Radar& radar, double time) {
@@ -104,23 +116,15 @@ FrameNodes static_nodes(const Radar& radar, double time) {
 }
 
 FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
-  require(order >= 2, "order", "must be >= 2", order);
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
-  const NodeSet set(order, ChirpDerivatives::kFirst);
-  FrameNodes nodes;
-  nodes.order = order;
-  for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
-  for (int n : {order - 2, order - 1}) {
-    nodes.tail.insert(nodes.tail.end(), set.coefficients(n).begin(), set.coefficients(n).end());
-  }
-  return nodes;
+  return nodes_of(pieces, order, NodeSet(order, ChirpDerivatives::kFirst));
 }
 
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives) {
-  FrameNodes nodes = unsampled_chebyshev_nodes(radar, start_time, breakpoints, order);
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
   const NodeSet set(order, derivatives);
+  FrameNodes nodes = nodes_of(pieces, order, set);
   for (int tx = 0; tx < radar.num_slots(); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_nodes = static_cast<int>(nodes.times.size());

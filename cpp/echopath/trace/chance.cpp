@@ -21,7 +21,7 @@ ECHOPATH_INLINE PhiloxWords<kLanes> draw_words(uint64_t seed, Stream stream, uin
     words[2][i] = dimension;
     words[3][i] = static_cast<uint32_t>(stream);
   }
-  philox4x32(words, {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
+  philox4x32(words, philox_key(seed));
   return words;
 }
 

@@ -32,21 +32,21 @@ struct Places {
   }
 };
 
+template <class Column>
+bool has(const std::vector<const PathBlock*>& blocks, Column column) {
+  return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock* block) { return !(block->*column).empty(); });
+}
+
 }  // namespace
 
 void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks) {
   if (like.empty()) return;
-  double num_paths = 0.0, num_hits = 0.0;
-  for (const PathBlock& block : like) {
-    num_paths += static_cast<double>(block.num_paths());
-    num_hits += static_cast<double>(block.num_hits());
-  }
+  std::vector<const PathBlock*> blocks;
+  for (const PathBlock& block : like) blocks.push_back(&block);
+  const Places places(blocks, 0, 0);
   const double times = kMargin * static_cast<double>(num_blocks) / static_cast<double>(like.size());
-  const auto has = [&](const auto& column) {
-    return std::any_of(like.begin(), like.end(), [&](const PathBlock& block) { return !(block.*column).empty(); });
-  };
-  const auto rows = static_cast<size_t>(times * num_paths);
-  hits_->reserve(static_cast<size_t>(times * num_hits));
+  const auto rows = static_cast<size_t>(times * static_cast<double>(places.paths.back()));
+  hits_->reserve(static_cast<size_t>(times * static_cast<double>(places.hits.back())));
   paths_.offsets.reserve(rows);
   paths_.num_bounces.reserve(rows);
   paths_.diffuse.reserve(rows);
@@ -54,19 +54,16 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   paths_.stratum.reserve(rows);
   paths_.batch.reserve(rows);
   paths_.flags.reserve(rows);
-  if (has(&PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
-  if (has(&PathBlock::jones)) paths_.jones.reserve(rows);
+  if (has(blocks, &PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
+  if (has(blocks, &PathBlock::jones)) paths_.jones.reserve(rows);
 }
 
 // All columns at once: the first touch of their memory is what takes time. The optional ones are there from the first block that
 // has them on, with zeros before. No large pages are asked for: a virtual machine whose free memory went back to its host is given
 // each of them anew, in milliseconds, and a record is walked from end to end.
 void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
-  const auto has = [&](const auto& column) {
-    return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock* block) { return !(block->*column).empty(); });
-  };
-  const bool has_cells = !paths_.curved_cell.empty() || has(&PathBlock::curved_cell);
-  const bool has_jones = !paths_.jones.empty() || has(&PathBlock::jones);
+  const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
+  const bool has_jones = !paths_.jones.empty() || has(blocks, &PathBlock::jones);
   const std::function<void()> grow[] = {
       [&] { hits_->resize(num_hits); },
       [&] { paths_.offsets.resize(num_paths); },

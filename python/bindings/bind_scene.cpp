@@ -397,6 +397,8 @@ time: s; max_distance: m, up to which two triangles count that are nowhere furth
 Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
 label are those of the one that is met. Where no ray reaches, as under a box on the ground, it does no harm.
 Triangles that merely touch, overlap by less than max_distance, or cross do not count.
+Of meshes that are copies of each other at the same place, the first stands for all: each copy is listed with it and with
+nothing else.
 Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
 time outside a motion.)")
       .def("__repr__", &scene_text);

@@ -203,14 +203,20 @@ def rectangle(corner, size, height: float, cells: int) -> ep.Mesh:
     return ep.Mesh(vertices, [triangle for pair in pairs for triangle in pair])
 
 
-@FEW
-@given(corners=st.tuples(centimetres, centimetres), sizes=st.tuples(sides, sides), turn=turns, gap=st.floats(-2e-5, 2e-5),
-       cells=st.tuples(st.integers(1, 6), st.integers(1, 6)), offset=st.sampled_from([(0.0, 0.0, 0.0), UTM]))
-def test_overlaps_have_the_area_of_the_rectangle_that_two_have_in_common(corners, sizes, turn, gap, cells, offset):
+def turned_scene(turn, offset) -> ep.Scene:
+    """A scene whose node "both" is turned by a quaternion of any length and moved by `offset` (m)."""
     scene = ep.Scene()
     turned = np.array(turn) / math.hypot(*turn)
     motion = ep.KeyframeMotion(times=[-1.0, 1.0], translations=[offset] * 2, rotations=[turned] * 2)
     scene.add(name="both", motion=motion)
+    return scene
+
+
+@FEW
+@given(corners=st.tuples(centimetres, centimetres), sizes=st.tuples(sides, sides), turn=turns, gap=st.floats(-2e-5, 2e-5),
+       cells=st.tuples(st.integers(1, 6), st.integers(1, 6)), offset=st.sampled_from([(0.0, 0.0, 0.0), UTM]))
+def test_overlaps_have_the_area_of_the_rectangle_that_two_have_in_common(corners, sizes, turn, gap, cells, offset):
+    scene = turned_scene(turn, offset)
     scene.add(rectangle((0.0, 0.0), (1.0, 1.0), 0.0, cells[0]), name="one", parent="both", material="metal")
     scene.add(rectangle(corners, sizes, gap, cells[1]), name="two", parent="both", material="concrete")
     common = math.prod(max(0.0, min(1.0, low + size) - max(0.0, low)) for low, size in zip(corners, sizes))
@@ -220,3 +226,22 @@ def test_overlaps_have_the_area_of_the_rectangle_that_two_have_in_common(corners
     assert [overlap.names for overlap in found] == ([("both/one", "both/two")] if common > 0.0 and abs(gap) < 1e-5 else [])
     for overlap in found:
         assert abs(overlap.area - common) <= AREA and abs(overlap.distance - abs(gap)) <= 2 * LENGTH
+
+
+@FEW
+@given(copies=st.lists(st.integers(0, 3), min_size=1, max_size=40), turn=turns, gap=st.sampled_from([2e-6, 3e-6]),
+       cells=st.integers(1, 4), offset=st.sampled_from([(0.0, 0.0, 0.0), UTM]))
+def test_copies_at_one_place_are_told_of_once_each(copies, turn, gap, cells, offset):
+    scene = turned_scene(turn, offset)
+    for number, level in enumerate(copies):
+        mesh = rectangle((0.0, 0.0), (1.0, 0.5), level * gap, cells)
+        scene.add(mesh, name=str(number), parent="both", material="metal")
+    first_of = {level: copies.index(level) for level in copies}
+    firsts = sorted(first_of.values())
+    between = [(one, two) for one in firsts for two in firsts if one < two]
+    of_copies = [(first_of[level], number) for number, level in enumerate(copies) if first_of[level] != number]
+    found = scene.coplanar_overlaps()
+    assert [overlap.mesh_ids for overlap in found] == sorted(between + of_copies)
+    for overlap in found:
+        one, two = (copies[mesh_id] for mesh_id in overlap.mesh_ids)
+        assert abs(overlap.area - 0.5) <= AREA and abs(overlap.distance - abs(two - one) * gap) <= 2 * LENGTH

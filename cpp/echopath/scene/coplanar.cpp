@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -13,10 +15,11 @@ namespace {
 
 constexpr int64_t kTrianglesPerBlock = 2048;
 
-// The triangles of a scene at one time, in m about one of their corners.
+// The triangles of a scene at one time, in m about one of their corners, mesh after mesh.
 struct PosedTriangles {
   std::vector<Corners> corners;
   std::vector<uint32_t> mesh_id;
+  std::vector<size_t> begin = {0};  // of each mesh, and their end
 };
 
 // One triangle laid on another; both by place, the first of the mesh with the lower ID.
@@ -26,9 +29,7 @@ struct Laid {
   std::pair<uint32_t, uint32_t> meshes() const { return {first_mesh_id, second_mesh_id}; }
 };
 
-bool has_area(const Corners& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0.0;
-}
+double area_of(const Corners& corners) { return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm(); }
 
 PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   PosedTriangles posed;
@@ -42,18 +43,42 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
     if (id == 0) origin = vertices.front();
     for (const Triangle& t : scene.node_of(id).mesh->triangles()) {
       const Corners corners = {vertices[t[0]] - origin, vertices[t[1]] - origin, vertices[t[2]] - origin};
-      if (!has_area(corners)) continue;  // a deformation may take it
+      if (area_of(corners) == 0.0) continue;  // a deformation may take it
       posed.corners.push_back(corners);
       posed.mesh_id.push_back(id);
     }
+    posed.begin.push_back(posed.corners.size());
   }
   return posed;
 }
 
+// For each mesh the first whose triangles are the same to the bit, in the same order: itself where there is no other.
+std::vector<uint32_t> find_originals(const PosedTriangles& posed) {
+  std::unordered_map<std::string_view, uint32_t> first_of;
+  std::vector<uint32_t> original;
+  for (uint32_t id = 0; id + 1 < posed.begin.size(); ++id) {
+    const size_t num_bytes = (posed.begin[id + 1] - posed.begin[id]) * sizeof(Corners);
+    const std::string_view bytes(reinterpret_cast<const char*>(posed.corners.data() + posed.begin[id]), num_bytes);
+    original.push_back(first_of.try_emplace(bytes, id).first->second);
+  }
+  return original;
+}
+
+// What is left when copies are taken out.
+PosedTriangles without_copies(const PosedTriangles& posed, const std::vector<uint32_t>& original) {
+  PosedTriangles kept;
+  for (size_t k = 0; k < posed.corners.size(); ++k) {
+    if (original[posed.mesh_id[k]] != posed.mesh_id[k]) continue;
+    kept.corners.push_back(posed.corners[k]);
+    kept.mesh_id.push_back(posed.mesh_id[k]);
+  }
+  return kept;
+}
+
 class OverlapSearch {
  public:
-  OverlapSearch(const Scene& scene, double time, double max_distance, const Job* job)
-      : OverlapSearch(pose_triangles(scene, time, job), max_distance, job) {}
+  OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
+      : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
 
   // All pairs, in an order that threads do not change.
   std::vector<Laid> run(Job* job) const {
@@ -72,9 +97,6 @@ class OverlapSearch {
   }
 
  private:
-  OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
-      : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
-
   void search_behind(uint32_t place, std::vector<Laid>& found) const {
     const FacetPlane plane(tree_.triangle(place));
     tree_.visit_behind(
@@ -116,13 +138,8 @@ CoplanarOverlap summed(const Laid* begin, const Laid* end) {
   return sum;
 }
 
-}  // namespace
-
-std::vector<CoplanarOverlap> coplanar_overlaps(const Scene& scene, double time, double max_distance, Job* job) {
-  require(max_distance > 0.0 && std::isfinite(max_distance), "max_distance", "must be positive and finite, m", max_distance);
-  require(scene.num_triangles() < int64_t{1} << 31, "scene", "must have fewer than 2^31 triangles", scene.num_triangles());
-  if (scene.num_triangles() == 0) return {};
-  std::vector<Laid> pairs = OverlapSearch(scene, time, max_distance, job).run(job);
+// Sums over the pairs of each two meshes.
+std::vector<CoplanarOverlap> summed_by_meshes(std::vector<Laid> pairs) {
   std::stable_sort(pairs.begin(), pairs.end(), [](const Laid& a, const Laid& b) { return a.meshes() < b.meshes(); });
   std::vector<CoplanarOverlap> overlaps;
   for (const Laid *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
@@ -130,6 +147,51 @@ std::vector<CoplanarOverlap> coplanar_overlaps(const Scene& scene, double time, 
     overlaps.push_back(summed(begin, next));
     begin = next;
   }
+  return overlaps;
+}
+
+// A mesh and its copy: each triangle lies on its own copy, and two that lie on each other lie on each other's copies.
+CoplanarOverlap of_copy(const PosedTriangles& posed, uint32_t original, uint32_t copy, const CoplanarOverlap* on_itself) {
+  const size_t begin = posed.begin[copy], end = posed.begin[copy + 1];
+  CoplanarOverlap found{original, copy, 2 * static_cast<int64_t>(end - begin)};
+  for (size_t k = begin; k < end; ++k) found.area += area_of(posed.corners[k]);
+  if (on_itself) {
+    found.area += 2.0 * on_itself->area;
+    found.distance = on_itself->distance;
+  }
+  return found;
+}
+
+std::vector<CoplanarOverlap> of_copies(const PosedTriangles& posed, const std::vector<uint32_t>& original,
+                                       const std::vector<CoplanarOverlap>& overlaps) {
+  std::unordered_map<uint32_t, const CoplanarOverlap*> on_itself;
+  for (const CoplanarOverlap& one : overlaps) {
+    if (one.first_mesh_id == one.second_mesh_id) on_itself[one.first_mesh_id] = &one;
+  }
+  std::vector<CoplanarOverlap> found;
+  for (uint32_t copy = 0; copy < original.size(); ++copy) {
+    if (original[copy] == copy || posed.begin[copy] == posed.begin[copy + 1]) continue;
+    const auto own = on_itself.find(original[copy]);
+    found.push_back(of_copy(posed, original[copy], copy, own == on_itself.end() ? nullptr : own->second));
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<CoplanarOverlap> coplanar_overlaps(const Scene& scene, double time, double max_distance, Job* job) {
+  require(max_distance > 0.0 && std::isfinite(max_distance), "max_distance", "must be positive and finite, m", max_distance);
+  require(scene.num_triangles() < int64_t{1} << 31, "scene", "must have fewer than 2^31 triangles", scene.num_triangles());
+  if (scene.num_triangles() == 0) return {};
+  const PosedTriangles posed = pose_triangles(scene, time, job);
+  const std::vector<uint32_t> original = find_originals(posed);
+  std::vector<CoplanarOverlap> overlaps =
+      summed_by_meshes(OverlapSearch(without_copies(posed, original), max_distance, job).run(job));
+  const std::vector<CoplanarOverlap> copies = of_copies(posed, original, overlaps);
+  overlaps.insert(overlaps.end(), copies.begin(), copies.end());
+  std::sort(overlaps.begin(), overlaps.end(), [](const CoplanarOverlap& a, const CoplanarOverlap& b) {
+    return std::pair(a.first_mesh_id, a.second_mesh_id) < std::pair(b.first_mesh_id, b.second_mesh_id);
+  });
   return overlaps;
 }
 

@@ -9,7 +9,7 @@ from .speed_frames import street
 from .timing import processor_time
 
 RAYS, QUICK_RAYS, REPEATS, QUICK_REPEATS = 60_000, 10_000, 11, 3
-TARGET = 0.03  # of the processor time of trace and signal
+TARGET = 0.03  # of the processor time of trace and signal: the most that the guard may cost, said only here
 
 
 def measure_guard(*, quick: bool = False) -> dict:

@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -69,6 +70,10 @@ void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
   for (std::thread& other : others) other.join();
   if (failure) std::rethrow_exception(failure);
 }
+
+void run_pair(const std::function<void()>& first, const std::function<void()>& second) {
+  run_steps(2, [&](int64_t i) { i == 0 ? first() : second(); });
+}
 #else
 void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
   const auto run_range = [&](const tbb::blocked_range<int64_t>& range) {
@@ -77,6 +82,10 @@ void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
   current_arena()->execute([&] {
     tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, 1), run_range, tbb::simple_partitioner());
   });
+}
+
+void run_pair(const std::function<void()>& first, const std::function<void()>& second) {
+  current_arena()->execute([&] { tbb::parallel_invoke(first, second); });
 }
 #endif
 
@@ -100,6 +109,16 @@ void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* 
     body(i);
     if (job) job->advance(1);
   });
+}
+
+void run_both(const std::function<void()>& first, const std::function<void()>& second) {
+  const auto flushed = [](const std::function<void()>& work) {
+    return [&work] {
+      const FlushDenormals flush;
+      work();
+    };
+  };
+  run_pair(flushed(first), flushed(second));
 }
 
 }  // namespace echopath

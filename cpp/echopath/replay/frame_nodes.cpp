@@ -55,18 +55,17 @@ std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>
   return pieces;
 }
 
-// Lobatto nodes of one piece, and weights for values and derivatives inside it.
+void append_times(const Piece& piece, int order, std::vector<double>& times) {
+  for (int k = 0; k < order; ++k) times.push_back(piece.middle() + piece.half() * lobatto(k, order));
+}
+
+// Weights for values and derivatives inside one piece.
 class NodeSet {
  public:
   NodeSet(int order, ChirpDerivatives derivatives)
       : order_(order), num_derivatives_(derivatives == ChirpDerivatives::kThird ? 3 : 1) {
     require(order >= 2, "order", "must be >= 2", order);
     for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
-  }
-  const std::vector<double>& coefficients(int n) const { return rows_[static_cast<size_t>(n)]; }
-
-  void append_times(const Piece& piece, std::vector<double>& times) const {
-    for (int k = 0; k < order_; ++k) times.push_back(piece.middle() + piece.half() * lobatto(k, order_));
   }
 
   // One more chirp, at `time` in `piece`, whose nodes begin at `first_node`.
@@ -84,7 +83,7 @@ class NodeSet {
       double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
       for (int n = 0; n < order_; ++n) {
         const double factor = unit * basis[static_cast<size_t>(n)][d];
-        for (int k = 0; k < order_; ++k) weights[k] += factor * coefficients(n)[static_cast<size_t>(k)];
+        for (int k = 0; k < order_; ++k) weights[k] += factor * rows_[static_cast<size_t>(n)][static_cast<size_t>(k)];
       }
     }
   }
@@ -96,12 +95,14 @@ class NodeSet {
 };
 
 // At the nodes of all pieces, without the chirps.
-FrameNodes nodes_of(const std::vector<Piece>& pieces, int order, const NodeSet& set) {
+FrameNodes nodes_of(const std::vector<Piece>& pieces, int order) {
+  require(order >= 2, "order", "must be >= 2", order);
   FrameNodes nodes;
   nodes.order = order;
-  for (const Piece& piece : pieces) set.append_times(piece, nodes.times);
+  for (const Piece& piece : pieces) append_times(piece, order, nodes.times);
   for (const int n : {order - 2, order - 1}) {
-    nodes.tail.insert(nodes.tail.end(), set.coefficients(n).begin(), set.coefficients(n).end());
+    const std::vector<double> row = coefficient_row(n, order);
+    nodes.tail.insert(nodes.tail.end(), row.begin(), row.end());
   }
   return nodes;
 }
@@ -117,14 +118,14 @@ FrameNodes static_nodes(const Radar& radar, double time) {
 
 FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
-  return nodes_of(pieces, order, NodeSet(order, ChirpDerivatives::kFirst));
+  return nodes_of(pieces, order);
 }
 
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives) {
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
   const NodeSet set(order, derivatives);
-  FrameNodes nodes = nodes_of(pieces, order, set);
+  FrameNodes nodes = nodes_of(pieces, order);
   for (int tx = 0; tx < radar.num_slots(); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_nodes = static_cast<int>(nodes.times.size());
@@ -150,7 +151,7 @@ FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int tra
     const double time = start_time + radar.chirp_time(transmitter, chirp);
     const Piece piece{time - half, time + half};
     set.append_chirp(piece, time, static_cast<int>(nodes.times.size()), sampling);
-    set.append_times(piece, nodes.times);
+    append_times(piece, order, nodes.times);
   }
   sampling.num_nodes = static_cast<int>(nodes.times.size());
   return nodes;

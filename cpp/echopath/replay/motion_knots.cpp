@@ -7,7 +7,12 @@
 namespace echopath {
 namespace {
 
-void append(const std::vector<double>& times, std::vector<double>& all) { all.insert(all.end(), times.begin(), times.end()); }
+// The parts of one body share their times, which then come but once.
+void append(const std::vector<double>& times, std::vector<double>& all) {
+  const auto count = static_cast<ptrdiff_t>(times.size());
+  if (all.size() >= times.size() && std::equal(times.begin(), times.end(), all.end() - count)) return;
+  all.insert(all.end(), times.begin(), times.end());
+}
 
 void append_knots(const Motion* motion, std::vector<double>& all) {
   if (const auto* keyframes = dynamic_cast<const KeyframeMotion*>(motion)) append(keyframes->times(), all);

@@ -28,16 +28,17 @@ void NodeLevels::find_shapes() {
   if (settings_.exact) return;
   breakpoints_ = motion_breakpoints(*paths_.scene, radar_);
   knots_ = motion_knots(*paths_.scene, radar_);
-  for (const int order : kOrders) {
-    shapes_.push_back({order, &breakpoints_});
-    if (num_nodes({1, &knots_}) > num_nodes({1, &breakpoints_})) shapes_.push_back({order, &knots_});
+  const double start = paths_.frame.start_time, end = start + radar_.frame_duration();
+  for (std::vector<double>* cuts : {&breakpoints_, &knots_}) {
+    std::erase_if(*cuts, [&](double time) { return time <= start || time >= end; });
   }
-  std::erase_if(shapes_, [&](const Shape& shape) { return num_nodes(shape) > num_exact_nodes(); });
-  std::stable_sort(shapes_.begin(), shapes_.end(), [&](const Shape& a, const Shape& b) { return num_nodes(a) < num_nodes(b); });
-}
-
-int64_t NodeLevels::num_nodes(const Shape& shape) const {
-  return shape.order * num_pieces(radar_, paths_.frame.start_time, *shape.cuts);
+  const int64_t smooth = num_pieces(radar_, start, breakpoints_), analytic = num_pieces(radar_, start, knots_);
+  for (const int order : kOrders) {
+    shapes_.push_back({order, &breakpoints_, order * smooth});
+    if (analytic > smooth) shapes_.push_back({order, &knots_, order * analytic});
+  }
+  std::erase_if(shapes_, [&](const Shape& shape) { return shape.num_nodes > num_exact_nodes(); });
+  std::stable_sort(shapes_.begin(), shapes_.end(), [](const Shape& a, const Shape& b) { return a.num_nodes < b.num_nodes; });
 }
 
 Instant NodeLevels::instant(double time) const {
@@ -58,7 +59,7 @@ FrameNodes NodeLevels::nodes_of(size_t index) const {
 
 std::vector<Instant> NodeLevels::instants_of(const FrameNodes& nodes, size_t index) const {
   std::vector<Instant> instants;
-  if (index < tried_.size()) instants.swap(tried_[index]);
+  if (index < tried_.size()) instants.swap(tried_[index].instants);
   if (!instants.empty()) return instants;
   for (const double time : nodes.times) {
     Instant& posed = instants.emplace_back(instant(time));
@@ -106,15 +107,21 @@ int NodeLevels::next_polynomial(int index, double needed_order) const {
   return num_polynomials() + 1;
 }
 
+const NodeLevels::Trial& NodeLevels::trial_of(int polynomial) const {
+  const auto index = static_cast<size_t>(polynomial);
+  if (index >= tried_.size()) tried_.resize(index + 1);
+  Trial& trial = tried_[index];
+  if (!trial.instants.empty()) return trial;
+  const Shape& shape = shapes_[index - 1];
+  trial.nodes = unsampled_chebyshev_nodes(radar_, paths_.frame.start_time, *shape.cuts, shape.order);
+  trial.instants = instants_of(trial.nodes, index);
+  return trial;
+}
+
 // The distances of vertices all over a mesh from the transmitters tell how many nodes its motion needs: an echo's length is
 // made of such distances.
 bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
-  const auto index = static_cast<size_t>(polynomial);
-  const Shape& shape = shapes_[index - 1];
-  const FrameNodes nodes = unsampled_chebyshev_nodes(radar_, paths_.frame.start_time, *shape.cuts, shape.order);
-  if (index >= tried_.size()) tried_.resize(index + 1);
-  if (tried_[index].empty()) tried_[index] = instants_of(nodes, index);
-  const std::vector<Instant>& instants = tried_[index];
+  const auto& [nodes, instants] = trial_of(polynomial);
   const Node& node = paths_.scene->node_of(mesh_id);
   const double wavenumber = radio_constants(paths_, radar_).wavenumber;
   const auto vertices_at = [&](const Instant& instant) -> const std::vector<Vec3>& {
@@ -122,8 +129,9 @@ bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
   };
   const size_t num_vertices = vertices_at(instants.front()).size();
   const size_t step = std::max<size_t>(1, num_vertices / 16);
+  std::vector<double> distance;
   for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
-    std::vector<double> distance;
+    distance.clear();
     for (const Instant& instant : instants) {
       const Vec3 point = instant.rotation(mesh_id) * vertices_at(instant)[vertex] + instant.translation(mesh_id);
       distance.push_back(2.0 * (point - instant.transmitters.front().position).norm());
@@ -142,12 +150,26 @@ void NodeLevels::find_mesh_levels() const {
   }
 }
 
-int NodeLevels::first_level(int64_t path) const {
+const std::vector<int>& NodeLevels::mesh_levels() const {
   std::call_once(mesh_levels_made_, [&] { find_mesh_levels(); });
-  const Hit* hits = paths_.hits_of(path);
-  int needed = radar_.motion ? 1 : 0;
-  for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, mesh_level_[hits[k].mesh_id]);
-  return needed;
+  return mesh_level_;
+}
+
+int NodeLevels::first_level(int64_t path) const {
+  uint8_t level;
+  first_levels(path, {&level, 1});
+  return level;
+}
+
+void NodeLevels::first_levels(int64_t begin, std::span<uint8_t> levels) const {
+  const int* const of_mesh = mesh_levels().data();
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const int64_t path = begin + static_cast<int64_t>(i);
+    const Hit* hits = paths_.hits_of(path);
+    int needed = radar_.motion ? 1 : 0;
+    for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, of_mesh[hits[k].mesh_id]);
+    levels[i] = static_cast<uint8_t>(needed);
+  }
 }
 
 }  // namespace echopath

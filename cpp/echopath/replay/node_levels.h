@@ -2,6 +2,7 @@
 // The choices of nodes at which replay evaluates paths, and the scene as posed there.
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "echopath/replay/chain_tables.h"
@@ -35,7 +36,7 @@ class NodeLevels {
   NodeLevels(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const Localiser& localise);
 
   int num_polynomials() const { return static_cast<int>(shapes_.size()); }
-  int64_t num_nodes(int polynomial) const { return num_nodes(shapes_[static_cast<size_t>(polynomial) - 1]); }
+  int64_t num_nodes(int polynomial) const { return shapes_[static_cast<size_t>(polynomial) - 1].num_nodes; }
   int64_t num_exact_nodes() const { return int64_t{radar_.waveform.num_chirps} * exact_order(); }
   ChirpDerivatives derivatives() const { return settings_.per_sample ? ChirpDerivatives::kThird : ChirpDerivatives::kFirst; }
 
@@ -51,6 +52,8 @@ class NodeLevels {
   // Where to begin with a path, from the motion of the meshes that it touches: 0 where nothing moves, nor does the radar,
   // num_polynomials() + 1 where no polynomial will do.
   int first_level(int64_t path) const;
+  // Likewise of paths [begin, begin + levels.size()).
+  void first_levels(int64_t begin, std::span<uint8_t> levels) const;
   // The first after `index` of at least that order; where the motions have knots, any that keeps them apart will do.
   int next_polynomial(int index, double needed_order) const;
 
@@ -58,9 +61,9 @@ class NodeLevels {
   struct Shape {
     int order;                                // nodes per piece
     const std::vector<double>* cuts;          // between pieces, s
+    int64_t num_nodes;                        // of all pieces
   };
   void find_shapes();
-  int64_t num_nodes(const Shape& shape) const;
   int exact_order() const;
   size_t exact_level(int transmitter) const { return 1 + shapes_.size() + static_cast<size_t>(transmitter); }
   size_t centre_level(int transmitter) const { return exact_level(transmitter) + radar_.transmitters.size(); }
@@ -69,18 +72,25 @@ class NodeLevels {
   const NodeLevel& level(size_t index) const;
   std::vector<Instant> instants_of(const FrameNodes& nodes, size_t index) const;
   NodePoses poses_of(const std::vector<Instant>& instants) const;
+  // Nodes of a polynomial as it is tried on meshes.
+  struct Trial {
+    FrameNodes nodes;  // not sampled
+    std::vector<Instant> instants;
+  };
+  const std::vector<int>& mesh_levels() const;
   void find_mesh_levels() const;
+  const Trial& trial_of(int polynomial) const;
   bool fits(int polynomial, uint32_t mesh_id) const;
 
   const Paths& paths_;
   const Radar& radar_;
   ReplaySettings settings_;
   const Localiser& localise_;
-  std::vector<double> breakpoints_, knots_;   // s
+  std::vector<double> breakpoints_, knots_;   // s, inside the frame
   std::vector<Shape> shapes_;                 // of levels 1, 2 ...
   mutable std::once_flag mesh_levels_made_;
   mutable std::vector<int> mesh_level_;       // by mesh ID: the first that follows its motion
-  mutable std::vector<std::vector<Instant>> tried_;  // of polynomials, from trying them on meshes; taken over by their levels
+  mutable std::vector<Trial> tried_;  // by index of the level, which takes over the instants
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<const NodeLevel>> levels_;
 };

@@ -20,10 +20,10 @@ constexpr int kMostDrifts = 64;
 constexpr int kEchoesOfCell = 4;  // for each class of drift, as few as make moments worth while
 constexpr int kDigitBits = 11;  // of a pass of the radix sort
 
-// Sorts by bits [first_bit, end_bit), equal ones in their order.
-void radix_sort(std::vector<uint64_t>& keys, int first_bit, int end_bit) {
+// Sorts by bits [first_bit, end_bit), equal ones in their order. `sorted`: room for as many.
+void radix_sort(std::vector<uint64_t>& keys, std::vector<uint64_t>& sorted, int first_bit, int end_bit) {
   constexpr size_t kDigits = size_t{1} << kDigitBits;
-  std::vector<uint64_t> sorted(keys.size());
+  sorted.resize(keys.size());
   for (int bit = first_bit; bit < end_bit; bit += kDigitBits) {
     const auto digit = [&](uint64_t key) { return static_cast<size_t>(key >> bit) & (kDigits - 1); };
     std::vector<size_t> place(kDigits + 1);
@@ -39,7 +39,7 @@ int bits_for(uint64_t count) { return static_cast<int>(std::bit_width(count - 1)
 }  // namespace
 
 const double* EchoTiles::nodes(const Tile& tile) const {
-  return nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes;
+  return nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes;
 }
 
 // Classes of echoes by how far they drift over the frame.
@@ -109,16 +109,15 @@ void EchoTiles::set_bits(std::span<const Echoes> blocks, int num_groups, int num
   require(delay_bits_ >= 0, "num_groups", "leaves too few bits for so many echoes", num_groups);
 }
 
-std::vector<uint64_t> EchoTiles::keys(std::span<const Echoes> blocks, double longest_delay,
-                                      const DriftClasses& drifts) const {
+void EchoTiles::find_keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts) {
   std::vector<int64_t> first(blocks.size() + 1);
   for (size_t b = 0; b < blocks.size(); ++b) first[b + 1] = first[b] + blocks[b].num_echoes;
   const double steps = static_cast<double>((uint64_t{1} << delay_bits_) - 1) / longest_delay;
-  std::vector<uint64_t> keys(static_cast<size_t>(first.back()));
+  order_.resize(static_cast<size_t>(first.back()));
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
     const Echoes& block = blocks[static_cast<size_t>(b)];
     const double* delay = block.delay.data() + int64_t{num_nodes_ / 2} * block.num_echoes;
-    uint64_t* out = keys.data() + first[static_cast<size_t>(b)];
+    uint64_t* out = order_.data() + first[static_cast<size_t>(b)];
     for (int64_t p = 0; p < block.num_echoes; ++p) {
       const auto place = static_cast<uint64_t>(std::clamp(delay[p], 0.0, longest_delay) * steps);
       const double drift = (drift_of(block, p) - drifts.least) / drifts.width;
@@ -128,26 +127,25 @@ std::vector<uint64_t> EchoTiles::keys(std::span<const Echoes> blocks, double lon
       out[p] = order << index_bits_ | static_cast<uint64_t>(b) << local_bits_ | static_cast<uint64_t>(p);
     }
   });
-  return keys;
 }
 
 void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
   num_nodes_ = blocks.front().sampling.num_nodes;
   const DriftClasses drifts = classes_of_drift(blocks, longest_delay, num_cells);
   set_bits(blocks, num_groups, drifts.count);
-  std::vector<uint64_t> order = keys(blocks, longest_delay, drifts);
-  radix_sort(order, index_bits_, group_shift() + group_bits_);
-  cut(order);
-  gather(blocks, order);
+  find_keys(blocks, longest_delay, drifts);
+  radix_sort(order_, spare_order_, index_bits_, group_shift() + group_bits_);
+  cut();
+  gather(blocks);
 }
 
 // Tiles end where the group does.
-void EchoTiles::cut(const std::vector<uint64_t>& order) {
+void EchoTiles::cut() {
   tiles_.clear();
   first_.clear();
-  const auto total = static_cast<int64_t>(order.size());
+  const auto total = static_cast<int64_t>(order_.size());
   const auto group_of = [&](int64_t i) {
-    return static_cast<uint32_t>(order[static_cast<size_t>(i)] >> group_shift());
+    return static_cast<uint32_t>(order_[static_cast<size_t>(i)] >> group_shift());
   };
   int64_t vector = 0;
   for (int64_t begin = 0; begin < total;) {
@@ -164,9 +162,11 @@ void EchoTiles::cut(const std::vector<uint64_t>& order) {
     begin = end;
   }
   const size_t size = static_cast<size_t>(vector) * num_nodes_ * 3 * kLanes;
-  if (size <= nodes_.size()) return;
-  nodes_ = {};
-  resize_large(nodes_, size);
+  if (size <= num_values_) return;
+  nodes_.reset();
+  nodes_ = std::make_unique_for_overwrite<double[]>(size);
+  num_values_ = size;
+  prefer_large_pages(nodes_.get(), size * sizeof(double));
 }
 
 namespace {
@@ -210,18 +210,18 @@ void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
 
 }  // namespace
 
-void EchoTiles::gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order) {
+void EchoTiles::gather(std::span<const Echoes> blocks) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
   parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
     const Tile& tile = tiles_[static_cast<size_t>(i)];
     const auto source_of = [&](int p) {
       const int64_t place = first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1);
-      const uint64_t index = order[static_cast<size_t>(place)] & index_mask, echo = index & local_mask;
+      const uint64_t index = order_[static_cast<size_t>(place)] & index_mask, echo = index & local_mask;
       const Echoes& block = blocks[static_cast<size_t>(index >> local_bits_)];
       const auto* amplitude = reinterpret_cast<const double*>(block.amplitude.data() + echo);
       return Source{block.delay.data() + echo, amplitude, block.num_echoes};
     };
-    gather_tile(tile.count, num_nodes_, source_of, nodes_.data() + tile.vector * num_nodes_ * 3 * kLanes);
+    gather_tile(tile.count, num_nodes_, source_of, nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes);
   });
 }
 

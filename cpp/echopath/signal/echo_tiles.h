@@ -29,20 +29,23 @@ class EchoTiles {
   int num_nodes() const { return num_nodes_; }
   const std::vector<Tile>& tiles() const { return tiles_; }
   const double* nodes(const Tile& tile) const;
+  size_t num_bytes() const { return sizeof(double) * num_values_ + sizeof(uint64_t) * 2 * order_.capacity(); }  // nearly all
 
  private:
   void set_bits(std::span<const Echoes> blocks, int num_groups, int num_drifts);
-  std::vector<uint64_t> keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts) const;
-  void cut(const std::vector<uint64_t>& order);
-  void gather(std::span<const Echoes> blocks, const std::vector<uint64_t>& order);
+  void find_keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts);
+  void cut();
+  void gather(std::span<const Echoes> blocks);
 
   int num_nodes_ = 0;
   // A key is, from its highest bits: group, drift, delay, block, echo in the block.
   int local_bits_ = 0, index_bits_ = 0, delay_bits_ = 0, drift_bits_ = 0, group_bits_ = 0;
   int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
+  std::vector<uint64_t> order_, spare_order_;  // keys of all echoes, and room to sort them
   std::vector<Tile> tiles_;
   std::vector<int64_t> first_;     // [tiles], place of the first echo of each in the order
-  std::vector<double> nodes_;
+  std::unique_ptr<double[]> nodes_;  // with room for `num_values_`
+  size_t num_values_ = 0;
 };
 
 }  // namespace echopath

@@ -42,6 +42,7 @@ std::unique_ptr<const ToneMethod> make_direct(int num_samples);
 std::unique_ptr<const ToneMethod> make_recurrence(int num_samples);
 // Type-1 non-uniform FFT. Rms error over the samples below `tolerance` of the sum of |a|, for 1e-13 <= tolerance <=
 // 0.1 (and not below the rounding of 1e-16 x num_samples); the largest error of one sample is up to six times that.
-std::unique_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance);
+// Those of the last few sizes are kept: to make one takes as long as to add a thousand tones.
+std::shared_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance);
 
 }  // namespace echopath

@@ -2,6 +2,7 @@
 // the grid into samples, and the kernel's own spectrum is divided out. A row is the grid, its ends overhanging by the
 // kernel.
 #include <algorithm>
+#include <mutex>
 #include <vector>
 
 #include "echopath/fft/fft.h"
@@ -52,12 +53,12 @@ class Nufft : public SpreadMethod {
 
   void samples(const double* row, std::complex<double>* out) const override {
     FftBuffer grid(grid_size_);
-    // Row cell i is grid cell i + 1 - width, modulo the grid.
-    int64_t cell = (grid_size_ + 1 - kernel_.width) % grid_size_;
-    for (int64_t i = 0; i < row_length(); ++i) {
-      grid[cell] += std::complex<double>(row[i], row[i + row_length()]);
-      if (++cell == grid_size_) cell = 0;
-    }
+    // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide.
+    const int64_t before = kernel_.width - 1, end = before + grid_size_;
+    const double* imaginary = row + row_length();
+    for (int64_t i = before; i < end; ++i) grid[i - before] = {row[i], imaginary[i]};
+    for (int64_t i = 0; i < before; ++i) grid[grid_size_ - before + i] += std::complex<double>(row[i], imaginary[i]);
+    for (int64_t i = end; i < row_length(); ++i) grid[i - end] += std::complex<double>(row[i], imaginary[i]);
     fft_.transform(grid);
     const int num_samples = static_cast<int>(correction_.size());
     for (int n = 0; n < num_samples; ++n) {
@@ -73,10 +74,38 @@ class Nufft : public SpreadMethod {
   std::vector<double> correction_;
 };
 
+// Thread-safe.
+class RecentNuffts {
+ public:
+  std::shared_ptr<const Nufft> get(int num_samples, int width) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
+      return kept.num_samples == num_samples && kept.width == width;
+    });
+    if (found != kept_.end()) {
+      std::rotate(kept_.begin(), found, found + 1);
+      return kept_.front().nufft;
+    }
+    if (kept_.size() == kMost) kept_.pop_back();
+    kept_.insert(kept_.begin(), {num_samples, width, std::make_shared<const Nufft>(num_samples, width)});
+    return kept_.front().nufft;
+  }
+
+ private:
+  static constexpr size_t kMost = 8;
+  struct Kept {
+    int num_samples, width;
+    std::shared_ptr<const Nufft> nufft;
+  };
+  std::mutex mutex_;
+  std::vector<Kept> kept_;  // the one asked for last first
+};
+
 }  // namespace
 
-std::unique_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance) {
-  return std::make_unique<Nufft>(num_samples, NufftKernel::width_for(tolerance));
+std::shared_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance) {
+  static RecentNuffts& recent = *new RecentNuffts;  // never destroyed: threads may outlive what is static
+  return recent.get(num_samples, NufftKernel::width_for(tolerance));
 }
 
 }  // namespace echopath

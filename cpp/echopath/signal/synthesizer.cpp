@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/carrier.h"
 #include "echopath/signal/method.h"
 #include "echopath/signal/per_sample.h"
+#include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {
 namespace {
@@ -25,7 +25,7 @@ constexpr int64_t kRecurrenceLimit = 40;  // echoes below which the recurrence b
 constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
 constexpr int kGroupsPerTask = 8;         // at most; fewer where that would leave threads without work
 constexpr int64_t kStillParts = 16;       // at most, of echoes at rest; their number must not depend on the threads
-constexpr int64_t kEchoesOfPart = 1024;   // at least, for each group: adding up the parts must cost little
+constexpr int64_t kEchoesOfPart = 2048;   // at least, for each group: adding up the parts must cost little
 
 Method choose_method(Method asked, int64_t expected_echoes) {
   if (asked != Method::kAuto) return asked;
@@ -100,7 +100,10 @@ size_t run_of_one_sampling(std::span<const Echoes> blocks) {
 
 Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
                          const SynthesisOptions& options)
-    : waveform_(waveform), num_groups_(num_groups), method_(choose_method(options.method, expected_echoes)) {
+    : waveform_(waveform),
+      num_groups_(num_groups),
+      method_(choose_method(options.method, expected_echoes)),
+      memory_(SynthesisMemory::take()) {
   waveform.validate();
   require(num_channels >= 1, "num_channels", "must be at least 1", num_channels);
   require(num_groups >= 1, "num_groups", "must be at least 1", num_groups);
@@ -108,9 +111,9 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
   require(options.tolerance >= 1e-13 && options.tolerance <= 0.1, "tolerance", "must be in [1e-13, 0.1]",
           options.tolerance);
   if (method_ == Method::kNufft) {
-    auto nufft = make_nufft(waveform.num_samples, options.tolerance);
+    const auto nufft = make_nufft(waveform.num_samples, options.tolerance);
     spread_ = options.per_sample ? nullptr : nufft.get();
-    tones_ = std::move(nufft);
+    tones_ = nufft;
   } else {
     tones_ = method_ == Method::kDirect ? make_direct(waveform.num_samples) : make_recurrence(waveform.num_samples);
   }
@@ -122,7 +125,11 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
   channels_.resize(num_channels);
 }
 
-Synthesizer::~Synthesizer() = default;
+Synthesizer::~Synthesizer() {
+  if (!memory_) return;  // moved from
+  for (ChannelRows& rows : channels_) memory_->give(std::move(rows.moving));
+  SynthesisMemory::leave(std::move(memory_));
+}
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
 void Synthesizer::validate(const Echoes& block) const {
@@ -168,30 +175,40 @@ void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
   }
 }
 
-// In a fixed number of parts with rows of their own, added in their order.
+// In a number of parts that does not depend on the threads, with rows of their own, added in their order.
 void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const {
+  int64_t total = 0;
+  for (const Echoes& block : blocks) total += block.num_echoes;
+  if (total == 0) return;
   const size_t size = static_cast<size_t>(row_size(false)) * num_groups_;
+  rows.still.resize(size);
+  const int64_t num_parts = std::min(total / (kEchoesOfPart * num_groups_), kStillParts);
+  if (num_parts <= 1) return add_still_part(blocks, {0, total}, rows.still.data(), job);
+  std::vector<std::vector<double>> parts(static_cast<size_t>(num_parts));
+  parallel_for(num_parts, [&](int64_t i) {
+    std::vector<double>& part = parts[static_cast<size_t>(i)];
+    part.resize(size);
+    add_still_part(blocks, {i * total / num_parts, (i + 1) * total / num_parts}, part.data(), job);
+  });
+  for (const std::vector<double>& part : parts) {
+    for (size_t i = 0; i < size; ++i) rows.still[i] += part[i];
+  }
+}
+
+// `part`: of the echoes of all blocks, one block after the other.
+void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, double* rows, Job* job) const {
+  int64_t first = 0;
   for (const Echoes& block : blocks) {
-    if (block.num_echoes == 0) continue;
-    rows.still.resize(size);
-    const int64_t num_parts = std::clamp<int64_t>(block.num_echoes / (kEchoesOfPart * num_groups_), 1, kStillParts);
-    const int64_t per_part = (block.num_echoes + num_parts - 1) / num_parts;
-    std::vector<std::vector<double>> parts(static_cast<size_t>(num_parts));
-    parallel_for(num_parts, [&](int64_t i) {
-      std::vector<double>& part = parts[static_cast<size_t>(i)];
-      part.resize(size);
-      add_rows(block, {i * per_part, std::min(block.num_echoes, (i + 1) * per_part)}, {0, 1}, part.data(), job);
-    });
-    for (const std::vector<double>& part : parts) {
-      for (size_t i = 0; i < size; ++i) rows.still[i] += part[i];
-    }
+    const Range here{std::max<int64_t>(part.begin - first, 0), std::min(part.end - first, block.num_echoes)};
+    if (here.begin < here.end) add_rows(block, here, {0, 1}, rows, job);
+    first += block.num_echoes;
   }
 }
 
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
   const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
-  if (rows.moving.empty()) resize_large(rows.moving, chirp_size * waveform_.num_chirps);
-  if (spread_) tiles_.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
+  if (rows.moving.empty()) rows.moving = memory_->take_rows(chirp_size * waveform_.num_chirps);
+  if (spread_) memory_->tiles.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
     double* const first_row = rows.moving.data() + chirp_size * first;
     if (spread_) return add_tiles(blocks.front().sampling, first, count, first_row, job);
@@ -205,13 +222,13 @@ double Synthesizer::longest_delay() const { return waveform_.sampling_rate / wav
 void Synthesizer::add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const {
   const Spreading spreading = spread_->spreading();
   const int64_t stride = row_size(true);
-  for (const EchoTiles::Tile& tile : tiles_.tiles()) {
+  for (const EchoTiles::Tile& tile : memory_->tiles.tiles()) {
     if (job) job->throw_if_cancelled();
     for (int i = 0; i < num_chirps; i += kChirpGroup) {
       const int chirp = first_chirp + i;
       const size_t weights = static_cast<size_t>(chirp) * sampling.order;
       const int count = std::min(kChirpGroup, num_chirps - i);
-      const TileAtChirps at{tiles_.nodes(tile), tile.count, sampling.num_nodes, sampling.order, count,
+      const TileAtChirps at{memory_->tiles.nodes(tile), tile.count, sampling.num_nodes, sampling.order, count,
                             &sampling.first_node[chirp], &sampling.value[weights], &sampling.slope[weights]};
       double* row = rows + (int64_t{i} * num_groups_ + tile.group) * stride;
       signal_kernels().add_tile(*model_, spreading, at, row, stride * num_groups_);

@@ -8,13 +8,13 @@
 
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
-#include "echopath/signal/echo_tiles.h"
 #include "echopath/signal/echoes.h"
 
 namespace echopath {
 
 class PerSample;
 class SpreadMethod;
+class SynthesisMemory;
 class ToneMethod;
 struct CarrierModel;
 struct Rows;
@@ -63,12 +63,13 @@ class Synthesizer {
     std::vector<double> still;   // [group, re/im, row length], added to every chirp; empty likewise
   };
   void validate(const Echoes& block) const;
-  void add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const;
-  void add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job);
-  void add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const;
   struct Range {
     int64_t begin, end;
   };
+  void add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const;
+  void add_still_part(std::span<const Echoes> blocks, Range part, double* rows, Job* job) const;
+  void add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job);
+  void add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const;
   void add_rows(const Echoes& block, Range echoes, Range chirps, double* rows, Job* job) const;
   void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
   int64_t row_size(bool moving) const;
@@ -78,12 +79,12 @@ class Synthesizer {
   ChirpSequence waveform_;
   int num_groups_;
   Method method_;
-  std::unique_ptr<const ToneMethod> tones_;         // of all echoes, or of those at rest
+  std::shared_ptr<const ToneMethod> tones_;         // of all echoes, or of those at rest
   const SpreadMethod* spread_ = nullptr;            // tones_ where moving echoes go through tiles
-  std::unique_ptr<const ToneMethod> sample_rows_;   // the form of the rows of moving echoes, where per_sample_ is there
+  std::shared_ptr<const ToneMethod> sample_rows_;   // the form of the rows of moving echoes, where per_sample_ is there
   std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
-  EchoTiles tiles_;  // of the blocks in hand
+  std::unique_ptr<SynthesisMemory> memory_;
   std::vector<ChannelRows> channels_;
 };
 

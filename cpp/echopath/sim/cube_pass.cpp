@@ -14,11 +14,11 @@ namespace {
 void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::span<Echoes> blocks) {
   std::vector<size_t> first = {0};  // by block
   for (const Echoes& block : blocks) first.push_back(first.back() + static_cast<size_t>(block.num_echoes));
+  for (Echoes& block : blocks) block.group.clear();
+  if (!way.group) return;
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
     const auto at = static_cast<size_t>(i);
     std::vector<uint32_t>& group = blocks[at].group;
-    group.clear();
-    if (!way.group) return;
     group.reserve(first[at + 1] - first[at]);
     for (const int64_t path : indices.subspan(first[at], first[at + 1] - first[at])) {
       group.push_back((*way.group)[static_cast<size_t>(path)]);

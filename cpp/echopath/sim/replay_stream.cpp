@@ -14,7 +14,7 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
-constexpr int64_t kEchoesInFlight = 1 << 18;   // node values per channel set: paths x channels
+constexpr int64_t kEchoesInFlight = 1 << 17;   // paths x channels; as many are handed over meanwhile
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
 // What a block has at its nodes stays in the second-level cache. No power of two: rows of nodes would share the sets of the first.
 constexpr int64_t kLargestBlock = 1000;
@@ -32,7 +32,7 @@ int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   return std::min(most, std::max(kLeastBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_nodes)));
 }
 
-constexpr int64_t kPathsOfTask = 1 << 15;  // whose levels are found
+constexpr int64_t kPathsOfTask = 1 << 13;  // whose levels are found
 
 // Indices of the paths by level, in their order; at level 0 those on which nothing moves.
 class PathsByLevel {
@@ -59,11 +59,9 @@ class PathsByLevel {
 
   void find_levels(const NodeLevels& levels, int64_t task) {
     const auto [begin, end] = range_of(task);
-    for (int64_t path = begin; path < end; ++path) {
-      const int level = levels.first_level(path);
-      level_[static_cast<size_t>(path)] = static_cast<uint8_t>(level);
-      ++place_[static_cast<size_t>(task)][static_cast<size_t>(level)];
-    }
+    const std::span<uint8_t> here(level_.data() + begin, static_cast<size_t>(end - begin));
+    levels.first_levels(begin, here);
+    for (const uint8_t level : here) ++place_[static_cast<size_t>(task)][level];
   }
 
   // Makes counts of the tasks the places where each begins to write.
@@ -110,75 +108,117 @@ std::vector<int64_t> without(const std::vector<std::vector<FailedPath>>& left, s
 
 }  // namespace
 
+// Blocks that are replayed together.
+struct ReplayStream::Window {
+  int first_channel = 0;
+  std::vector<std::vector<Echoes>> by_channel;
+  std::vector<int64_t> paths;  // of all blocks, one after the other
+};
+
+// The way to the sink.
+class ReplayStream::HandOver {
+ public:
+  HandOver(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
+
+  // The last window goes to the sink while `replay` makes the next, with whatever threads either leaves idle.
+  void beside(const std::function<void(Window& next)>& replay) {
+    Window next;
+    run_both([&] { finish(); }, [&] { replay(next); });
+    last_ = std::move(next);
+  }
+
+  void finish() {
+    for (size_t channel = 0; channel < last_.by_channel.size(); ++channel) {
+      if (stream_.job_) stream_.job_->throw_if_cancelled();
+      std::vector<Echoes>& blocks = last_.by_channel[channel];
+      sink_(last_.first_channel + static_cast<int>(channel), blocks, last_.paths);
+      stream_.replayer_.recycle(blocks);
+    }
+    last_ = {};
+  }
+
+ private:
+  const ReplayStream& stream_;
+  const Sink& sink_;
+  Window last_;
+};
+
 void ReplayStream::run(const Sink& sink) const {
+  HandOver out(*this, sink);
   std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_.levels(), num_paths_, job_).take();
-  add_still(by_level.front(), sink);
+  add_still(by_level.front(), out);
   by_level.front() = {};
-  add_moving(std::move(by_level), sink);
+  add_moving(std::move(by_level), out);
+  out.finish();
 }
 
-void ReplayStream::add_still(const std::vector<int64_t>& paths, const Sink& sink) const {
-  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto&) { return replayer_.still(part); }, sink);
+void ReplayStream::add_still(const std::vector<int64_t>& paths, HandOver& out) const {
+  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto&) { return replayer_.still(part); }, out);
 }
 
 // Each path at the order that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
-void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const {
+void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const {
   const NodeLevels& levels = replayer_.levels();
   std::vector<std::vector<int64_t>> by_chirp(by_level.size());
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
     const Extent extent{0, num_channels(), levels.num_nodes(level)};
     const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
-    for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, sink)) {
+    for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, out)) {
       (failed.by_chirp ? by_chirp : by_level)[static_cast<size_t>(failed.next_level)].push_back(failed.path);
     }
   }
   by_chirp.back() = std::move(by_level.back());
-  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) add_chirps(by_chirp, transmitter, sink);
+  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) add_chirps(by_chirp, transmitter, out);
 }
 
 // The scene as posed at the chirps of one transmitter is all that is held. At the last level stand paths that no polynomial follows.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, const Sink& sink) const {
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const {
   const NodeLevels& levels = replayer_.levels();
   const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
     run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp()},
-               [&](auto part, auto&) { return replayer_.by_chirp(part, level, transmitter); }, sink);
+               [&](auto part, auto&) { return replayer_.by_chirp(part, level, transmitter); }, out);
   }
   run_blocks(by_level.back(), {first, num_receivers, levels.num_exact_nodes()},
-             [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, sink);
+             [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, out);
   levels.forget_chirps(transmitter);
 }
 
-// Blocks are replayed in parallel, a fixed number at a time, and handed over in their order. Returns the paths that `replay`
-// left.
+// Blocks are replayed in parallel, a fixed number at a time. Returns the paths that `replay` left.
 std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                                 const Sink& sink) const {
-  const int64_t size = block_size(extent.num_channels, extent.num_nodes);
+                                                 HandOver& out) const {
+  const int64_t size = block_size(extent.num_channels, extent.num_nodes), num_paths = static_cast<int64_t>(paths.size());
   std::vector<FailedPath> all_left;
-  const auto num_paths = static_cast<int64_t>(paths.size());
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
-    const int64_t num_blocks = std::min(kBlocksInFlight, (num_paths - begin + size - 1) / size);
-    const auto part = [&](int64_t i) {
-      const int64_t first = begin + i * size;
-      return std::span<const int64_t>(paths.data() + first, static_cast<size_t>(std::min(size, num_paths - first)));
-    };
-    std::vector<std::vector<Echoes>> by_channel(static_cast<size_t>(extent.num_channels));
-    for (std::vector<Echoes>& blocks : by_channel) blocks.resize(static_cast<size_t>(num_blocks));
-    std::vector<std::vector<FailedPath>> left(static_cast<size_t>(num_blocks));
-    parallel_for(num_blocks, [&](int64_t i) {
-      if (job_) job_->throw_if_cancelled();
-      std::vector<Echoes> channels = replay(part(i), left[static_cast<size_t>(i)]);
-      for (size_t channel = 0; channel < channels.size(); ++channel) by_channel[channel][static_cast<size_t>(i)] = std::move(channels[channel]);
+    const int64_t count = std::min(size * kBlocksInFlight, num_paths - begin);
+    const std::span<const int64_t> some(paths.data() + begin, static_cast<size_t>(count));
+    out.beside([&](Window& window) {
+      const std::vector<FailedPath> left = replay_window(some, size, extent, replay, window);
+      all_left.insert(all_left.end(), left.begin(), left.end());
     });
-    const auto num_done = static_cast<size_t>(std::min(size * num_blocks, num_paths - begin));
-    const std::vector<int64_t> handed_over = without(left, {paths.data() + begin, num_done});
-    for (size_t channel = 0; channel < by_channel.size(); ++channel) {
-      if (job_) job_->throw_if_cancelled();
-      sink(extent.first_channel + static_cast<int>(channel), by_channel[channel], handed_over);
-      replayer_.recycle(by_channel[channel]);
-    }
-    for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
   }
+  return all_left;
+}
+
+// Returns what is left of these paths.
+std::vector<FailedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
+                                                    const Extent& extent, const Replay& replay, Window& window) const {
+  const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
+  window.first_channel = extent.first_channel;
+  window.by_channel.resize(static_cast<size_t>(extent.num_channels));
+  for (std::vector<Echoes>& blocks : window.by_channel) blocks.resize(static_cast<size_t>(num_blocks));
+  std::vector<std::vector<FailedPath>> left(static_cast<size_t>(num_blocks));
+  parallel_for(num_blocks, [&](int64_t i) {
+    if (job_) job_->throw_if_cancelled();
+    const auto block = static_cast<size_t>(i);
+    const int64_t first = i * block_size;
+    const auto part = paths.subspan(static_cast<size_t>(first), static_cast<size_t>(std::min(block_size, count - first)));
+    std::vector<Echoes> channels = replay(part, left[block]);
+    for (size_t channel = 0; channel < channels.size(); ++channel) window.by_channel[channel][block] = std::move(channels[channel]);
+  });
+  window.paths = without(left, paths);
+  std::vector<FailedPath> all_left;
+  for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
   return all_left;
 }
 

@@ -24,21 +24,25 @@ class ReplayStream {
   const Replayer& replayer() const { return replayer_; }
   // Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path, whatever the number of
   // paths, chirps and channels; a sink that sorts them needs at most as much again. `sink` is called from one thread at a
-  // time. Raises Cancelled.
+  // time, while the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink) const;
 
  private:
   using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<FailedPath>&)>;
-  void add_still(const std::vector<int64_t>& paths, const Sink& sink) const;
-  void add_moving(std::vector<std::vector<int64_t>> by_level, const Sink& sink) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, const Sink& sink) const;
+  struct Window;
+  class HandOver;
+  void add_still(const std::vector<int64_t>& paths, HandOver& out) const;
+  void add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const;
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const;
   // Channels that `replay` makes echoes of, at how many nodes.
   struct Extent {
     int first_channel, num_channels;
     int64_t num_nodes;
   };
   std::vector<FailedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                     const Sink& sink) const;
+                                     HandOver& out) const;
+  std::vector<FailedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
+                                        const Replay& replay, Window& window) const;
 
   int64_t num_paths_;
   int num_transmitters_;

@@ -97,6 +97,36 @@ TEST_F(ParallelFor, FlushesDenormalsInsideAndRestoresTheCallersMode) {
   EXPECT_NE(smallest * 0.5, 0.0);
 }
 
+TEST_F(ParallelFor, RunBothCallsBothOnceAndSharesTheirLoops) {
+  for (const int threads : {1, 2, 4}) {
+    set_num_threads(threads);
+    std::atomic<int64_t> first = 0, second = 0;
+    run_both([&] { parallel_for(kCount, [&](int64_t i) { first += i; }); },
+             [&] { parallel_for(kCount, [&](int64_t i) { second += 2 * i; }); });
+    EXPECT_EQ(first, kCount * (kCount - 1) / 2) << threads << " threads";
+    EXPECT_EQ(second, kCount * (kCount - 1)) << threads << " threads";
+  }
+}
+
+TEST_F(ParallelFor, RunBothRethrowsWhatEitherThrows) {
+  const auto nothing = [] {};
+  const auto fails = [] { throw FileError("disk"); };
+  EXPECT_THROW(run_both(fails, nothing), FileError);
+  EXPECT_THROW(run_both(nothing, fails), FileError);
+  EXPECT_THROW(run_both([] { parallel_for(kCount, [](int64_t) { throw FileError("disk"); }); }, nothing), FileError);
+}
+
+TEST_F(ParallelFor, RunBothFlushesDenormalsInsideAndRestoresTheCallersMode) {
+  const volatile double smallest = std::numeric_limits<double>::min();
+  std::atomic<int> num_denormals = 0;
+  const auto look = [&] { num_denormals += smallest * 0.5 != 0.0; };
+  run_both(look, look);
+#if defined(__SSE2__)
+  EXPECT_EQ(num_denormals, 0);
+#endif
+  EXPECT_NE(smallest * 0.5, 0.0);
+}
+
 TEST(NumThreads, IsWhatWasSet) {
   for (const int threads : {1, 2, 3}) {
     set_num_threads(threads);

@@ -133,6 +133,35 @@ TEST(Synthesizer, ChannelsAreSeparateAndBlocksAddUp) {
   for (size_t i = 0; i < half; ++i) EXPECT_NEAR(std::abs(cube[half + i] - sum[i] - still[i]), 0.0, 1e-13);
 }
 
+// Many at once are shared among parts of all blocks together, few are not.
+TEST(Synthesizer, BlocksAtRestAtOnceEqualThoseOneByOne) {
+  constexpr int kBlocks = 50, kOfBlock = 301;
+  const ChirpSequence w = short_frame();
+  Synthesizer at_once(w, 1, 1, kBlocks * kOfBlock), one_by_one(w, 1, 1, kBlocks * kOfBlock);
+  std::vector<Echoes> blocks;
+  double sum = 0.0;
+  for (int b = 0; b < kBlocks; ++b) {
+    const testing::MovingPoints points(kOfBlock, static_cast<unsigned>(b), 1.0, 70.0);
+    std::vector<double> delay;
+    for (const double range : points.range) delay.push_back(range * 2.0 / 299792458.0);
+    blocks.push_back(testing::static_echoes(w.num_chirps, delay, points.amplitude));
+    one_by_one.add(0, blocks.back());
+    sum += testing::sum_of_magnitudes(points.amplitude);
+  }
+  at_once.add(0, blocks);
+  EXPECT_LT(testing::largest_difference(at_once.cube(), one_by_one.cube()), kAdditivity * sum);
+}
+
+// A synthesis takes over what another left behind.
+TEST(Synthesizer, MemoryOfOthersLeavesNoTrace) {
+  const ChirpSequence w = short_frame();
+  const testing::MovingPoints few(100, 6, 1.0, 30.0), many(900, 7, 10.0, 70.0);
+  const auto synthesized = [&](const testing::MovingPoints& points) { return testing::synthesize(w, testing::exact_echoes(w, points), {}); };
+  const auto first = synthesized(few);
+  synthesized(many);
+  EXPECT_EQ(synthesized(few), first);
+}
+
 TEST(Synthesizer, NoEchoesGiveExactZeros) {
   const ChirpSequence w = short_frame();
   for (const Method method : kMethods) {

@@ -1,0 +1,47 @@
+#pragma once
+// Memory that one computation leaves for the next: of a short one, pages that are touched for the first time cost as much as the
+// work on them.
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace echopath {
+
+// Of type T, which tells its num_bytes(). Thread-safe; one for the whole process.
+template <class T>
+class KeptMemory {
+ public:
+  static constexpr size_t kMost = size_t{64} << 20;  // bytes in all
+
+  // What was left last, or new.
+  std::unique_ptr<T> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!kept_.empty()) {
+        std::unique_ptr<T> last = std::move(kept_.back());
+        kept_.pop_back();
+        num_bytes_ -= last->num_bytes();
+        return last;
+      }
+    }
+    return std::make_unique<T>();
+  }
+
+  // Frees it where there would be more than kMost.
+  void leave(std::unique_ptr<T> memory) {
+    const size_t num_bytes = memory->num_bytes();
+    const std::lock_guard lock(mutex_);
+    if (num_bytes_ + num_bytes > kMost) return;
+    num_bytes_ += num_bytes;
+    kept_.push_back(std::move(memory));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<T>> kept_;
+  size_t num_bytes_ = 0;
+};
+
+}  // namespace echopath

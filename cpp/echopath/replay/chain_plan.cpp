@@ -45,8 +45,11 @@ bool ChainPlanner::is_same(const Known& known, const Known& run) {
          std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-ChainPlanner::ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular)
-    : paths_(paths), localise_(localise), slides_(specular != SpecularPoints::kMaterial) {}
+void ChainPlanner::begin(const Paths& paths, const Localiser& localise, SpecularPoints specular) {
+  paths_ = &paths;
+  localise_ = &localise;
+  slides_ = specular != SpecularPoints::kMaterial;
+}
 
 const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
   clear();
@@ -68,7 +71,7 @@ void ChainPlanner::clear() {
 }
 
 bool ChainPlanner::is_image(const TracedHits& hits, int k) const {
-  return localise_.is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
+  return localise_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
 }
 
 // Nothing where this path is none of those that are made of legs.
@@ -80,7 +83,7 @@ std::optional<ChainPlanner::Ends> ChainPlanner::ends_of(const TracedHits& hits) 
       if (slides_ && ends.last >= 0 && !hits.is_diffuse(ends.last)) return {};
       if (ends.first < 0) ends.first = k;
       ends.last = k;
-    } else if (!localise_.is_plane(hits.hit(k).mesh_id)) {
+    } else if (!localise_->is_plane(hits.hit(k).mesh_id)) {
       return {};
     }
   }
@@ -89,14 +92,14 @@ std::optional<ChainPlanner::Ends> ChainPlanner::ends_of(const TracedHits& hits) 
 
 bool ChainPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  if (!paths_.jones.empty()) return false;
-  const TracedHits hits{paths_.hits_of(path), paths_.num_bounces[p], paths_.diffuse[p], (paths_.flags[p] & kReversedPath) != 0};
+  if (!paths_->jones.empty()) return false;
+  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], (paths_->flags[p] & kReversedPath) != 0};
   const std::optional<Ends> ends = ends_of(hits);
   if (!ends || ends->first < 0) return false;
-  const bool is_coherent = paths_.diffuse[p] == 0;
-  if (is_coherent && localise_.may_stretch(hits.hit(ends->last).mesh_id)) return false;
+  const bool is_coherent = paths_->diffuse[p] == 0;
+  if (is_coherent && localise_->may_stretch(hits.hit(ends->last).mesh_id)) return false;
   plan_.chains.push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends),
-                          hits.is_reversed, is_coherent, std::complex<double>(paths_.weight[p])});
+                          hits.is_reversed, is_coherent, std::complex<double>(paths_->weight[p])});
   return true;
 }
 
@@ -168,7 +171,7 @@ uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
 }
 
 uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends) {
-  if (ends.first == ends.last && !localise_.may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
+  if (ends.first == ends.last && !localise_->may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
   const int count = ends.last - ends.first + 1;
   ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
   for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);

@@ -52,11 +52,11 @@ struct ChainPlan {
   void clear();
 };
 
-// Makes plans one after the other, and keeps its memory; for one thread at a time.
+// Makes plans one after the other, and keeps its memory from record to record; for one thread at a time.
 class ChainPlanner {
  public:
-  // All must outlive it.
-  ChainPlanner(const Paths& paths, const Localiser& localise, SpecularPoints specular);
+  // For blocks of this record from now on. All must outlive its use.
+  void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular);
   // For the paths of these indices; valid until the next call. Paths stand among `others` that are polarised, are made of mirrors
   // alone, have sliding hits that move, or a launch cell on a mesh that may stretch.
   const ChainPlan& operator()(std::span<const int64_t> indices);
@@ -86,9 +86,9 @@ class ChainPlanner {
   uint32_t leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers);
   uint32_t inner(const TracedHits& hits, const Ends& ends);
 
-  const Paths& paths_;
-  const Localiser& localise_;
-  bool slides_;
+  const Paths* paths_ = nullptr;
+  const Localiser* localise_ = nullptr;
+  bool slides_ = false;
   ChainPlan plan_;
   Known last_start_, last_end_;
   const Hit* last_hit_ = nullptr;  // whose point was looked for last: an end of a path is often that of the next

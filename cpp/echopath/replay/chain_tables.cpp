@@ -234,4 +234,9 @@ void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const L
   inner.find(plan, points);
 }
 
+size_t ChainTables::num_bytes() const {
+  return points.rows.num_bytes() + mirrors.num_bytes() + images[0].rows.num_bytes() + images[1].rows.num_bytes() +
+         legs.rows.num_bytes() + inner.rows.num_bytes();
+}
+
 }  // namespace echopath

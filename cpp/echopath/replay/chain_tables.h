@@ -76,6 +76,7 @@ struct ChainTables {
   ChainInner inner;
 
   void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+  size_t num_bytes() const;  // of what is kept for the next block
 };
 
 }  // namespace echopath

@@ -39,6 +39,7 @@ class ChainEvaluation {
   // Of the plan and level of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
   // the first antenna there between the first and the last node. Its amplitude has a root on the way.
   void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
+  size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
 
  private:
   static constexpr size_t kTogether = 8;  // paths whose values are written side by side: a line of the cache for each node

@@ -21,6 +21,7 @@ class NodeRows {
     reserve(num_entries * num_rows * stride_);
   }
 
+  size_t num_bytes() const { return capacity_ * sizeof(double); }  // of its memory
   size_t num_nodes() const { return num_nodes_; }
   size_t stride() const { return stride_; }
   double* row(size_t entry, size_t row) { return values_.get() + (entry * num_rows_ + row) * stride_; }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/replay/chirp_derivatives.h"
-#include "echopath/replay/evaluate_chains.h"
 #include "echopath/replay/node_tails.h"
 
 namespace echopath {
@@ -68,12 +68,6 @@ void keep(std::span<const size_t> places, Echoes& echoes) {
 
 }  // namespace
 
-// Memory of one block, kept for the next.
-struct Replayer::Workspace {
-  ChainPlanner plan_chains;
-  ChainEvaluation evaluate_chains;
-};
-
 struct Replayer::Target {
   const NodeLevel& level;
   size_t first_channel;  // of the level's
@@ -85,37 +79,24 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      antennas_have_phase_(has_phase(radar)), localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_) {
+      antennas_have_phase_(has_phase(radar)), localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_), memory_(ReplayMemory::take()) {
   radio_.specular = settings.specular;
 }
 
-Replayer::~Replayer() = default;
+Replayer::~Replayer() { ReplayMemory::leave(std::move(memory_)); }
 
 int Replayer::num_channels() const { return static_cast<int>(radar_.transmitters.size() * num_receivers()); }
-
-std::unique_ptr<Replayer::Workspace> Replayer::take_workspace() const {
-  const std::lock_guard lock(workspaces_mutex_);
-  if (workspaces_.empty()) return std::make_unique<Workspace>(Workspace{ChainPlanner(paths_, localise_, settings_.specular), {}});
-  std::unique_ptr<Workspace> last = std::move(workspaces_.back());
-  workspaces_.pop_back();
-  return last;
-}
-
-void Replayer::give_back(std::unique_ptr<Workspace> workspace) const {
-  const std::lock_guard lock(workspaces_mutex_);
-  workspaces_.push_back(std::move(workspace));
-}
 
 std::vector<Echoes> Replayer::take_echoes(std::span<const int64_t> paths, size_t num_channels, size_t num_nodes) const {
   std::vector<Echoes> echoes;
   for (size_t channel = 0; channel < num_channels; ++channel) {
-    echoes.push_back(spare_.take(num_nodes * paths.size()));
+    echoes.push_back(memory_->echoes.take(num_nodes * paths.size()));
     echoes.back().num_echoes = static_cast<int64_t>(paths.size());
   }
   return echoes;
 }
 
-void Replayer::recycle(std::span<Echoes> echoes) const { spare_.give(echoes); }
+void Replayer::recycle(std::span<Echoes> echoes) const { memory_->echoes.give(echoes); }
 
 // Of all channels of the level.
 std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned) const {
@@ -134,7 +115,8 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
     for (const Target& target : targets) evaluate_one_by_one(paths, all_places(paths.size()), target);
     return;
   }
-  std::unique_ptr<Workspace> workspace = take_workspace();
+  std::unique_ptr<ReplayWorkspace> workspace = memory_->take_workspace();
+  workspace->plan_chains.begin(paths_, localise_, settings_.specular);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     const std::span<const int64_t> part = paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin));
     const ChainPlan& plan = workspace->plan_chains(part);
@@ -145,7 +127,7 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
       evaluate_one_by_one(part, plan.others, target);
     }
   }
-  give_back(std::move(workspace));
+  memory_->give(std::move(workspace));
 }
 
 void Replayer::evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, const Target& target) const {

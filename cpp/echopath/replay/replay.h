@@ -5,11 +5,10 @@
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move with
 // the point of reflection by one Newton step (specular_slide.h).
 #include <memory>
-#include <mutex>
 #include <span>
 
 #include "echopath/replay/node_levels.h"
-#include "echopath/replay/spare_echoes.h"
+#include "echopath/replay/replay_memory.h"
 
 namespace echopath {
 
@@ -52,12 +51,9 @@ class Replayer {
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
-  struct Workspace;
   // A level, and where what it says of some channels goes.
   struct Target;
   struct NeededOrder;
-  std::unique_ptr<Workspace> take_workspace() const;
-  void give_back(std::unique_ptr<Workspace> workspace) const;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(std::span<const int64_t> paths, size_t num_channels, size_t num_nodes) const;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned = nullptr) const;
@@ -73,9 +69,7 @@ class Replayer {
   bool antennas_have_phase_ = false;
   Localiser localise_;
   NodeLevels levels_;
-  mutable SpareEchoes spare_;
-  mutable std::mutex workspaces_mutex_;
-  mutable std::vector<std::unique_ptr<Workspace>> workspaces_;  // not in use
+  std::unique_ptr<ReplayMemory> memory_;
 };
 
 }  // namespace echopath

@@ -29,4 +29,10 @@ void SpareEchoes::give(std::span<Echoes> echoes) {
   }
 }
 
+size_t SpareEchoes::num_bytes() const {
+  size_t values = 0;
+  for (const auto& [room, echoes] : by_room_) values += room;
+  return values * (sizeof(double) + sizeof(std::complex<double>));
+}
+
 }  // namespace echopath

@@ -15,6 +15,7 @@ class SpareEchoes {
   // Echoes without group and with room for that many delays and amplitudes each, which are not set.
   Echoes take(size_t num_values);
   void give(std::span<Echoes> echoes);
+  size_t num_bytes() const;  // of all that are here
 
  private:
   std::mutex mutex_;

@@ -137,7 +137,8 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Paths paths = record(radar);
   const std::vector<int64_t> indices = all_of(paths);
   const Localiser localise(paths, hit_patches(paths));
-  ChainPlanner planner(paths, localise, SpecularPoints::kMaterial);
+  ChainPlanner planner;
+  planner.begin(paths, localise, SpecularPoints::kMaterial);
   const ChainPlan& plan = planner(indices);
   EXPECT_EQ(plan.chains.size() + plan.others.size(), indices.size());
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two

@@ -148,7 +148,8 @@ void bind_sim(py::module_& m) {
     settings.phase_tolerance = phase_tolerance;
     return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
   }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
-        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels and returns how many that were.");
+        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels, one echo for paths over the "
+        "same hits as synthesis has them, and returns how many path-chirps that were.");
   m.def("replay_error", [](const Paths& paths, const Radar& radar, const std::vector<int>& chirps, double phase_tolerance) {
     ReplaySettings settings;
     settings.phase_tolerance = phase_tolerance;

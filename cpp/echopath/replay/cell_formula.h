@@ -35,8 +35,9 @@ struct CellWaves {
 };
 
 // Matrix h of the cell, in rad per cell^2.
-template <class Real>
-ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const CellShape& cell, const CellWaves<Real>& at, double wavenumber) {
+// Shape: CellShape, or one like it for as many cells as Real has lanes.
+template <class Shape, class Real>
+ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellWaves<Real>& at, double wavenumber) {
   FootprintPhaseOf<Real> phase;
   Real* const h[3] = {&phase.h11, &phase.h12, &phase.h22};
   const Real bends = at.side * (at.cos_in + at.cos_out);

@@ -3,4 +3,5 @@
 #define ECHOPATH_KERNELS chain_kernels_avx2
 #define ECHOPATH_LANES 4
 #include "echopath/replay/chain_kernels_body.h"
+#include "echopath/replay/direct_kernels_body.h"
 #endif

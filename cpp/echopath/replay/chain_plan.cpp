@@ -11,6 +11,7 @@ constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high}
 }  // namespace
 
 void ChainPlan::clear() {
+  direct.clear();
   points.clear();
   mirrors.clear();
   images.assign(1, {0, kNone});
@@ -45,15 +46,17 @@ bool ChainPlanner::is_same(const Known& known, const Known& run) {
          std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-void ChainPlanner::begin(const Paths& paths, const Localiser& localise, SpecularPoints specular) {
+void ChainPlanner::begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct) {
   paths_ = &paths;
   localise_ = &localise;
   slides_ = specular != SpecularPoints::kMaterial;
+  with_direct_ = with_direct && paths.jones.empty();
 }
 
 const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
+    if (add_direct(place, indices[place])) continue;
     if (!add_chain(place, indices[place])) plan_.others.push_back(place);
   }
   return plan_;
@@ -88,6 +91,29 @@ std::optional<ChainPlanner::Ends> ChainPlanner::ends_of(const TracedHits& hits) 
     }
   }
   return ends;
+}
+
+bool ChainPlanner::is_direct(size_t path) const {
+  if (!with_direct_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
+  const uint32_t mesh = paths_->hits_of(static_cast<int64_t>(path))->mesh_id;
+  if (!localise_->is_plane(mesh) || localise_->may_stretch(mesh)) return false;
+  if (paths_->diffuse[path] != 0) return true;
+  if (localise_->is_mirror(mesh) || paths_->stratum[path] >= paths_->frame.strata.size()) return false;
+  return paths_->curved_cell.empty() || paths_->curved_cell[path] == std::array<float, 7>{};
+}
+
+// The coherent and the diffuse path of a point follow each other.
+bool ChainPlanner::add_direct(size_t place, int64_t path) {
+  const auto p = static_cast<size_t>(path);
+  if (!is_direct(p)) return false;
+  const Hit* hit = paths_->hits_of(path);
+  const size_t kind = paths_->diffuse[p] != 0;
+  constexpr int64_t kNone = ChainPlan::Direct::kNoPath;
+  const bool is_known = !plan_.direct.empty() && plan_.direct.back().hit == hit && plan_.direct.back().path[kind] == kNone;
+  if (!is_known) plan_.direct.push_back({hit, {kNone, kNone}, {0, 0}});
+  plan_.direct.back().path[kind] = path;
+  plan_.direct.back().place[kind] = place;
+  return true;
 }
 
 bool ChainPlanner::add_chain(size_t place, int64_t path) {

@@ -40,7 +40,16 @@ struct ChainPlan {
     std::complex<double> weight;
   };
 
-  std::vector<Hit> points;            // distinct hits
+  // What one point sends straight back: at most a coherent and a diffuse path.
+  struct Direct {
+    static constexpr int64_t kNoPath = -1;
+    const Hit* hit;
+    int64_t path[2];  // DirectSlots::Kind
+    size_t place[2];
+  };
+
+  std::vector<Direct> direct;         // by place
+  std::vector<Hit> points;            // distinct hits, of the chains
   std::vector<Hit> mirrors;           // distinct triangles, at their first corner
   std::vector<Image> images;
   std::vector<Leg> legs;
@@ -56,7 +65,8 @@ struct ChainPlan {
 class ChainPlanner {
  public:
   // For blocks of this record from now on. All must outlive its use.
-  void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular);
+  // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
+  void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct);
   // For the paths of these indices; valid until the next call. Paths stand among `others` that are polarised, are made of mirrors
   // alone, have sliding hits that move, or a launch cell on a mesh that may stretch.
   const ChainPlan& operator()(std::span<const int64_t> indices);
@@ -76,6 +86,8 @@ class ChainPlanner {
   static bool is_same(const Known& known, const Known& run);
   bool is_image(const TracedHits& hits, int k) const;
   std::optional<Ends> ends_of(const TracedHits& hits) const;
+  bool is_direct(size_t path) const;
+  bool add_direct(size_t place, int64_t path);
   bool add_chain(size_t place, int64_t path);
   uint32_t start_leg(const TracedHits& hits, int first);
   uint32_t end_leg(const TracedHits& hits, int last);
@@ -88,7 +100,7 @@ class ChainPlanner {
 
   const Paths* paths_ = nullptr;
   const Localiser* localise_ = nullptr;
-  bool slides_ = false;
+  bool slides_ = false, with_direct_ = false;
   ChainPlan plan_;
   Known last_start_, last_end_;
   const Hit* last_hit_ = nullptr;  // whose point was looked for last: an end of a path is often that of the next

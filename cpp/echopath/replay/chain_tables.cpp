@@ -49,7 +49,8 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
   pad(images.rows, to, LegToMeasure::kNumImageRows);
 }
 
-// Whole exponents that kernels can do, else LegToMeasure::kNoExponent.
+}  // namespace
+
 int exponent_of(const AntennaPattern& pattern) {
   if (pattern.kind == AntennaPattern::Kind::kIsotropic) return 0;
   if (pattern.kind == AntennaPattern::Kind::kTable || pattern.exponent > kMostExponent) return LegToMeasure::kNoExponent;
@@ -57,6 +58,8 @@ int exponent_of(const AntennaPattern& pattern) {
   // Behind the antenna there is no gain even where the exponent is 0, which the kernel takes as a gain in all directions.
   return whole == pattern.exponent && whole > 0 ? whole : LegToMeasure::kNoExponent;
 }
+
+namespace {
 
 // Turns the cosines that the kernel left into gains and factors.
 void finish_leg(const AntennaImages& images, size_t entry, const double* point, double* out, size_t stride) {

@@ -65,6 +65,9 @@ struct ChainInner {
   void find(const ChainPlan& plan, const PosedPoints& points);
 };
 
+// Of a gain, where it is a whole one that kernels can do, else LegToMeasure::kNoExponent.
+int exponent_of(const AntennaPattern& pattern);
+
 // An inner part as a path of its own, over the hits of `plan.inner_points`.
 LocalPath path_of(const ChainPlan::Inner& inner);
 

@@ -37,7 +37,6 @@ void fill_derivatives(const TimeSampling& from, const double* delay, Echoes& ech
     for (size_t d = 1; d < stride; ++d) {
       double* to = echoes.delay.data() + (chirp * stride + d) * count;
       run_simd<weighted_sum>(nodes, weights[d - 1]->data() + chirp * order, order, count, to);
-      std::fill_n(echoes.amplitude.data() + (chirp * stride + d) * count, count, 0.0);
     }
   }
 }

@@ -9,18 +9,20 @@
 
 namespace echopath {
 
-// Where the values of one channel go, a row of paths for each node: lengths (m) times `scale`, amplitudes in sqrt(W).
+// Where the values of one channel go, a row of echoes for each node: lengths (m) times `scale`, amplitudes in sqrt(W).
 struct ChannelNodes {
   double* length;
   std::complex<double>* amplitude;
   size_t stride;      // between nodes
   size_t first_path;  // places count from there
   double scale;
+  const uint32_t* echo_of = nullptr;  // [path] to which it is added, amplitudes are 0 before; null: each has its own
 
+  size_t echo(size_t place) const { return echo_of ? echo_of[first_path + place] : first_path + place; }
   void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
-    const size_t at = node * stride + first_path + place;
+    const size_t at = node * stride + echo(place);
     length[at] = scale * length_there;
-    amplitude[at] = amplitude_there;
+    amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
   }
 };
 

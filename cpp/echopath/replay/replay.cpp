@@ -73,13 +73,16 @@ struct Replayer::Target {
   size_t first_channel;  // of the level's
   std::vector<ChannelNodes> nodes;
   uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
+  bool with_amplitudes = true;  // else only lengths are of interest
 
   ChannelSpan channels() const { return {first_channel, nodes}; }
 };
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      antennas_have_phase_(has_phase(radar)), localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_), memory_(ReplayMemory::take()) {
+      antennas_have_phase_(has_phase(radar)), has_direct_(can_evaluate_directly(radar)),
+      localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_),
+      memory_(ReplayMemory::take()) {
   radio_.specular = settings.specular;
 }
 
@@ -87,21 +90,39 @@ Replayer::~Replayer() { ReplayMemory::leave(std::move(memory_)); }
 
 int Replayer::num_channels() const { return static_cast<int>(radar_.transmitters.size() * num_receivers()); }
 
-std::vector<Echoes> Replayer::take_echoes(std::span<const int64_t> paths, size_t num_channels, size_t num_nodes) const {
+std::vector<Echoes> Replayer::take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const {
   std::vector<Echoes> echoes;
   for (size_t channel = 0; channel < num_channels; ++channel) {
-    echoes.push_back(memory_->echoes.take(num_nodes * paths.size()));
-    echoes.back().num_echoes = static_cast<int64_t>(paths.size());
+    echoes.push_back(memory_->echoes.take(num_nodes * num_echoes));
+    echoes.back().num_echoes = static_cast<int64_t>(num_echoes);
   }
   return echoes;
 }
 
 void Replayer::recycle(std::span<Echoes> echoes) const { memory_->echoes.give(echoes); }
 
+JoinRule Replayer::join_rule(std::vector<const std::vector<uint32_t>*> labels) const {
+  return {paths_, localise_, settings_.specular, std::move(labels)};
+}
+
+std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<const uint8_t> joined) const {
+  const auto num_left = std::count(joined.begin(), joined.end(), 0);
+  if (static_cast<size_t>(num_left) == joined.size()) return of_paths;
+  std::vector<Echoes> echoes;
+  for (Echoes& all : of_paths) {
+    Echoes& to = echoes.emplace_back(memory_->echoes.take(static_cast<size_t>(num_left * all.sampling.num_nodes)));
+    to.num_echoes = num_left;
+    join(all, joined, to);
+    to.sampling = std::move(all.sampling);
+  }
+  recycle(of_paths);
+  return echoes;
+}
+
 // Of all channels of the level.
 std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned) const {
   const size_t num_channels = level.instants.front().transmitters.size() * num_receivers();
-  std::vector<Echoes> echoes = take_echoes(paths, num_channels, level.instants.size());
+  std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, level.instants.size());
   for (size_t channel = 0; channel < num_channels; ++channel) {
     echoes[channel].sampling = level.nodes.sampling[channel / num_receivers()];
   }
@@ -116,14 +137,17 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
     return;
   }
   std::unique_ptr<ReplayWorkspace> workspace = memory_->take_workspace();
-  workspace->plan_chains.begin(paths_, localise_, settings_.specular);
+  workspace->plan_chains.begin(paths_, localise_, settings_.specular, has_direct_);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     const std::span<const int64_t> part = paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin));
     const ChainPlan& plan = workspace->plan_chains(part);
     for (Target& target : targets) {
       for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
       workspace->evaluate_chains(plan, localise_, target.level.view(), radio_, target.channels());
-      if (target.turned) workspace->evaluate_chains.mark_turned(plan, target.turned + begin);
+      uint8_t* const turned = target.turned ? target.turned + begin : nullptr;
+      const DirectEvaluation::Wanted wanted{turned, target.with_amplitudes};
+      workspace->evaluate_direct(plan, localise_, target.level.view(), radio_, target.channels(), wanted);
+      if (turned) workspace->evaluate_chains.mark_turned(plan, turned);
       evaluate_one_by_one(part, plan.others, target);
     }
   }
@@ -159,13 +183,21 @@ std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, int transm
   return at_nodes(indices, levels_.exact(transmitter));
 }
 
-std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, int transmitter) const {
+std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, int transmitter,
+                                       std::span<const uint8_t> joined) const {
   const NodeLevel &polynomial = levels_.polynomial(index), &centres = levels_.centres(transmitter);
   const TimeSampling sampling = derivative_sampling(radar_.waveform.num_chirps, levels_.derivatives());
-  std::vector<Echoes> lengths = take_echoes(indices, num_receivers(), polynomial.instants.size());
-  std::vector<Echoes> echoes = take_echoes(indices, num_receivers(), static_cast<size_t>(sampling.num_nodes));
+  const std::vector<uint32_t> echo_of = echoes_of(joined);
+  const size_t num_echoes = joined.empty() ? indices.size() : echo_of.back() + 1;
+  std::vector<Echoes> lengths = take_echoes(num_echoes, num_receivers(), polynomial.instants.size());
+  std::vector<Echoes> echoes = take_echoes(num_echoes, num_receivers(), static_cast<size_t>(sampling.num_nodes));
   Target targets[] = {{polynomial, static_cast<size_t>(transmitter) * num_receivers(), rows_of(lengths)},
                       {centres, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
+  targets[0].with_amplitudes = false;
+  for (Echoes& channel : echoes) std::fill(channel.amplitude.begin(), channel.amplitude.end(), 0.0);
+  for (Target& target : targets) {
+    for (ChannelNodes& nodes : target.nodes) nodes.echo_of = joined.empty() ? nullptr : echo_of.data();
+  }
   evaluate_at(indices, targets);
   for (size_t channel = 0; channel < echoes.size(); ++channel) {
     echoes[channel].sampling = sampling;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "echopath/replay/joined_echoes.h"
 #include "echopath/replay/node_levels.h"
 #include "echopath/replay/replay_memory.h"
 
@@ -39,9 +40,15 @@ class Replayer {
   std::vector<Echoes> exact(std::span<const int64_t> paths, int transmitter) const;
   // Likewise, at num_nodes_by_chirp() nodes: as they are in the middle of each chirp, with the derivatives of lengths by the
   // polynomial of `level`, which must follow them. What fades behind an edge of its surface has a root in its amplitude, which no
-  // polynomial follows.
-  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int level, int transmitter) const;
+  // polynomial follows. Paths that are `joined` go into the echo of the one before (JoinRule); none where it is empty.
+  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int level, int transmitter,
+                               std::span<const uint8_t> joined = {}) const;
   int64_t num_nodes_by_chirp() const;
+
+  // Which paths are to make one echo with others, unless they differ in `labels` ([P] each, which must outlive the rule).
+  JoinRule join_rule(std::vector<const std::vector<uint32_t>*> labels) const;
+  // Echoes of paths, of which those that are `joined` go into the one before.
+  std::vector<Echoes> joined(std::vector<Echoes> of_paths, std::span<const uint8_t> joined) const;
 
   // Takes back echoes that are done with, for their memory.
   void recycle(std::span<Echoes> echoes) const;
@@ -55,7 +62,7 @@ class Replayer {
   struct Target;
   struct NeededOrder;
   size_t num_receivers() const { return radar_.receivers.size(); }
-  std::vector<Echoes> take_echoes(std::span<const int64_t> paths, size_t num_channels, size_t num_nodes) const;
+  std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned = nullptr) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
   void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, const Target& target) const;
@@ -66,7 +73,7 @@ class Replayer {
   const Radar& radar_;
   ReplaySettings settings_;
   RadioConstants radio_;
-  bool antennas_have_phase_ = false;
+  bool antennas_have_phase_ = false, has_direct_ = false;
   Localiser localise_;
   NodeLevels levels_;
   std::unique_ptr<ReplayMemory> memory_;

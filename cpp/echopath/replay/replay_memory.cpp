@@ -39,7 +39,9 @@ void ReplayMemory::give(std::unique_ptr<ReplayWorkspace> workspace) {
 
 size_t ReplayMemory::num_bytes() const {
   size_t bytes = echoes.num_bytes();
-  for (const auto& workspace : workspaces_) bytes += workspace->evaluate_chains.num_bytes();
+  for (const auto& workspace : workspaces_) {
+    bytes += workspace->evaluate_chains.num_bytes() + workspace->evaluate_direct.num_bytes();
+  }
   return bytes;
 }
 

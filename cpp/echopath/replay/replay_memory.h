@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "echopath/replay/evaluate_chains.h"
+#include "echopath/replay/direct_evaluation.h"
 #include "echopath/replay/spare_echoes.h"
 
 namespace echopath {
@@ -13,6 +13,7 @@ namespace echopath {
 struct ReplayWorkspace {
   ChainPlanner plan_chains;
   ChainEvaluation evaluate_chains;
+  DirectEvaluation evaluate_direct;
 };
 
 // Thread-safe.

@@ -52,19 +52,25 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
                    Job* job)
     : radar_(radar) {
   settings.replay.per_sample = settings.synthesis.per_sample;
-  const ReplayStream stream(paths, radar, settings.replay, job);
+  ReplayStream stream(paths, radar, settings.replay, job);
+  std::vector<const std::vector<uint32_t>*> groups;
   for (const PathGroups& way : ways) {
+    if (way.group) groups.push_back(way.group);
     synthesizers_.emplace_back(radar.waveform, stream.num_channels(), way.num_groups, paths.num_paths(),
                                settings.synthesis);
   }
+  stream.join(groups);
   std::optional<PassProbe> probe;
-  if (settings.probe) probe.emplace(paths, radar, stream.replayer(), settings.synthesis, *settings.probe);
+  if (settings.probe) {
+    probe.emplace(paths, radar, stream.replayer(), settings.synthesis, *settings.probe);
+    stream.watch(&*probe);
+  }
   if (job) job->start(paths.num_paths() * stream.num_channels() * static_cast<int64_t>(ways.size()));
-  stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
-    if (probe) probe->see(channel, blocks, indices);
+  stream.run([&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
     for (size_t way = 0; way < ways.size(); ++way) {
-      set_groups(ways[way], indices, blocks);
+      set_groups(ways[way], of.first, blocks);
       synthesizers_[way].add(channel, blocks, job);
+      if (job) job->advance(of.count - static_cast<int64_t>(of.first.size()));
     }
   });
   if (probe) probe->finish(*settings.probe, job);

@@ -13,7 +13,7 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kBlocksInFlight = 16;        // fixed: results must not depend on the number of threads
+constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
 constexpr int64_t kEchoesInFlight = 1 << 17;   // paths x channels; as many are handed over meanwhile
 constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
 // What a block has at its nodes stays in the second-level cache. No power of two: rows of nodes would share the sets of the first.
@@ -90,17 +90,15 @@ class PathsByLevel {
   std::vector<std::vector<int64_t>> lists_;
 };
 
-// Paths less those that blocks of them left, in their order.
-std::vector<int64_t> without(const std::vector<std::vector<FailedPath>>& left, std::span<const int64_t> paths) {
+// Paths less those that were left, in their order.
+std::vector<int64_t> without(const std::vector<FailedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
   rest.reserve(paths.size());
   auto next = paths.begin();
-  for (const std::vector<FailedPath>& some : left) {
-    for (const FailedPath& failed : some) {
-      const auto end = std::find(next, paths.end(), failed.path);
-      rest.insert(rest.end(), next, end);
-      next = end + 1;
-    }
+  for (const FailedPath& failed : left) {
+    const auto end = std::find(next, paths.end(), failed.path);
+    rest.insert(rest.end(), next, end);
+    next = end + 1;
   }
   rest.insert(rest.end(), next, paths.end());
   return rest;
@@ -108,11 +106,18 @@ std::vector<int64_t> without(const std::vector<std::vector<FailedPath>>& left, s
 
 }  // namespace
 
+struct ReplayStream::Block {
+  std::vector<Echoes> channels;
+  std::vector<int64_t> paths;    // of each echo, the first
+  int64_t num_paths = 0;         // of all echoes
+  std::vector<FailedPath> left;
+};
+
 // Blocks that are replayed together.
 struct ReplayStream::Window {
   int first_channel = 0;
-  std::vector<std::vector<Echoes>> by_channel;
-  std::vector<int64_t> paths;  // of all blocks, one after the other
+  size_t num_channels = 0;
+  std::vector<Block> blocks;
 };
 
 // The way to the sink.
@@ -128,11 +133,18 @@ class ReplayStream::HandOver {
   }
 
   void finish() {
-    for (size_t channel = 0; channel < last_.by_channel.size(); ++channel) {
+    std::vector<int64_t> paths;
+    int64_t num_paths = 0;
+    for (const Block& block : last_.blocks) {
+      paths.insert(paths.end(), block.paths.begin(), block.paths.end());
+      num_paths += block.num_paths;
+    }
+    std::vector<Echoes> echoes(last_.blocks.size());
+    for (size_t channel = 0; channel < last_.num_channels; ++channel) {
       if (stream_.job_) stream_.job_->throw_if_cancelled();
-      std::vector<Echoes>& blocks = last_.by_channel[channel];
-      sink_(last_.first_channel + static_cast<int>(channel), blocks, last_.paths);
-      stream_.replayer_.recycle(blocks);
+      for (size_t i = 0; i < echoes.size(); ++i) echoes[i] = std::move(last_.blocks[i].channels[channel]);
+      sink_(last_.first_channel + static_cast<int>(channel), echoes, {paths, num_paths});
+      stream_.replayer_.recycle(echoes);
     }
     last_ = {};
   }
@@ -153,7 +165,7 @@ void ReplayStream::run(const Sink& sink) const {
 }
 
 void ReplayStream::add_still(const std::vector<int64_t>& paths, HandOver& out) const {
-  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto&) { return replayer_.still(part); }, out);
+  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
 }
 
 // Each path at the order that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
@@ -162,7 +174,7 @@ void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, HandOv
   std::vector<std::vector<int64_t>> by_chirp(by_level.size());
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
     const Extent extent{0, num_channels(), levels.num_nodes(level)};
-    const Replay replay = [&](auto part, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
+    const Replay replay = [&](auto part, auto, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
     for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, out)) {
       (failed.by_chirp ? by_chirp : by_level)[static_cast<size_t>(failed.next_level)].push_back(failed.path);
     }
@@ -176,11 +188,11 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level,
   const NodeLevels& levels = replayer_.levels();
   const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
-    run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp()},
-               [&](auto part, auto&) { return replayer_.by_chirp(part, level, transmitter); }, out);
+    run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp(), true},
+               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, level, transmitter, joined); }, out);
   }
   run_blocks(by_level.back(), {first, num_receivers, levels.num_exact_nodes()},
-             [&](auto part, auto&) { return replayer_.exact(part, transmitter); }, out);
+             [&](auto part, auto, auto&) { return replayer_.exact(part, transmitter); }, out);
   levels.forget_chirps(transmitter);
 }
 
@@ -205,21 +217,47 @@ std::vector<FailedPath> ReplayStream::replay_window(std::span<const int64_t> pat
                                                     const Extent& extent, const Replay& replay, Window& window) const {
   const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
-  window.by_channel.resize(static_cast<size_t>(extent.num_channels));
-  for (std::vector<Echoes>& blocks : window.by_channel) blocks.resize(static_cast<size_t>(num_blocks));
-  std::vector<std::vector<FailedPath>> left(static_cast<size_t>(num_blocks));
+  window.num_channels = static_cast<size_t>(extent.num_channels);
+  window.blocks.resize(static_cast<size_t>(num_blocks));
   parallel_for(num_blocks, [&](int64_t i) {
     if (job_) job_->throw_if_cancelled();
-    const auto block = static_cast<size_t>(i);
     const int64_t first = i * block_size;
     const auto part = paths.subspan(static_cast<size_t>(first), static_cast<size_t>(std::min(block_size, count - first)));
-    std::vector<Echoes> channels = replay(part, left[block]);
-    for (size_t channel = 0; channel < channels.size(); ++channel) window.by_channel[channel][block] = std::move(channels[channel]);
+    window.blocks[static_cast<size_t>(i)] = run_block(part, static_cast<size_t>(i), extent, replay);
   });
-  window.paths = without(left, paths);
+  if (watcher_) watcher_->end_blocks();
   std::vector<FailedPath> all_left;
-  for (const std::vector<FailedPath>& some : left) all_left.insert(all_left.end(), some.begin(), some.end());
+  for (const Block& block : window.blocks) all_left.insert(all_left.end(), block.left.begin(), block.left.end());
   return all_left;
+}
+
+bool ReplayStream::is_watched(const Extent& extent) const {
+  for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
+    if (watcher_->watches(extent.first_channel + i)) return true;
+  }
+  return false;
+}
+
+ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size_t index, const Extent& extent,
+                                            const Replay& replay) const {
+  Block block;
+  std::vector<uint8_t> joined;
+  const bool joins_at_once = join_rule_ && extent.joins && !is_watched(extent);
+  if (joins_at_once) joined = (*join_rule_)(paths);
+  block.channels = replay(paths, joined, block.left);
+  block.paths = without(block.left, paths);
+  block.num_paths = static_cast<int64_t>(block.paths.size());
+  if (!joins_at_once) {
+    for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
+      const int channel = extent.first_channel + i;
+      if (watcher_->watches(channel)) watcher_->see(channel, index, block.channels[static_cast<size_t>(i)], block.paths);
+    }
+    if (!join_rule_) return block;
+    joined = (*join_rule_)(block.paths);
+    block.channels = replayer_.joined(std::move(block.channels), joined);
+  }
+  block.paths = first_of(block.paths, joined);
+  return block;
 }
 
 namespace {
@@ -237,15 +275,16 @@ void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_c
 
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job) {
   constexpr int64_t kEchoes = EchoStates::kCapacity / 4;
-  const ReplayStream stream(paths, radar, settings, job);
+  ReplayStream stream(paths, radar, settings, job);
+  stream.join({});
   int64_t path_chirps = 0;
-  stream.run([&](int, std::span<Echoes> blocks, std::span<const int64_t>) {
+  stream.run([&](int, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
+    const int num_chirps = blocks.front().sampling.is_static() ? 1 : radar.waveform.num_chirps;
+    path_chirps += of.count * num_chirps;
     for (const Echoes& echoes : blocks) {
-      const int num_chirps = echoes.sampling.is_static() ? 1 : radar.waveform.num_chirps;
       parallel_for((echoes.num_echoes + kEchoes - 1) / kEchoes, [&](int64_t i) {
         evaluate_chirps(echoes, i * kEchoes, std::min(echoes.num_echoes, (i + 1) * kEchoes), num_chirps);
       });
-      path_chirps += echoes.num_echoes * num_chirps;
     }
   });
   return path_chirps;
@@ -308,7 +347,8 @@ ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySet
   }
   const ReplayStream stream(paths, radar, settings, job);
   ReplayError error;
-  stream.run([&](int channel, std::span<Echoes> blocks, std::span<const int64_t> indices) {
+  stream.run([&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
+    std::span<const int64_t> indices = of.first;
     for (const Echoes& echoes : blocks) {
       const auto count = static_cast<size_t>(echoes.num_echoes);
       ErrorOfBlock(stream.replayer(), paths, radar, channel).find(echoes, indices.first(count), chirps, error);

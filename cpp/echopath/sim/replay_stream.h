@@ -1,6 +1,7 @@
 #pragma once
 // Blocks of paths on their way through replay.
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,17 +9,40 @@
 
 namespace echopath {
 
+// Sees every path's own echo before it is joined with others.
+class PathWatcher {
+ public:
+  virtual ~PathWatcher() = default;
+  virtual bool watches(int channel) const = 0;
+  // Of one of the blocks in flight, below ReplayStream::kBlocksInFlight; many at a time.
+  virtual void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) = 0;
+  // All blocks in flight have been seen.
+  virtual void end_blocks() = 0;
+};
+
 // Hands the echoes of all paths over in an order and in blocks that depend on the paths alone, many blocks at a time.
 class ReplayStream {
  public:
-  // Blocks of one channel, which may be changed, and the indices of the paths of all of them, one after the other. Each path
-  // comes once.
-  using Sink = std::function<void(int channel, std::span<Echoes> blocks, std::span<const int64_t> indices)>;
+  static constexpr int64_t kBlocksInFlight = 16;  // fixed: results must not depend on the number of threads
+
+  // What some blocks are the echoes of.
+  struct EchoPaths {
+    std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those that were joined
+    int64_t count;                   // of all paths
+  };
+  // Blocks of one channel, which may be changed. Each path comes once.
+  using Sink = std::function<void(int channel, std::span<Echoes> blocks, const EchoPaths& paths)>;
 
   // Paths and radar must outlive the stream. Raises what Replayer does.
   ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
       : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
         replayer_(paths, radar, settings), job_(job) {}
+
+  // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive the
+  // stream).
+  void join(std::vector<const std::vector<uint32_t>*> labels) { join_rule_.emplace(replayer_.join_rule(std::move(labels))); }
+  // The watcher must outlive the stream.
+  void watch(PathWatcher* watcher) { watcher_ = watcher; }
 
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
@@ -28,30 +52,37 @@ class ReplayStream {
   void run(const Sink& sink) const;
 
  private:
-  using Replay = std::function<std::vector<Echoes>(std::span<const int64_t>, std::vector<FailedPath>&)>;
+  using Replay = std::function<std::vector<Echoes>(std::span<const int64_t> paths, std::span<const uint8_t> joined,
+                                                   std::vector<FailedPath>& left)>;
+  struct Block;
   struct Window;
   class HandOver;
   void add_still(const std::vector<int64_t>& paths, HandOver& out) const;
   void add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const;
-  // Channels that `replay` makes echoes of, at how many nodes.
+  // Channels that `replay` makes echoes of, at how many nodes, and whether it joins paths itself where it is told which.
   struct Extent {
     int first_channel, num_channels;
     int64_t num_nodes;
+    bool joins = false;
   };
   std::vector<FailedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
                                      HandOver& out) const;
   std::vector<FailedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
                                         const Replay& replay, Window& window) const;
+  bool is_watched(const Extent& extent) const;
+  Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;
 
   int64_t num_paths_;
   int num_transmitters_;
   Replayer replayer_;
   Job* job_;
+  std::optional<JoinRule> join_rule_;
+  PathWatcher* watcher_ = nullptr;
 };
 
-// Replays all paths at every chirp and for every channel, without synthesis, to see what that costs. Returns the number of
-// path-chirps, static paths once.
+// Replays all paths at every chirp and for every channel to the echoes that synthesis takes, to see what that costs alone.
+// Returns the number of path-chirps, static paths once.
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
 
 // Largest differences between replay with these settings and evaluation at the middle of chirps.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "echopath/base/constants.h"
@@ -156,6 +157,7 @@ struct PassProbe::Aim {
   int channel = 0, chirp = 0;
   SampleSums sample{};
   Seen seen;
+  std::array<std::optional<Seen>, ReplayStream::kBlocksInFlight> of_block;
 };
 
 PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& replayer, const SynthesisOptions& synthesis,
@@ -176,20 +178,22 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
 
 PassProbe::~PassProbe() = default;
 
-void PassProbe::see(int channel, std::span<const Echoes> blocks, std::span<const int64_t> indices) {
-  std::vector<std::span<const int64_t>> paths_of;
-  for (const Echoes& block : blocks) {
-    paths_of.push_back(indices.first(static_cast<size_t>(block.num_echoes)));
-    indices = indices.subspan(paths_of.back().size());
-  }
+bool PassProbe::watches(int channel) const {
+  return std::any_of(aims_.begin(), aims_.end(), [&](const Aim& aim) { return aim.channel == channel; });
+}
+
+void PassProbe::see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) {
   for (Aim& aim : aims_) {
-    if (aim.channel != channel) continue;
-    std::vector<Seen> seen(blocks.size(), Seen(num_shares()));
-    parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
-      const auto k = static_cast<size_t>(i);
-      look(aim, blocks[k], paths_of[k], seen[k]);
-    });
-    for (const Seen& some : seen) add(some, aim.seen);
+    if (aim.channel == channel) look(aim, echoes, paths, aim.of_block[block].emplace(num_shares()));
+  }
+}
+
+void PassProbe::end_blocks() {
+  for (Aim& aim : aims_) {
+    for (std::optional<Seen>& some : aim.of_block) {
+      if (some) add(*some, aim.seen);
+      some.reset();
+    }
   }
 }
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/replay/replay.h"
+#include "echopath/sim/replay_stream.h"
 #include "echopath/signal/carrier.h"
 #include "echopath/signal/synthesizer.h"
 
@@ -49,14 +49,15 @@ struct SignalProbe {
 // Looks at the echoes of one pass, at one chirp, or at two where there are several channels. What share of trace and synthesis
 // of one channel it may cost is TARGET of python/echopath/bench/speed_guard.py; more channels cost less. Same bits for any
 // number of threads.
-class PassProbe {
+class PassProbe : public PathWatcher {
  public:
   // All must outlive it.
   PassProbe(const Paths& paths, const Radar& radar, const Replayer& replayer, const SynthesisOptions& synthesis,
             const SignalProbe& probe);
-  ~PassProbe();
-  // Blocks of one channel, with the indices of the paths of all of them.
-  void see(int channel, std::span<const Echoes> blocks, std::span<const int64_t> indices);
+  ~PassProbe() override;
+  bool watches(int channel) const override;
+  void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) override;
+  void end_blocks() override;
   // Evaluates the echoes drawn and adds the chirps to `probe`. Raises Cancelled.
   void finish(SignalProbe& probe, Job* job);
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "echopath/replay/chain_plan.h"
+#include "echopath/replay/direct_evaluation.h"
 #include "echopath/replay/evaluate_chains.h"
 #include "echopath/replay/hit_patches.h"
 #include "support/scenes.h"
@@ -16,6 +17,7 @@ constexpr double kRounding = 1e-13;  // relative: sums and products of about ten
 // of its gain and less
 constexpr double kGrazingRounding = 3e-11;
 constexpr double kFilterRounding = 3e-10;  // relative: footprints are exponentials, and multiply the rounding of thousands of rad
+constexpr double kGrazingFilterRounding = 5e-8;  // likewise: grazing cells stretch a thousandfold; edges are three footprints
 constexpr double kFaintest = 1e-11;  // sqrt(W): flat-top footprints are differences from one, of echoes of 1e-6
 
 MaterialPtr rough(double diffuse_share, bool mirror) {
@@ -40,11 +42,11 @@ void add_body(Scene& scene, const std::string& name, const Vec3& centre, const T
 }
 
 // Mirrors that scatter too, of which one drives away; bodies that turn, one of them smooth, one stretched along its way.
-Scene scene_of_all_kinds() {
+Scene scene_of_all_kinds(bool has_mirrors = true) {
   Scene scene;
-  add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, true));
-  add_rectangle(scene, "ground", {-20, -20, -1}, {60, 0, 0}, {0, 40, 0}, rough(0.1, true));
-  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, true), std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
+  add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, has_mirrors));
+  add_rectangle(scene, "ground", {-20, -20, -1}, {60, 0, 0}, {0, 40, 0}, rough(0.1, has_mirrors));
+  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, has_mirrors), std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
   const auto turns = std::make_shared<LinearMotion>(Vec3(-3, 1, 0), Vec3(0.5, 1, 4));
   add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
   add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
@@ -63,11 +65,11 @@ Radar array() {
   return radar;
 }
 
-Paths record(const Radar& radar) {
+Paths record(const Radar& radar, bool has_mirrors = true) {
   TraceSettings settings;
   settings.num_rays = 3000;
   settings.max_bounces = 4;
-  return trace(scene_of_all_kinds(), radar, settings);
+  return trace(scene_of_all_kinds(has_mirrors), radar, settings);
 }
 
 std::vector<int64_t> all_of(const Paths& paths) {
@@ -107,10 +109,10 @@ Differences differences(const Paths& paths, const Radar& radar, double time) {
   return largest;
 }
 
-void expect_equal(const Differences& largest) {
+void expect_equal(const Differences& largest, double filter_rounding = kFilterRounding) {
   EXPECT_LT(largest.length, kRounding);
   EXPECT_LT(largest.diffuse, kGrazingRounding);
-  EXPECT_LT(largest.coherent, kFilterRounding);
+  EXPECT_LT(largest.coherent, filter_rounding);
 }
 
 TEST(SharedLegs, PathsAreThoseEvaluatedOneByOne) {
@@ -131,6 +133,60 @@ TEST(SharedLegs, TablesOfGainsAreReadInTheDirectionOfTheLeg) {
   expect_equal(differences(paths, radar, paths.frame.trace_time + 0.01));
 }
 
+// Gains that kernels raise to powers themselves.
+Radar array_of_powers() {
+  Radar radar = array();
+  radar.transmitters[1].pattern = AntennaPattern::cosine_power(2.0);
+  return radar;
+}
+
+TEST(SharedLegs, PathsOfOnePointAreThoseEvaluatedOneByOne) {
+  const Radar radar = array_of_powers();
+  ASSERT_TRUE(can_evaluate_directly(radar));
+  for (const bool has_mirrors : {true, false}) {
+    Paths paths = record(radar, has_mirrors);
+    for (const Footprint footprint : {Footprint::kSecondOrder, Footprint::kNone, Footprint::kFirstOrder, Footprint::kEdges}) {
+      paths.frame.footprint = footprint;
+      expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02), kGrazingFilterRounding);
+    }
+  }
+}
+
+struct DirectCounts {
+  size_t paths = 0, pairs = 0, others = 0;
+  std::vector<int> of_mesh;
+};
+
+DirectCounts direct_counts(const Paths& paths) {
+  const Localiser localise(paths, hit_patches(paths));
+  ChainPlanner planner;
+  planner.begin(paths, localise, SpecularPoints::kMaterial, true);
+  const ChainPlan& plan = planner(all_of(paths));
+  DirectCounts counts;
+  counts.others = plan.chains.size() + plan.others.size();
+  counts.of_mesh.resize(paths.scene->meshes().size());
+  for (const ChainPlan::Direct& point : plan.direct) {
+    const auto has = [&](size_t kind) { return size_t{point.path[kind] != ChainPlan::Direct::kNoPath}; };
+    counts.paths += has(0) + has(1);
+    counts.pairs += has(0) & has(1);
+    ++counts.of_mesh[point.hit->mesh_id];
+  }
+  return counts;
+}
+
+TEST(SharedLegs, PathsOfOnePointStandApart) {
+  const Paths over_mirrors = record(array_of_powers()), paths = record(array_of_powers(), false);
+  for (const Paths* some : {&over_mirrors, &paths}) {
+    const DirectCounts counts = direct_counts(*some);
+    EXPECT_EQ(counts.paths + counts.others, static_cast<size_t>(some->num_paths()));
+    EXPECT_GT(counts.of_mesh[0] + counts.of_mesh[1] + counts.of_mesh[2], 20);  // walls, ground
+    EXPECT_GT(counts.of_mesh[3], 8);
+    EXPECT_EQ(counts.of_mesh[4], 0);  // smooth
+    EXPECT_EQ(counts.of_mesh[5], 0);  // stretched along its way
+  }
+  EXPECT_GT(direct_counts(paths).pairs, 100u);
+}
+
 // The scene has all kinds of paths that the first test is about, and they do share.
 TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Radar radar = array();
@@ -138,7 +194,7 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const std::vector<int64_t> indices = all_of(paths);
   const Localiser localise(paths, hit_patches(paths));
   ChainPlanner planner;
-  planner.begin(paths, localise, SpecularPoints::kMaterial);
+  planner.begin(paths, localise, SpecularPoints::kMaterial, false);
   const ChainPlan& plan = planner(indices);
   EXPECT_EQ(plan.chains.size() + plan.others.size(), indices.size());
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two

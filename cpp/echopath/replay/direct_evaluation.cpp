@@ -1,0 +1,179 @@
+#include "echopath/replay/direct_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/replay/diffuse_chain.h"
+
+namespace echopath {
+namespace {
+
+constexpr size_t kSlots = DirectSlots::kSlots, kOfNode = DirectToEvaluate::kNumRows * kSlots;
+
+void copy_matrix(const Mat3& matrix, double* to) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to[3 * row + column] = matrix(row, column);
+  }
+}
+
+void set_vector(const Vec3& vector, size_t slot, DirectSlots::Row* rows) {
+  for (int axis = 0; axis < 3; ++axis) rows[axis][slot] = vector[axis];
+}
+
+void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, DirectSlots& slots) {
+  const Triangle& triangle = mesh.triangles()[hit.triangle_id];
+  const std::vector<Vec3>& vertices = mesh.vertices();
+  const Vec3& corner = vertices[triangle[0]];
+  set_vector(corner, slot, slots.corner);
+  set_vector(vertices[triangle[1]] - corner, slot, slots.edge[0]);
+  set_vector(vertices[triangle[2]] - corner, slot, slots.edge[1]);
+  slots.along_edge[0][slot] = hit.u;
+  slots.along_edge[1][slot] = hit.v;
+}
+
+}  // namespace
+
+bool can_evaluate_directly(const Radar& radar) {
+  const auto is_power = [](const Antenna& antenna) { return exponent_of(antenna.pattern) != LegToMeasure::kNoExponent; };
+  return std::all_of(radar.transmitters.begin(), radar.transmitters.end(), is_power) &&
+         std::all_of(radar.receivers.begin(), radar.receivers.end(), is_power);
+}
+
+void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level,
+                                  const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
+  if (plan.direct.empty()) return;
+  sort_by_mesh(plan);
+  set_antennas(level);
+  const size_t num_nodes = level.instants.size();
+  out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
+  legs_.resize((antennas_[0].size() + antennas_[1].size()) * DirectToEvaluate::kNumLegRows * kSlots);
+  work_ = {&slots_, false, nullptr, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
+           channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
+           {radio.wavenumber, radio.spread, radio.footprint}, legs_.data(), out_.data(), turned_};
+  const DirectKernels& kernels = direct_kernels();
+  for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
+    const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
+    count = 1;
+    while (count < kSlots && first + count < sorted_.size() && sorted_[first + count]->hit->mesh_id == mesh_id) ++count;
+    const Points points(sorted_.data() + first, count);
+    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) set_mesh(mesh_id, localise);
+    work_.mesh = level.poses.meshes.row(mesh_id, 0);
+    set_slots(points, localise, radio);
+    kernels.prepare(trace_, slots_);
+    work_.has_coherent &= wanted.with_amplitudes;
+    kernels.evaluate(work_);
+    const double* values = out_.data();
+    for (const ChannelNodes& to : channels.nodes) {
+      put(points, to, values);
+      values += num_nodes * kOfNode;
+    }
+    if (wanted.turned) mark_turned(points, wanted.turned);
+  }
+}
+
+void DirectEvaluation::sort_by_mesh(const ChainPlan& plan) {
+  first_of_mesh_.clear();
+  for (const ChainPlan::Direct& direct : plan.direct) {
+    const size_t mesh = direct.hit->mesh_id;
+    if (mesh + 2 > first_of_mesh_.size()) first_of_mesh_.resize(mesh + 2);
+    ++first_of_mesh_[mesh + 1];
+  }
+  for (size_t mesh = 1; mesh < first_of_mesh_.size(); ++mesh) first_of_mesh_[mesh] += first_of_mesh_[mesh - 1];
+  sorted_.resize(plan.direct.size());
+  for (const ChainPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
+}
+
+void DirectEvaluation::set_antennas(const LevelView& level) {
+  for (const bool of_receivers : {false, true}) {
+    std::vector<DirectAntenna>& antennas = antennas_[of_receivers];
+    antennas.clear();
+    for (const PosedAntenna& posed : antennas_of(level.instants.front(), of_receivers)) {
+      antennas.push_back({level.poses.antennas[of_receivers].row(antennas.size(), 0), exponent_of(*posed.pattern),
+                          std::sqrt(posed.pattern->peak_gain)});
+    }
+  }
+}
+
+void DirectEvaluation::set_mesh(uint32_t mesh_id, const Localiser& localise) {
+  const Instant& trace = localise.trace_instant();
+  copy_matrix(trace.rotation(mesh_id), trace_.linear);
+  copy_matrix(trace.normal_matrix(mesh_id), trace_.normal);
+  copy_matrix(localise.mesh_from_trace(mesh_id), trace_.mesh_from_trace);
+  std::copy_n(trace.translation(mesh_id).data(), 3, trace_.translation);
+}
+
+// Slots behind the last are filled with the last.
+void DirectEvaluation::set_slots(Points points, const Localiser& localise, const RadioConstants& radio) {
+  const Paths& paths = localise.paths();
+  const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
+  const double scale[] = {std::sqrt(radio.transmit_power) / (4.0 * kPi), diffuse_scale(radio)};
+  work_.has_coherent = false;
+  for (size_t slot = 0; slot < kSlots; ++slot) {
+    const ChainPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
+    set_triangle(*direct.hit, mesh, slot, slots_);
+    for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+      const bool is_there = direct.path[kind] != ChainPlan::Direct::kNoPath;
+      const std::complex<double> weight = is_there ? paths.weight[static_cast<size_t>(direct.path[kind])] : 0.0f;
+      slots_.weight[kind][0][slot] = scale[kind] * weight.real();
+      slots_.weight[kind][1][slot] = scale[kind] * weight.imag();
+    }
+    const int64_t coherent = direct.path[DirectSlots::kCoherent];
+    const bool is_coherent = coherent != ChainPlan::Direct::kNoPath;
+    work_.has_coherent |= is_coherent;
+    slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
+  }
+}
+
+namespace {
+
+std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot) {
+  const double* from = values + (DirectToEvaluate::kRe + 2 * kind) * kSlots + slot;
+  return {from[0], from[kSlots]};
+}
+
+bool has_path(const ChainPlan::Direct& point, size_t kind) { return point.path[kind] != ChainPlan::Direct::kNoPath; }
+
+// Both its paths go to one echo, or there is only one.
+bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
+  return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
+}
+
+}  // namespace
+
+void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
+  if (to.echo_of) return put_joined(points, to, values);
+  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
+    for (size_t slot = 0; slot < points.size(); ++slot) {
+      for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+        if (has_path(*points[slot], kind)) to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
+      }
+    }
+  }
+}
+
+// A path that is not there has amplitude 0.
+void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
+  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
+    for (size_t slot = 0; slot < points.size(); ++slot) {
+      const ChainPlan::Direct& point = *points[slot];
+      const std::complex<double> coherent = amplitude_at(values, 0, slot), diffuse = amplitude_at(values, 1, slot);
+      if (is_one_echo(point, to)) {
+        to.set(node, point.place[has_path(point, 0) ? 0 : 1], values[slot], coherent + diffuse);
+      } else {
+        to.set(node, point.place[0], values[slot], coherent);
+        to.set(node, point.place[1], values[slot], diffuse);
+      }
+    }
+  }
+}
+
+void DirectEvaluation::mark_turned(Points points, uint8_t* turned) const {
+  for (size_t slot = 0; slot < points.size(); ++slot) {
+    for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+      if (has_path(*points[slot], kind)) turned[points[slot]->place[kind]] = work_.turned[slot] != 0.0;
+    }
+  }
+}
+
+}  // namespace echopath

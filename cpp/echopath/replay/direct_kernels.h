@@ -1,0 +1,70 @@
+#pragma once
+// The inner loops of replay over paths of one point each, side by side in vectors, compiled once per instruction set from
+// direct_kernels_body.h (see chain_kernels.h).
+#include <cstddef>
+
+#include "echopath/replay/cell_formula.h"
+
+namespace echopath {
+
+// Points of one mesh that both antennas see, and what comes back from each: a coherent and a diffuse path.
+struct DirectSlots {
+  static constexpr size_t kSlots = 8;  // whatever the instruction set
+  enum Kind { kCoherent, kDiffuse, kNumKinds };
+  typedef double Row[kSlots];
+
+  // Given: the triangle in the mesh's frame, m, and where the point is in it; rays per sr of the launch cell's stratum, 0 where
+  // there is no cell; weights with all that does not change, re and im.
+  alignas(64) Row corner[3];
+  alignas(64) Row edge[2][3];
+  alignas(64) Row along_edge[2];
+  alignas(64) Row density;
+  alignas(64) Row weight[kNumKinds][2];
+
+  // Found in the mesh's frame: m; unit behind the matrix; tangents of the launch cell and their products, m and m^2; 1 or 0.
+  alignas(64) Row point[3];
+  alignas(64) Row normal[3];
+  alignas(64) Row tangent[2][3];
+  alignas(64) Row product[3];
+  alignas(64) Row has_cell;
+};
+
+// A mesh at the trace, relative to the mean transmitter: matrices row by row.
+struct DirectTrace {
+  double linear[9], translation[3];
+  double normal[9];           // of normals, not normalised
+  double mesh_from_trace[9];
+};
+
+struct DirectAntenna {
+  const double* rows;         // LegToMeasure::ImageRow, of `stride` nodes each
+  int exponent;               // LegToMeasure::exponent, a whole one
+  double root_peak;
+};
+
+struct DirectToEvaluate {
+  enum LegRow { kLegLength, kInverse, kLegFactor, kGain, kCosine, kAlong, kNumLegRows = 7 };
+  enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
+
+  const DirectSlots* slots;
+  bool has_coherent;          // any; else its rows are 0
+  const double* mesh;         // PointToPose::MeshRow, of `stride` nodes each
+  const DirectAntenna* antennas[2];
+  size_t num_antennas[2];
+  size_t first_channel, num_channels;  // [tx * num_rx + rx]
+  size_t num_nodes, stride;
+  CellFilter filter;
+  double* legs;               // room for [end, antenna, kNumLegRows, slot]
+  double* out;                // [channel, node, kNumRows, slot]
+  double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end in between
+};
+
+struct DirectKernels {
+  void (*prepare)(const DirectTrace& trace, DirectSlots& slots);
+  void (*evaluate)(const DirectToEvaluate& paths);
+};
+
+// Those of instruction_set().
+const DirectKernels& direct_kernels();
+
+}  // namespace echopath

@@ -1,0 +1,218 @@
+// The loops of direct_kernels.h for one instruction set; stands behind chain_kernels_body.h (no include guard).
+#include "echopath/replay/direct_kernels.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+namespace {
+
+using Rows3 = const DirectSlots::Row*;
+
+// A launch cell on a flat triangle.
+struct FlatCell {
+  static constexpr bool is_curved = false;
+  static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
+  Vec product[3];
+};
+
+ECHOPATH_INLINE Vector<Vec> vector_at(Rows3 rows, size_t slot) {
+  return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
+}
+ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const Vector<Vec>& v) {
+  store(rows[0] + slot, v.x);
+  store(rows[1] + slot, v.y);
+  store(rows[2] + slot, v.z);
+}
+ECHOPATH_INLINE Vector<Vec> operator+(const Vector<Vec>& a, const Vector<Vec>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+ECHOPATH_INLINE Vector<Vec> cross(const Vector<Vec>& a, const Vector<Vec>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+ECHOPATH_INLINE Vector<Vec> times(const double* matrix, const Vector<Vec>& v) {
+  const auto along = [&](int axis) { return matrix[3 * axis] * v.x + matrix[3 * axis + 1] * v.y + matrix[3 * axis + 2] * v.z; };
+  return {along(0), along(1), along(2)};
+}
+ECHOPATH_INLINE Vector<Vec> choose(Mask first, const Vector<Vec>& a, const Vector<Vec>& b) {
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+}
+
+// Any unit vector across a unit vector.
+ECHOPATH_INLINE Vector<Vec> orthogonal(const Vector<Vec>& v) {
+  const Vec least = 1e-12 * LaneMath::magnitude(v.z);
+  const Mask is_upright = (LaneMath::magnitude(v.x) <= least) & (LaneMath::magnitude(v.y) <= least);
+  const Vec of_xy = 1.0 / LaneMath::root(v.x * v.x + v.y * v.y), of_yz = 1.0 / LaneMath::root(v.y * v.y + v.z * v.z);
+  return choose(is_upright, {Vec{}, -v.z * of_yz, v.y * of_yz}, {-v.y * of_xy, v.x * of_xy, Vec{}});
+}
+
+ECHOPATH_INLINE Mask is_finite(const Vector<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
+
+// Where the point is, and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
+void prepare(const DirectTrace& trace, DirectSlots& slots) {
+  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+    const Vector<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
+    const Vec u = load(slots.along_edge[0] + slot), v = load(slots.along_edge[1] + slot);
+    const Vector<Vec> point = vector_at(slots.corner, slot) + u * edge_u + v * edge_v;
+    const Vector<Vec> across = times(trace.normal, cross(edge_u, edge_v));
+    const Vector<Vec> normal = (1.0 / LaneMath::root(dot(across, across))) * across;
+    const Vector<Vec> moved{all(trace.translation[0]), all(trace.translation[1]), all(trace.translation[2])};
+    const Vector<Vec> at = times(trace.linear, point) + moved;
+    const Vec length = LaneMath::root(dot(at, at));
+    const Vector<Vec> arrival = (1.0 / length) * at;
+    const Vec cos_in = dot(normal, arrival), side = length / LaneMath::root(load(slots.density + slot));  // of the tube, m
+    const Vector<Vec> slope = arrival - cos_in * normal;
+    const Vec sine = LaneMath::root(dot(slope, slope));
+    const Vector<Vec> along = choose(sine > 1e-9, (1.0 / sine) * slope, orthogonal(normal));
+    const Vector<Vec> first = (side / LaneMath::larger(LaneMath::magnitude(cos_in), all(1e-3))) * along;
+    const Vector<Vec> second = side * cross(normal, along), none{};
+    const Mask has_cell = is_finite(first) & is_finite(second);
+    const Vector<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
+    set_vector(slots.point, slot, point);
+    set_vector(slots.normal, slot, times(trace.mesh_from_trace, normal));
+    for (int a = 0; a < 2; ++a) set_vector(slots.tangent[a], slot, times(trace.mesh_from_trace, tangent[a]));
+    store(slots.product[0] + slot, dot(tangent[0], tangent[0]));
+    store(slots.product[1] + slot, dot(tangent[0], tangent[1]));
+    store(slots.product[2] + slot, dot(tangent[1], tangent[1]));
+    store(slots.has_cell + slot, has_cell ? all(1.0) : Vec{});
+  }
+}
+
+struct PosedLanes {
+  Vector<Vec> point, normal, tangent[2];
+};
+
+ECHOPATH_INLINE PosedLanes posed(const DirectToEvaluate& paths, const double* matrix, const double* moved, size_t slot) {
+  PosedLanes out;
+  const Vector<Vec> turned = times(matrix, vector_at(paths.slots->point, slot));
+  out.point = {turned.x + moved[0], turned.y + moved[1], turned.z + moved[2]};
+  out.normal = times(matrix, vector_at(paths.slots->normal, slot));
+  for (int a = 0; paths.has_coherent && a < 2; ++a) out.tangent[a] = times(matrix, vector_at(paths.slots->tangent[a], slot));
+  return out;
+}
+
+ECHOPATH_INLINE Vec root_gain_of(const DirectAntenna& antenna, Vec cosine) {
+  Vec power = all(antenna.root_peak);
+  if (antenna.exponent == 0) return power;
+  for (int i = 0; i < antenna.exponent / 2; ++i) power = power * cosine;
+  if (antenna.exponent % 2) power = power * LaneMath::root(LaneMath::magnitude(cosine));
+  return cosine > 0.0 ? power : Vec{};
+}
+
+ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+                                 const PosedLanes& at, double* leg) {
+  const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
+  const Vector<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
+                         at.point.z - value(LegToMeasure::kImagePosition + 2)};
+  const Vec length = LaneMath::root(dot(line, line)), inverse = 1.0 / length;
+  const Vec cosine = -inverse * dot(at.normal, line);
+  const Vec boresight = inverse * (value(LegToMeasure::kBoresight) * line.x + value(LegToMeasure::kBoresight + 1) * line.y +
+                                   value(LegToMeasure::kBoresight + 2) * line.z);
+  const Vec gain = root_gain_of(antenna, boresight);
+  const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * DirectSlots::kSlots, x); };
+  set(DirectToEvaluate::kLegLength, length);
+  set(DirectToEvaluate::kInverse, inverse);
+  set(DirectToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, cosine, length));
+  set(DirectToEvaluate::kGain, gain);
+  set(DirectToEvaluate::kCosine, cosine);
+  if (!paths.has_coherent) return;
+  for (int a = 0; a < 2; ++a) set(DirectToEvaluate::kAlong + a, inverse * dot(at.tangent[a], line));
+}
+
+ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t slot, const CellWaves<Vec>& waves,
+                                              const CellFilter& filter) {
+  if (filter.order == Footprint::kNone) return {all(1.0), Vec{}};
+  const FlatCell cell{{load(slots.product[0] + slot), load(slots.product[1] + slot), load(slots.product[2] + slot)}};
+  const FootprintPhaseOf<Vec> phase = cell_phase(cell, waves, filter.wavenumber);
+  ComplexOf<Vec> found{};
+  if (filter.order == Footprint::kFirstOrder) found.re = first_order_footprint_of<LaneMath>(phase);
+  else found = flat_cell_filter<LaneMath>(phase, filter);
+  const Mask has_cell = load(slots.has_cell + slot) > 0.0;
+  return {has_cell ? found.re : all(1.0), has_cell ? found.im : Vec{}};
+}
+
+// Rows of one leg.
+struct LegLanes {
+  const double* rows;
+  ECHOPATH_INLINE Vec operator()(int row) const { return load(rows + static_cast<size_t>(row) * DirectSlots::kSlots); }
+};
+
+// Physical optics over in and out legs, relative to the weight.
+ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
+  using D = DirectToEvaluate;
+  const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
+  CellWaves<Vec> waves;
+  waves.inverse_in = in(D::kInverse);
+  waves.inverse_out = out(D::kInverse);
+  waves.cos_in = LaneMath::magnitude(cos_in);
+  waves.cos_out = LaneMath::magnitude(cos_out);
+  waves.side = LaneMath::with_sign_of(all(1.0), cos_in);
+  for (int a = 0; a < 2; ++a) {
+    waves.along_arrival[a] = in(D::kAlong + a);
+    waves.along_departure[a] = -out(D::kAlong + a);
+  }
+  const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter);
+  const Vec size = in(D::kGain) * out(D::kGain) * waves.cos_in * waves.inverse_in * waves.inverse_out;
+  const Mask is_far = (in(D::kLegLength) >= kNearAntenna) & (out(D::kLegLength) >= kNearAntenna);
+  const Mask is_lit = (cos_in * cos_out > 0.0) & is_far;
+  return {is_lit ? size * filter.re : Vec{}, is_lit ? size * filter.im : Vec{}};
+}
+
+ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
+  using D = DirectToEvaluate;
+  const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * DirectSlots::kSlots + slot, x); };
+  const auto weight = [&](int kind, int part) { return load(paths.slots->weight[kind][part] + slot); };
+  set(D::kLength, in(D::kLegLength) + out(D::kLegLength));
+  const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
+  for (int part = 0; part < 2; ++part) {
+    set(D::kRe + 2 * DirectSlots::kDiffuse + part, weight(DirectSlots::kDiffuse, part) * diffuse);
+  }
+  ComplexOf<Vec> factor{};
+  if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
+  const Vec re = weight(DirectSlots::kCoherent, 0), im = weight(DirectSlots::kCoherent, 1);
+  set(D::kRe, re * factor.re - im * factor.im);
+  set(D::kIm, re * factor.im + im * factor.re);
+}
+
+ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, int end, size_t antenna, size_t slot) {
+  const size_t before = end == 0 ? antenna : paths.num_antennas[0] + antenna;
+  return paths.legs + before * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
+}
+
+// Sides that the points show to the first antennas: at the first node, and whether others are shown at the last.
+ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_t slot, Mask* first) {
+  Mask turned = {};
+  for (int end = 0; end < 2; ++end) {
+    const Mask side = bits(LegLanes{leg_of(paths, end, 0, slot)}(DirectToEvaluate::kCosine)) < 0;
+    if (node == 0) first[end] = side;
+    turned |= side ^ first[end];
+  }
+  store(paths.turned + slot, turned ? all(1.0) : Vec{});
+}
+
+void evaluate(const DirectToEvaluate& paths) {
+  constexpr size_t kOfNode = DirectToEvaluate::kNumRows * DirectSlots::kSlots;
+  Mask sides[DirectSlots::kSlots / kLanes][2] = {};
+  for (size_t node = 0; node < paths.num_nodes; ++node) {
+    double matrix[9], moved[3];
+    for (size_t i = 0; i < 9; ++i) matrix[i] = paths.mesh[i * paths.stride + node];
+    for (size_t i = 0; i < 3; ++i) moved[i] = paths.mesh[(9 + i) * paths.stride + node];
+    for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+      const PosedLanes at = posed(paths, matrix, moved, slot);
+      for (int end = 0; end < 2; ++end) {
+        for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
+          measure_leg(paths, paths.antennas[end][a], node, at, leg_of(paths, end, a, slot));
+        }
+      }
+      for (size_t i = 0; i < paths.num_channels; ++i) {
+        const size_t channel = paths.first_channel + i, num_receivers = paths.num_antennas[1];
+        const LegLanes in{leg_of(paths, 0, channel / num_receivers, slot)};
+        const LegLanes out{leg_of(paths, 1, channel % num_receivers, slot)};
+        combine_legs(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
+      }
+      if (node == 0 || node + 1 == paths.num_nodes) see_sides(paths, node, slot, sides[slot / kLanes]);
+    }
+  }
+}
+
+}  // namespace
+
+extern const DirectKernels kDirectKernels;
+const DirectKernels kDirectKernels = {prepare, evaluate};
+
+}  // namespace echopath::ECHOPATH_KERNELS

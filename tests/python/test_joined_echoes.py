@@ -1,0 +1,111 @@
+"""Paths over the same hits are synthesised as one echo: the signal is that of all of them, however they are sorted."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+FREQUENCY = 77e9
+EXACT = 1e-8          # of the sum of |a|: rates by differences of lengths 1e-7 s apart; a metre of length is 1
+INTERPOLATED = 5e-4   # likewise: amplitudes aim for 1e-4, of each path's largest
+ADDITIVITY = 1e-13    # of the sum of |a|: other orders of adding up
+
+
+def make_radar(antennas=1, chirps=24):
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e8, num_samples=16, sampling_rate=20e6,
+                                num_chirps=chirps, chirp_interval=60e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0.01 * i, 1)) for i in range(antennas)],
+                    receivers=[ep.Antenna((0, 0.05 + 0.002 * i, 1)) for i in range(antennas)])
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Rough bodies that drive, turn and stand before a rough wall."""
+    scene, rough = ep.Scene(), ep.Material(reflectivity=0.6, scattering=0.7)
+    scene.add(ep.actors.box((1.0, 0.5, 0.5)), name="car", material=rough, position=(6, 0, 1),
+              motion=ep.LinearMotion(velocity=(-20, 3, 0), angular_velocity=(0, 0, 1)))
+    scene.add(ep.actors.box((0.6, 0.04, 0.04)), name="rotor", material=rough, position=(5, 0.6, 1.6),
+              motion=ep.LinearMotion(angular_velocity=(0, 0, 800)))
+    scene.add(ep.actors.box((0.5, 0.5, 0.5)), name="stone", material=rough, position=(5, -1, 0.5))
+    scene.add(ep.actors.wall(20.0, 6.0), name="wall", position=(8, 3, 0),
+              material=rough)
+    return scene
+
+
+@pytest.fixture(scope="module")
+def paths(scene):
+    return ep.trace(scene, make_radar(), num_rays=1500, max_bounces=2, seed=2)
+
+
+def shares_hits(paths):
+    """Of each path but the first, whether it stands over the hits of the one before."""
+    return (np.diff(paths.offsets) == 0) & (np.diff(paths.num_bounces.astype(int)) == 0)
+
+
+def slow_signal(paths, tx, rx):
+    """IF samples [chirp, sample] of a channel from lengths and amplitudes at the middle of each chirp (PHYSICS 2.1)."""
+    radar, step = paths.radar, 1e-7  # s
+    waveform = radar.waveform
+    slope, centre = waveform.slope, (waveform.num_samples - 1) / (2 * waveform.sampling_rate)
+    chirps = []
+    for chirp in range(waveform.num_chirps):
+        time = paths.frame.start_time + (chirp * len(radar.transmitters) + tx) * waveform.chirp_interval + centre
+        before, lengths, after = (paths.lengths([time + shift], tx, rx)[0] for shift in (-step, 0.0, step))
+        amplitude = paths.amplitudes([time], tx, rx)[0]
+        delay, rate = lengths / ep.speed_of_light, (after - before) / (2 * step * ep.speed_of_light)
+        beat = slope * delay + (FREQUENCY + slope * centre - slope * delay) * rate
+        start_phase = (FREQUENCY + slope * centre) * delay - slope * delay**2 / 2
+        time_of = np.arange(waveform.num_samples)[:, None] / waveform.sampling_rate - centre
+        chirps.append(np.exp(2j * np.pi * (start_phase + beat * time_of)) @ np.conj(amplitude))
+    return np.array(chirps)
+
+
+def amplitude_sum(paths):
+    return np.abs(paths.amplitudes([paths.frame.trace_time])[0]).sum()
+
+
+def test_most_hits_send_two_paths_back(paths):
+    assert shares_hits(paths).mean() > 0.4
+
+
+@pytest.mark.parametrize("settings, tolerance", [({"evaluate": "chirps"}, EXACT), ({}, INTERPOLATED)],
+                         ids=["chirps", "interpolated"])
+@pytest.mark.parametrize("antennas", [1, 2])
+def test_the_signal_is_the_slow_sum_over_all_paths(scene, settings, tolerance, antennas):
+    paths = ep.trace(scene, make_radar(antennas), num_rays=1000, max_bounces=2, seed=3)
+    cube = ep.synthesize(paths, tolerance=1e-11, **settings)
+    last = antennas - 1
+    difference = cube[last, last] - slow_signal(paths, last, last)
+    assert np.abs(difference).max() < tolerance * amplitude_sum(paths)
+
+
+@pytest.mark.parametrize("method", ["nufft", "direct"])
+def test_what_a_hit_sends_back_in_two_ways_adds_up(paths, method):
+    kinds = {"specular": "T S* R", "rough at the end": "T .* D R"}
+    whole = ep.synthesize(paths, tolerance=1e-10, method=method)
+    alone = [ep.synthesize(paths.select(kind), tolerance=1e-10, method=method) for kind in kinds.values()]
+    together = ep.decompose(paths, paths.radar, kinds, tolerance=1e-10, method=method)
+    bound = ADDITIVITY * amplitude_sum(paths)
+    for part, name in zip(alone, kinds):
+        assert np.abs(part).max() > 1e-3 * np.abs(whole).max()
+        assert np.abs(part - together[name]).max() < bound
+    assert np.abs(sum(together.values()) - whole).max() < bound
+
+
+def test_a_probe_sees_every_path_and_changes_nothing(paths):
+    probe = ep.SignalProbe(seed=3)
+    watched = ep.synthesize(paths, probe=probe, tolerance=1e-10)
+    assert np.array_equal(watched, ep.synthesize(paths, tolerance=1e-10))
+    time = paths.frame.start_time + probe.chirp[0] * 60e-6 + 7.5 / 20e6
+    power = np.abs(paths.amplitudes([time])[0])**2
+    assert probe.power_sum[0] == pytest.approx(power.sum(), rel=1e-4)
+
+
+def test_bits_do_not_depend_on_the_number_of_threads(paths):
+    cubes = []
+    try:
+        for threads in (1, 3):
+            ep.set_num_threads(threads)
+            cubes.append(ep.synthesize(paths))
+    finally:
+        ep.set_num_threads(0)
+    assert np.array_equal(*cubes)

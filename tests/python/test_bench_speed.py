@@ -63,6 +63,16 @@ def test_spread_of_the_cost_per_path_is_seen():
     assert speed_frames.linearity(rows[:2]) is None
 
 
+def test_the_large_frame_has_all_its_chirps_and_channels_and_must_fit_into_memory():
+    row = speed_frames.measure_large(2_000)
+    assert (row["chirps"], row["channels"]) == (256, 12) and 2_000 <= row["paths"]
+    frames = {"paths": [{"peak_bytes": 1}]}
+    for gibibytes, holds in ((3.9, True), (4.1, False)):
+        verdicts = speed._memory_rows(frames, row | {"paths": 10_247_139, "peak_bytes": gibibytes * 2 ** 30})
+        assert verdicts[1]["what"] == "peak memory of 1e+07 paths, 256 chirps, 12 channels" and verdicts[1]["holds"] == holds
+    assert len(speed._memory_rows(frames, None)) == 1
+
+
 def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(speed_synthesis, "finufft_version", lambda: None)
     monkeypatch.setattr(speed_synthesis, "TOLERANCES", (1e-3, 1e-6))

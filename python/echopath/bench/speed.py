@@ -37,6 +37,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["synthesis"] = speed_synthesis.measure_synthesis(quick=quick, tell=tell)
     results["frames"] = speed_frames.measure_frames(quick=quick, tell=tell)
     results["linear"] = [] if quick else speed_frames.measure_linearity()
+    results["large"] = None if quick else speed_frames.measure_large()
     results["replay"] = [_replay(case, quick) for case in replay_cases.all_cases()]
     tell()
     results["tracer"] = speed_tracer.measure_tracer(quick=quick)
@@ -113,8 +114,7 @@ def verdicts(results: dict) -> list[dict]:
     excess = speed_frames.linearity(results["linear"])
     if excess is not None:
         rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
-    most = max(row["peak_bytes"] for rows_of in results["frames"].values() for row in rows_of)
-    rows.append(_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True))
+    rows += _memory_rows(results["frames"], results["large"])
     rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"],
                   row["share"])
              for row in results["tracer"]]
@@ -131,6 +131,15 @@ def verdicts(results: dict) -> list[dict]:
     return rows
 
 
+def _memory_rows(frames: dict, large: dict | None) -> list[dict]:
+    most = max(row["peak_bytes"] for rows_of in frames.values() for row in rows_of)
+    rows = [_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True)]
+    if large:
+        what = f"of {large['paths']:.0e} paths, {large['chirps']} chirps, {large['channels']} channels"
+        rows.append(_row(f"peak memory {what}", speed_frames.MOST_MEMORY, large["peak_bytes"], most=True))
+    return rows
+
+
 def _row(what: str, limit: float, measured: float, *, most: bool = False) -> dict:
     holds = measured <= limit if most else measured >= limit
     return {"what": what, "limit": limit, "measured": measured, "holds": bool(holds)}
@@ -142,6 +151,7 @@ def describe(results: dict) -> list[str]:
     lines = [f"{found['processor']}, {found['threads']} threads, {found['instruction_set']}, "
              f"FINUFFT {results['finufft'] or 'not installed: its column is empty'}", "",
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_linear_lines(results["linear"]),
+             *_large_lines(results["large"]),
              *_replay_lines(results["replay"]),
              *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
              *(line for street in results["street"] for line in _street_lines(street)), *speed_guard.describe_guard(results["guard"]), "",
@@ -187,6 +197,11 @@ def _linear_lines(rows: list[dict]) -> list[str]:
     """Time per path of frames of all sizes in turn."""
     each = ", ".join(f"{1e9 * row['processor_s'] / row['paths']:.1f} ns of {row['paths']:,}" for row in rows)
     return ["", f"processor time per path, all sizes in turn: {each}"] if rows else []
+
+
+def _large_lines(row: dict | None) -> list[str]:
+    return [f"{row['paths']:,} paths, {row['chirps']} chirps, {row['channels']} channels: trace {row['trace_s']:.1f} s, signal "
+            f"{row['signal_s']:.1f} s by the clock, peak {row['peak_bytes'] / 2 ** 20:,.0f} MiB"] if row else []
 
 
 def _replay_lines(cases: list[dict]) -> list[str]:

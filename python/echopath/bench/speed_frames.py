@@ -30,6 +30,7 @@ MOVING_NS = 2.5                                 # per moving path and chirp on t
 STREET_SECONDS = {500_000: 3.0}                 # s a frame of so many rays may take
 STREET_TARGET = 1.3                             # times the floor
 MOST_MEMORY = 4 * 2 ** 30                       # bytes
+LARGE_PATHS, LARGE_CHIRPS, LARGE_ARRAY = 10_000_000, 256, (3, 4)    # of the frame that must run within that
 
 
 def street():
@@ -90,6 +91,18 @@ def measure_frames(*, quick: bool = False, tell=None) -> dict:
         parts = _parts(scene.scene, count)
         add("parts", count, some.num_paths, lambda parts=parts: ep.decompose(some, with_frame(scene.radar, 64), parts))
     return found
+
+
+def measure_large(num_paths: int = LARGE_PATHS) -> dict:
+    """A row of the frame with many paths, chirps and channels, run once: seconds of trace and signal by the clock and the
+    peak of memory in bytes over both, the record and the cube included."""
+    scene, clock = street(), StageClock()
+    radar = with_frame(scene.radar, LARGE_CHIRPS, LARGE_ARRAY)
+    with clock("both"):
+        trace_s, paths = wall_time(lambda: record_of(scene, num_paths))
+        signal_s, cube = wall_time(lambda: ep.synthesize(paths, radar))
+    return {"paths": paths.num_paths, "chirps": cube.shape[2], "channels": cube.shape[0] * cube.shape[1], "trace_s": trace_s,
+            "signal_s": signal_s, "peak_bytes": clock.stages[0].peak_memory}
 
 
 def _parts(scene, count: int) -> dict:

@@ -13,6 +13,7 @@ import pytest
 import pyvista as pv
 
 import echopath as ep
+from echopath.cli import main
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.window import MainWindow
 from echopath_viewer.window.keys import KEYS
@@ -147,6 +148,33 @@ def test_a_script_opens_paths_with_parts_of_them(qtbot, frame):
     assert np.array_equal(window.session.part.spectrum.values, wanted.values)
     assert window.session.visible.sum() == frame.paths.select("T 'wall_*' 'walker' R").num_paths
     window.close()
+
+
+def test_the_command_draws_a_saved_view_when_it_is_complete(qtbot, window, frame, tmp_path, monkeypatch):
+    window.session.set_part(("route", "ghost"))
+    window.session.select_cells(CellBox(0, 127, 0, 31))
+    window.session.set_chirp(3)
+    window.save_view(tmp_path / "view.json")
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    drawn, screenshot = [], MainWindow.screenshot
+    monkeypatch.setattr(MainWindow, "screenshot", lambda window, path: (
+        drawn.append((window, window.session, window.time_bar.strip._title)), screenshot(window, path)))
+    command = ["view", str(tmp_path / "frame.h5"), "--state", str(tmp_path / "view.json")]
+    assert main([*command, "--picture", str(tmp_path / "window.png")]) == 0
+    (found, session, title), = drawn
+    assert (session.part_key, session.chirp) == (("route", "ghost"), 3) and not found.isVisible()
+    assert "the selected rays" in title  # their signal comes last
+    assert QtGui.QImage(str(tmp_path / "window.png")).width() == found.width()
+
+
+def test_a_picture_of_nothing_or_of_no_view_is_refused_before_there_is_a_window(frame, tmp_path, monkeypatch):
+    monkeypatch.setattr("echopath_viewer.window.app.MainWindow", None)
+    with pytest.raises(ValueError, match="state and picture: must come with a frame"):
+        ep.view(picture=tmp_path / "window.png")
+    (tmp_path / "view.json").write_text("{}")
+    with pytest.raises(ep.FileError, match="view.json: no view of echopath"):
+        ep.view(frame, state=tmp_path / "view.json", picture=tmp_path / "window.png")
+    assert not (tmp_path / "window.png").exists()
 
 
 @pytest.mark.parametrize("arguments, keywords", [((3,), {}), ((), {"parts": {}}), ((None, None, None, None), {})])

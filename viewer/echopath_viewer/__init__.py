@@ -13,8 +13,9 @@ def view(*what, **keywords):
     """Opens the viewer and returns when its window is closed.
 
     what: a frame file, a Frame, `scene, paths` or `scene, paths, parts`; nothing: an empty window
-    keywords: parts, window and zero_pad of the maps of paths; evaluate, retrace and keyframes of their signals; parts are
-    those of `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
+    keywords: state: file of a view saved before; picture: PNG file of the window, which is closed then; parts, window and
+    zero_pad of the maps of paths; evaluate, retrace and keyframes of their signals; parts are those of `decompose` (with
+    their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     """
     with _told_what_to_install():
         from .window import view as open_window

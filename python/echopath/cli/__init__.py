@@ -74,6 +74,8 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="see which rays made which cell of a frame")
     view.add_argument("frame", metavar="FRAME.h5", nargs="?", help="frame file (default: an empty window)")
+    view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
+    view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
     view.set_defaults(command=_view)
 
     info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
@@ -174,7 +176,7 @@ def _demo(options) -> None:
 def _view(options) -> None:
     import echopath as ep
 
-    ep.view(*([options.frame] if options.frame else []))
+    ep.view(*([options.frame] if options.frame else []), state=options.state, picture=options.picture)
 
 
 def _run(options) -> None:

@@ -7,30 +7,54 @@ import sys
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
+from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
 from .main_window import MainWindow
 from .qt import QtWidgets
 
 
-def view(*what, parts=None, block=True, **settings):
+def view(*what, parts=None, block=True, state=None, picture=None, **settings):
     """Opens a window on a frame file, a Frame, or `scene, paths[, parts]`; an empty one on nothing.
 
     parts, settings: of `model.from_paths`; block: returns when the window is closed, else at once with the window
+    state: file of a saved view, which is shown; picture: PNG file of the window, which is closed then
     Raises ep.FileError for a file that cannot be shown, before there is a window; OSError without a screen;
-    KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they compute.
+    ValueError for a state or a picture of nothing; KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they
+    compute.
     """
     view_input = read_input(*what, parts=parts, **settings)
+    if view_input is None and (state is not None or picture is not None):
+        raise ValueError("state and picture: must come with a frame or paths, got none")
+    if state is not None:
+        load_state(state)
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
-    window = MainWindow()
-    if view_input is not None:
-        window.show_input(view_input)
-    window.show()
+    window = _opened(view_input, state)
+    if picture is not None:
+        return _save_picture(window, picture)
     if not block:
         return window
     with closing_on_ctrl_c(application):
         application.exec()
     return None
+
+
+def _opened(view_input, state) -> MainWindow:
+    window = MainWindow()
+    if view_input is not None:
+        window.show_input(view_input)
+    window.show()
+    if state is not None:
+        window.load_view(state)
+    return window
+
+
+def _save_picture(window: MainWindow, path) -> None:
+    try:
+        window.settle()
+        window.screenshot(path)
+    finally:
+        window.close()
 
 
 def require_screen() -> None:

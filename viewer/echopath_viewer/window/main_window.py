@@ -248,6 +248,12 @@ class MainWindow(QtWidgets.QMainWindow):
             self.view3d.set_camera_state(state["camera"])
         self.show_message("This view is of another frame. " + "; ".join(misfits) if misfits else "")
 
+    def settle(self) -> None:
+        """Returns when lists, signals and the scene show what the session shows now."""
+        QtWidgets.QApplication.processEvents()
+        while self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind():
+            QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+
     def screenshot(self, path) -> None:
         """Writes a picture of the window. Raises ep.FileError."""
         self.view3d.render()

@@ -55,6 +55,10 @@ class View3D(QtInteractor):
         """Once, when all changes of this turn of the event loop are made."""
         self._render_timer.start()
 
+    def is_behind(self) -> bool:
+        """Whether changes are still to be drawn."""
+        return self._render_timer.isActive()
+
     def camera_state(self) -> dict:
         camera = self.camera
         return {"position": list(camera.position), "focal_point": list(camera.focal_point), "up": list(camera.up),

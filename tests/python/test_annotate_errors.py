@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 
 BATCHES, SEEDS = 8, 40
 NUM_RAYS = 4000  # with 1500, 60 of a batch on the metal sphere, batches share the aliases of their lattices
@@ -14,10 +15,7 @@ HANN_BANDWIDTH = 1.5  # cells
 
 
 def make_radar(num_rx=2):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=4,
-                                chirp_interval=60e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], transmit_power=1.0,
-                    receivers=[ep.Antenna((0, 0.002 * i, 1)) for i in range(num_rx)])
+    return build_radar([(0, 0, 1)], [(0, 0.002 * i, 1) for i in range(num_rx)], num_chirps=4, transmit_power=1.0)
 
 
 def spheres():

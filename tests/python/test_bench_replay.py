@@ -10,7 +10,8 @@ FOLLOWED_DB = -40.0    # of the map's peak, for motions that one record follows
 IMAGE_RAD = 0.3        # what `validity` takes for harmless
 
 
-@pytest.mark.parametrize("case", [case for case in replay_cases.all_cases() if case.name != "wheel"], ids=lambda case: case.name)
+@pytest.mark.parametrize("case", [case for case in replay_cases.all_cases() if case.name != "wheel"],
+                         ids=lambda case: case.name)
 def test_one_record_follows_the_motion(case, monkeypatch):
     monkeypatch.setattr(replay, "ERROR_RAYS", 400)
     monkeypatch.setattr(replay, "VARIANTS", {"default": {}})

@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.bench.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
+from support.radars import build_radar
 
 RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %
 
@@ -21,16 +22,15 @@ def test_false_alarms_come_at_the_rate_asked_for(of_map):
 
 
 def test_each_row_of_the_benchmark_has_its_verdict():
-    row = {"map": "hann", "method": "ca", "rate": 1e-3, "cells": 1000, "false_alarms": 1, "ratio": 1.0, "standard_error": 0.0}
+    row = {"map": "hann", "method": "ca", "rate": 1e-3, "cells": 1000, "false_alarms": 1, "ratio": 1.0,
+           "standard_error": 0.0}
     lines = describe_false_alarms([row | {"holds": True}, row | {"holds": False}])
     assert lines[1].endswith("holds") and lines[2].endswith("MISSES 10%")
 
 
 def radar_with(num_chirps=64, num_samples=128, receivers=1):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=60e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna()],
-                    receivers=[ep.Antenna((0.0, 0.002 * index, 0.0)) for index in range(receivers)])
+    return build_radar(receivers=[(0, 0.002 * k, 0) for k in range(receivers)], num_chirps=num_chirps,
+                       num_samples=num_samples)
 
 
 def spectrum_of_tones(radar, tones, window="hann"):
@@ -93,7 +93,8 @@ def test_arrays_fit_each_other_and_the_text_says_what_was_done():
 def test_bad_arguments_are_named():
     radar = radar_with()
     spectrum = spectrum_of_tones(radar, [])
-    for name, value in (("method", "go"), ("false_alarm_rate", 0.0), ("guard_range", 1), ("training_velocity", 40), ("rank", 0.0)):
+    for name, value in (("method", "go"), ("false_alarm_rate", 0.0), ("guard_range", 1), ("training_velocity", 40),
+                        ("rank", 0.0)):
         with pytest.raises(ValueError, match=name):
             ep.cfar(spectrum, radar, **{name: value})
     with pytest.raises(TypeError, match="false_alarm_rate"):

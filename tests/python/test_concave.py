@@ -26,7 +26,8 @@ def dish():
 @both_models
 def test_a_dish_adds_up_at_its_centre(model):
     mesh = dish()
-    paths = ep.trace(scene_of(dish=(mesh, METAL, True)), make_radar(CENTRE), num_rays=1 << 14, max_bounces=1, polarization=model)
+    paths = ep.trace(scene_of(dish=(mesh, METAL, True)), make_radar(CENTRE), num_rays=1 << 14, max_bounces=1,
+                     polarization=model)
     # All of it is met along its normal, a metre away: -j A / (4 pi) and the phase of two metres.
     expected = -1j * mesh.area / (4 * np.pi) * np.exp(-2j * WAVE_NUMBER)
     assert abs(fields(paths).sum() / expected - 1) < CENTRE_TOLERANCE
@@ -79,7 +80,8 @@ def test_a_plate_behind_both_foci_of_a_dish(model):
 RADIUS, WIDTH, SOURCE = 1.0, 0.6, 3.0   # m: mirrors about the origin that face +x, and their distance from the transmitter
 SLANT = np.radians(45)                  # of incidence, in the plane z = 0
 CAUSTIC_TOLERANCE = 0.03                # of the field: 1e2 rays on the plate, geometrical optics between the bounces
-FOCUS_FACTOR = 1.4                      # 3 dB: geometrical optics knows no diffraction; 2.9 dB found over both foci of a dish
+# 3 dB: geometrical optics knows no diffraction; 2.9 dB found over both foci of a dish
+FOCUS_FACTOR = 1.4
 # (bent across, bent up): focus in the plane of incidence at .40 m, across it at .93 m.
 SHAPES = {"dish": (1, 1), "trough": (1, 0), "gutter": (0, 1)}
 
@@ -158,7 +160,8 @@ def cap_rcs(radius, aperture):
 
 def round_dish(radius, aperture, rings=40, sides=240):
     """A cap about the origin that faces +x."""
-    distance, turn = np.meshgrid(np.arange(1, rings + 1) / rings * aperture, np.arange(sides) * 2 * np.pi / sides, indexing="ij")
+    distance, turn = np.meshgrid(np.arange(1, rings + 1) / rings * aperture, np.arange(sides) * 2 * np.pi / sides,
+                                 indexing="ij")
     y, z = np.append(0, distance * np.cos(turn)), np.append(0, distance * np.sin(turn))
     ring = 1 + np.arange(sides)
     following = np.roll(ring, -1)

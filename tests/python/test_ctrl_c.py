@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 
 PROMISE = 0.5        # s, on a machine with nothing else to do
 PATIENCE = 1.5       # s, with the tests of a busy machine; tries until one keeps to it
@@ -26,12 +27,11 @@ def paths():
     motion = ep.LinearMotion(velocity=(-1.0, 0.0, 0.0))
     scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), motion=motion, material="clothing")
     scene.add(ep.actors.plate(9.0, 9.0), name="wall", position=(9.0, 0.0, 0.0), motion=motion, material="concrete")
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=8,
-                                chirp_interval=1e-4)
-    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    radar = build_radar(receivers=[(0, 0.01, 0)], num_chirps=8, chirp_interval=1e-4)
     traced = ep.trace(scene, radar, num_rays=3000, max_bounces=HITS_PER_PATH)
     index = np.arange(NUM_PATHS) % traced.num_paths
-    columns = {name: getattr(traced, name)[index] for name in ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
+    names = ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
+    columns = {name: getattr(traced, name)[index] for name in names}
     hits = np.tile(traced.hits, NUM_PATHS // traced.num_paths + 1)
     offsets = traced.offsets[index] + np.arange(NUM_PATHS) // traced.num_paths * len(traced.hits)
     return ep.Paths.from_arrays(hits=hits, offsets=offsets, **columns, scene=traced.scene, radar=traced.radar,

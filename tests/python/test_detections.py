@@ -10,6 +10,7 @@ import pytest
 import echopath as ep
 from echopath.cli import report
 from echopath.detections.echo_fields import Response
+from support.radars import build_radar
 
 C = ep.speed_of_light
 WAVELENGTH = C / 77.5e9
@@ -25,10 +26,9 @@ HELD = 0.95    # of a cell's power, by the paths named
 
 def radar_with(receivers=8, transmitters=1, num_chirps=64, num_samples=256, chirp_interval=50e-6,
                spacing=0.5 * WAVELENGTH):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0, k * receivers * spacing, 0)) for k in range(transmitters)],
-                    receivers=[ep.Antenna((0, k * spacing, 0)) for k in range(receivers)], transmit_power=POWER)
+    return build_radar([(0, k * receivers * spacing, 0) for k in range(transmitters)],
+                       [(0, k * spacing, 0) for k in range(receivers)], num_chirps=num_chirps, num_samples=num_samples,
+                       chirp_interval=chirp_interval, transmit_power=POWER)
 
 
 def at(distance, azimuth):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.shapes import METAL, WAVELENGTH, lambert, make_radar, rectangle, scene_of, sphere
+from support.shapes import WAVELENGTH, lambert, make_radar, rectangle, scene_of, sphere
 
 WAVE_NUMBER = 2 * math.pi / WAVELENGTH
 STANDARD_ERRORS = 3.5          # of the errors that the batches tell, themselves known to 20 %

@@ -6,7 +6,8 @@ import echopath as ep
 import numpy as np
 import pytest
 from echopath import _core
-from support.hand_made import MESHES, hand_made_paths, make_street, random_expression, random_routes
+from support.hand_made import hand_made_paths, make_street, random_expression, random_routes
+from support.radars import build_radar
 from support.slow_matcher import glob_takes
 
 ADDITIVITY = 1e-12    # relative to the largest sample: parts add up in another order than the whole
@@ -107,9 +108,7 @@ def wall_and_target(velocity=0.0):
 
 @pytest.fixture(scope="module")
 def traced():
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=0.2e9, num_samples=64, sampling_rate=20e6, num_chirps=4,
-                                chirp_interval=60e-6)
-    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    radar = build_radar(receivers=[(0, 0.01, 0)], bandwidth=0.2e9, num_chirps=4)
     return ep.trace(wall_and_target(), radar, num_rays=3000, max_bounces=3, batches=4)
 
 

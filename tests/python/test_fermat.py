@@ -4,6 +4,7 @@ import pytest
 
 import echopath as ep
 from support import shapes
+from support.radars import build_radar
 from support.slides import TRANSMITTER, Plane, bisector, excess_by_search, frozen, mirrors_over, stationary_length
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
@@ -60,9 +61,7 @@ def test_a_displaced_antenna_moves_the_point_of_reflection(before, behind, shift
 
 
 def frame_radar(num_chirps=32, chirp_interval=1e-3, receivers=(TRANSMITTER,)):
-    waveform = ep.ChirpSequence(start_frequency=shapes.FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(TRANSMITTER)], receivers=[ep.Antenna(p) for p in receivers])
+    return build_radar([TRANSMITTER], receivers, num_samples=512, num_chirps=num_chirps, chirp_interval=chirp_interval)
 
 
 def moving_target(mirror_flag, replay_slides=(0.0, 0.0)):

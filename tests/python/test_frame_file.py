@@ -9,6 +9,7 @@ import echopath as ep
 from echopath import frame_file, path_subset
 from echopath.frame_file import paths as frame_paths
 from echopath.path_subset import power_of_strongest, strongest, subset
+from support.radars import build_radar
 from support.shapes import quad
 
 SUM_TOLERANCE = 1e-12  # sums of doubles in another order
@@ -53,11 +54,9 @@ def curved_scene():
 
 
 def make_radar():
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=16,
-                                chirp_interval=1e-4)
     receivers = [ep.Antenna((0, 0.01 * (i + 1), 0), pattern=ep.CosinePower(2.0)) for i in range(2)]
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0), polarization=(0, 1, 0))], receivers=receivers,
-                    transmit_power=0.02, noise_figure_db=9.0, motion=ep.LinearMotion(velocity=(1, 0, 0)))
+    return build_radar([ep.Antenna(polarization=(0, 1, 0))], receivers, num_chirps=16, chirp_interval=1e-4,
+                       transmit_power=0.02, noise_figure_db=9.0, motion=ep.LinearMotion(velocity=(1, 0, 0)))
 
 
 @pytest.fixture(scope="module")

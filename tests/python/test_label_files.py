@@ -131,7 +131,8 @@ def test_labels_of_a_file_of_their_own_are_the_same_bits(frame, labels, tmp_path
 DAMAGES = {
     "a part that is not there": (lambda group: group["dominant"].write_direct(np.full(group["dominant"].shape, 3, np.int16)),
                                  "dominant: must be -1 to 2"),
-    "a ghost that is not there": (lambda group: group["ghost_map"].write_direct(np.full(group["ghost_map"].shape, -2, np.int16)),
+    "a ghost that is not there": (lambda group: group["ghost_map"].write_direct(
+        np.full(group["ghost_map"].shape, -2, np.int16)),
                                   "ghost_map: must be -1 to"),
     "another plane": (lambda group: group.attrs.modify("plane", "range_elevation"), "unknown plane 'range_elevation'"),
     "powers of other parts": (lambda group: group.move("mean_power", "power2"), "mean_power: no such dataset"),
@@ -189,7 +190,8 @@ def test_detections_outside_of_the_map_are_refused(saved):
 # --- a saved frame is enough ---
 
 def test_labels_of_a_saved_frame_are_those_of_the_simulation(frame, labels, saved):
-    again = ep.annotate_frame(ep.load_frame(saved), {"more": {"near": "T . R"}}, objects={"truck": "van", "person": "person"},
+    again = ep.annotate_frame(ep.load_frame(saved), {"more": {"near": "T . R"}},
+                              objects={"truck": "van", "person": "person"},
                               noise_margin_db=6.0, errors=True)
     assert list(again) == ["by", "power", "more"]
     for name in ("power", "share", "dominant", "mask", "whole"):  # of cubes in the file
@@ -297,7 +299,8 @@ def test_labels_of_a_scene_file_are_keywords_of_annotate(scene_path, tmp_path):
 @pytest.mark.parametrize("table, message", [
     ("objects = 3", "labels.objects: must be globs in an array, or a table of name = glob or name = [globs], got 3"),
     ("objects = {a = []}", "labels.objects: must be globs in an array"),
-    ("objects = ['vam']", "labels.objects: path expression: expected a glob that takes a mesh, got 'vam'; nearest names: van"),
+    ("objects = ['vam']",
+     "labels.objects: path expression: expected a glob that takes a mesh, got 'vam'; nearest names: van"),
     ("dynamic_range_db = -3.0", "labels.dynamic_range_db: must be at least 0"),
     ("planes = 'x'", "labels.planes: unknown key; did you mean 'plane'?"),
     ("[detections]\nfalse_alarm_rate = 0.0", "detections.false_alarm_rate: must be at least 1e-15"),

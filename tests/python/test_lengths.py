@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from support import slow_lengths
 from support.arm import make_arm
+from support.radars import build_radar
 from support.shapes import quad
 
 import echopath as ep
@@ -13,10 +14,7 @@ TRANSMITTERS, RECEIVERS = [(0, 0, 0.2), (0.1, 0.3, 0)], [(0, 0.01, 0.2), (-0.05,
 
 
 def make_radar(motion=None):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=64,
-                                chirp_interval=1e-4)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in TRANSMITTERS],
-                    receivers=[ep.Antenna(p) for p in RECEIVERS], motion=motion)
+    return build_radar(TRANSMITTERS, RECEIVERS, num_chirps=64, chirp_interval=1e-4, motion=motion)
 
 
 def wall():
@@ -60,7 +58,8 @@ def skin(scene):
 def mirrors(scene):
     scene.add(wall(), name="wall", material=ep.Material(permittivity=5 - 0.3j, scattering=0.3, mirror=True),
               motion=ep.LinearMotion((0, -2, 0.5), (0, 0, 0.02)))
-    scene.add(quad((-5, -9, -1), (30, -9, -1), (30, 9, -1), (-5, 9, -1)), name="floor", material=ep.Material.metal(mirror=True))
+    scene.add(quad((-5, -9, -1), (30, -9, -1), (30, 9, -1), (-5, 9, -1)), name="floor",
+              material=ep.Material.metal(mirror=True))
     rigid(scene)
 
 

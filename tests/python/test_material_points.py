@@ -61,7 +61,8 @@ def test_a_retained_point_of_a_ball_that_moves_aside(radius, expected):
     distance, shift = 10.0, 0.1
     motion = ep.LinearMotion(velocity=(0, shift, 0))
     error = phase_of_retained_point(radius, distance, motion, (distance, shift, 0))
-    assert error == pytest.approx(WAVENUMBER * shift**2 * radius / (distance * (distance - radius)), rel=NOTE_TOLERANCE, abs=0)
+    assert error == pytest.approx(WAVENUMBER * shift**2 * radius / (distance * (distance - radius)), rel=NOTE_TOLERANCE,
+                                  abs=0)
     assert error == pytest.approx(expected, rel=NOTE_TOLERANCE, abs=0)
 
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 
 NEAR_AN_EDGE = 0.02  # cells: the peak of a finite transform is that close to its frequency (TDM slots, window sidelobes)
 CARRIER_SPAN = 4e-4   # the carrier of an echo lies up to 20 MHz (75 m) below that of the chirp's middle, 77.5 GHz
@@ -13,10 +14,8 @@ RANGES = (3.0, 11.3, 24.9, 37.2, 52.0, 75.0, 90.0)  # m; the last beyond the ant
 
 
 def radar_of(real: bool, num_transmitters: int):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=64,
-                                chirp_interval=100e-6, real=real)
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0.2 * k, 0)) for k in range(num_transmitters)],
-                    receivers=[ep.Antenna((0, 0, 0)), ep.Antenna((0, -0.3, 0.1))])
+    return build_radar([(0, 0.2 * k, 0) for k in range(num_transmitters)], [(0, 0, 0), (0, -0.3, 0.1)], num_samples=512,
+                       num_chirps=64, chirp_interval=1e-4, real=real)
 
 
 def traced(radar):

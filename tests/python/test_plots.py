@@ -10,6 +10,7 @@ import echopath as ep
 from echopath.plots import (colour_limits, plot_overview, plot_partition, plot_range_azimuth, plot_range_doppler, plot_scene,
                             power_dbm, save_png)
 from echopath.plots.clip import clip_triangles, outline
+from support.radars import build_radar
 
 AREA_TOLERANCE = 1e-12
 
@@ -148,10 +149,8 @@ def test_a_picture_of_a_scene_names_its_objects():
     scene.add(ep.actors.ground(20.0), name="ground", material=ep.Material.metal(mirror=True))
     for k in range(3):
         scene.add(ep.actors.plate(0.3, 0.3), name=f"plate{k}", material="metal", position=(5.0 + k, k, 1.0))
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=20e6, num_chirps=2,
-                                chirp_interval=1e-4)
-    paths = ep.trace(scene, ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0, 1))]),
-                     num_rays=500)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    paths = ep.trace(scene, radar, num_rays=500)
     figure = plot_scene(scene, paths)
     for axes in figure.axes[:2]:  # in perspective, from above
         assert {text.get_text().strip() for text in axes.texts} >= {"plate0", "plate1", "plate2"}

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import echopath as ep
+from support.radars import build_radar
 from support.scene_text import WAVEFORM
 
 pytestmark = pytest.mark.hard
@@ -29,10 +30,8 @@ def paths():
     scene.add(ep.actors.box(0.6), name="box", material=rough, position=(6, 1, 0),
               motion=ep.LinearMotion(velocity=(-3.0, 0, 0)))
     scene.add(ep.actors.plate(2.0, 2.0), name="plate", material=rough, position=(8, 0, 0))
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=32, sampling_rate=20e6, num_chirps=4,
-                                chirp_interval=1e-4)
-    return ep.trace(scene, ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.1, 0))]),
-                    num_rays=1500)
+    radar = build_radar(receivers=[(0, 0.1, 0)], num_samples=32, num_chirps=4, chirp_interval=1e-4)
+    return ep.trace(scene, radar, num_rays=1500)
 
 
 def touched(paths):

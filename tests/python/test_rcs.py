@@ -91,7 +91,8 @@ def test_a_tiny_sphere_is_an_electric_and_a_magnetic_dipole(bistatic_deg):
 def test_a_large_sphere_scatters_forward_like_its_shadow():
     ka = 2000.0
     shadow = 4 * math.pi * (math.pi * RADIUS**2) ** 2 / (ep.speed_of_light / frequency_of(ka)) ** 2
-    assert ep.mie_rcs(RADIUS, frequency_of(ka), math.pi) == pytest.approx(shadow, rel=0.02, abs=0)  # + edge terms of ka^(-2/3)
+    # + edge terms of ka^(-2/3)
+    assert ep.mie_rcs(RADIUS, frequency_of(ka), math.pi) == pytest.approx(shadow, rel=0.02, abs=0)
 
 
 @pytest.mark.parametrize("keywords", [dict(radius=0.0), dict(radius=-1.0), dict(frequency=0.0),
@@ -230,7 +231,8 @@ def test_turned_dihedral_turns_the_polarization(angle_deg, co, cross):
 def test_bistatic_sphere_in_both_planes_against_mie(bistatic_deg, name, plane):
     angle = math.radians(bistatic_deg)
     co, cross = ep.rcs(smooth_sphere(), frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 14,
-                       observation=(math.cos(angle), math.sin(angle), 0), polarization=[name, name[0] + "hv"[name[0] == "h"]])
+                       observation=(math.cos(angle), math.sin(angle), 0),
+                       polarization=[name, name[0] + "hv"[name[0] == "h"]])
     assert abs(decibel(co / ep.mie_rcs(RADIUS, FREQUENCY, angle, plane=plane))) < SMOOTH_TOLERANCE_DB
     assert cross < 10 ** (POLARIZATION_NULL_DB / 10) * co
 
@@ -294,7 +296,8 @@ def test_rays_double_until_the_error_is_met(recwarn):
     keywords = dict(frequency=FREQUENCY, incidence=in_plane([0, 30]), num_rays=64, sampler="random", return_error=True)
     value, error = ep.rcs(rough_plate(), target_error_db=0.1, **keywords)
     assert np.all(10 * np.log10(1 + error / value) < 0.1) and not list(recwarn)
-    with pytest.warns(RuntimeWarning, match="rcs: for 2 of 2 cross sections max_rays was reached .* target_error_db is 0.01"):
+    with pytest.warns(RuntimeWarning,
+                      match="rcs: for 2 of 2 cross sections max_rays was reached .* target_error_db is 0.01"):
         ep.rcs(rough_plate(), target_error_db=0.01, max_rays=256, **keywords)
     edge_on = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(0, 1, 0), target_error_db=0.1, return_error=True)
     assert edge_on == (0.0, 0.0)  # with no warning: nothing is there to be missed

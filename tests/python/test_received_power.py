@@ -4,17 +4,15 @@ import pytest
 
 import echopath as ep
 from echopath.cli import report
+from support.radars import FREQUENCY, build_radar
 
-FREQUENCY = 77e9
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
 ROUNDING = 1e-6  # relative: phases of lengths of tens of metres, sums in another order
 BATCHES = 6
 
 
 def make_radar():
-    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=64, sampling_rate=20e6,
-                                num_chirps=4, chirp_interval=60e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+    return build_radar([(0, 0, 1)], [(0, 0.01, 1)], num_chirps=4)
 
 
 def street():

@@ -3,24 +3,16 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import FREQUENCY, build_radar, chirp_times
 
-FREQUENCY = 77e9
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
 DELAY_PHASE_TOLERANCE = 2e-5   # rad: the phase tolerance of the replay, 1e-5 rad, on both ways
 ADDITIVITY = 1e-12
 INTERPOLATION_ERROR = 1e-4      # of amplitudes, the tolerance of the replay; phases are to 1e-5 rad
 
 
-def make_radar(num_chirps=64, chirp_interval=60e-6, transmitters=((0, 0, 1),), receivers=((0, 0.01, 1),), **keywords):
-    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in transmitters],
-                    receivers=[ep.Antenna(p) for p in receivers], **keywords)
-
-
-def chirp_times(radar):
-    waveform = radar.waveform
-    return np.arange(waveform.num_chirps) * waveform.chirp_interval + 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+def make_radar(num_chirps=64, transmitters=((0, 0, 1),), receivers=((0, 0.01, 1),), **settings):
+    return build_radar(transmitters, receivers, num_samples=512, num_chirps=num_chirps, **settings)
 
 
 def small_triangle(size=0.01):
@@ -188,7 +180,8 @@ def test_fast_rotor_has_the_delay_of_every_sample():
     at = np.arange(waveform.num_samples) / waveform.sampling_rate + (np.arange(16) * waveform.chirp_interval)[:, None]
     c, s = np.cos(rate * at), np.sin(rate * at)
     points = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1], 0 * at + local[2]], axis=-1) + [10, 0, 1]
-    delay = (np.linalg.norm(points - [0, 0, 1], axis=-1) + np.linalg.norm(points - [0, 0.01, 1], axis=-1)) / ep.speed_of_light
+    length = sum(np.linalg.norm(points - antenna, axis=-1) for antenna in ([0, 0, 1], [0, 0.01, 1]))
+    delay = length / ep.speed_of_light
     cycles = FREQUENCY * delay + waveform.slope * (at - at[:, :1]) * delay - 0.5 * waveform.slope * delay**2
     expected = np.exp(2j * np.pi * cycles)
 

@@ -3,22 +3,15 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import FREQUENCY, build_radar, chirp_times
 
-FREQUENCY = 77e9
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
 ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
 ON_FERMAT = 1e-3       # rad: the least that a renewal mends
 
 
 def radar_of(num_chirps=64, chirp_interval=100e-6, num_samples=64):
-    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=0.3e9, num_samples=num_samples, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
-
-
-def chirp_times(radar):
-    waveform = radar.waveform
-    return np.arange(waveform.num_chirps) * waveform.chirp_interval + 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+    return build_radar(bandwidth=0.3e9, num_chirps=num_chirps, chirp_interval=chirp_interval, num_samples=num_samples)
 
 
 def facing(half_width, half_height):
@@ -73,7 +66,8 @@ def sliding_scene(wall_end=60.0):
     scene = ep.Scene()
     wall = ep.Mesh([[-20, 3, -10], [wall_end, 3, -10], [wall_end, 3, 12], [-20, 3, 12]], [[0, 1, 2], [0, 2, 3]])
     scene.add(wall, name="wall", material=ep.Material.metal())
-    scene.add(facing(0.5, 2.0), name="target", material=ROUGH, position=(19.5, 0, 0), motion=ep.LinearMotion(velocity=(60, 0, 0)))
+    scene.add(facing(0.5, 2.0), name="target", material=ROUGH, position=(19.5, 0, 0),
+              motion=ep.LinearMotion(velocity=(60, 0, 0)))
     return scene
 
 

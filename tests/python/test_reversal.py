@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 from support.shapes import rectangle
 
 RECIPROCITY = 1e-6  # relative, of the power of a path when the antennas change places
@@ -10,10 +11,7 @@ POLARIZED_RECIPROCITY = 1e-4  # likewise: matrices are kept in single precision,
 
 
 def make_radar(transmitter, receiver, sent=(0, 0, 1), received=(0, 0, 1)):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=1,
-                                chirp_interval=30e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter, polarization=sent)],
-                    receivers=[ep.Antenna(receiver, polarization=received)])
+    return build_radar([ep.Antenna(transmitter, polarization=sent)], [ep.Antenna(receiver, polarization=received)])
 
 
 def corner_scene():
@@ -58,7 +56,8 @@ def test_exchanged_antennas_exchange_the_paths():
 def test_a_small_plate_is_no_mirror():
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.05, 0.05), name="plate", material="metal", position=(5, 0, 0), yaw=-0.4189)
-    scene.add(ep.actors.sphere(0.3), name="ball", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(3, 2.2, 0))
+    scene.add(ep.actors.sphere(0.3), name="ball", material=ep.Material(reflectivity=0.5, scattering=1.0),
+              position=(3, 2.2, 0))
     paths = ep.trace(scene, make_radar((0, 0, 0), (0, 0, 0)), num_rays=50000, max_bounces=2)
     assert paths.frame.statistics.num_small_mirrors > 0
     assert ("plate", "ball") not in sequences(paths)

@@ -102,8 +102,8 @@ translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.
 
 
 def test_a_material_table_changes_a_named_material(write):
-    material = ep.load_scene(write(mesh_object(
-        'material = {base = "concrete", scattering = 0.3, cross_polarization = 0.1, mirror = true}'))).scene.meshes[0].material
+    table = 'material = {base = "concrete", scattering = 0.3, cross_polarization = 0.1, mirror = true}'
+    material = ep.load_scene(write(mesh_object(table))).scene.meshes[0].material
     assert material.permittivity == ep.materials["concrete"].permittivity
     assert (material.scattering, material.cross_polarization, material.mirror) == (0.3, 0.1, True)
 
@@ -187,7 +187,8 @@ FAULTS = [
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}", "parts: must be all expressions (one partition) or all tables"),
     (RADAR + "[parts]\na = 'T & R'",
      "parts.a: path expression: expected a hit (. 'mesh' S D [...]) or '(', got &\n  T & R\n    ^"),
-    (RADAR + "[parts.b]\na = 'T . R & power > x'", "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
+    (RADAR + "[parts.b]\na = 'T . R & power > x'",
+     "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
     (RADAR + "[parts.b]\na = 'T . R & power > abc'",
      "parts.b.a: path expression: expected a power in W, such as 1e-15, got 'abc'\n"),
     (RADAR + mesh_object("material = 'metal'") + "\n[parts]\na = \"T 'wal' R\"",

@@ -10,6 +10,7 @@ import echopath as ep
 from echopath.bench.machine import machine
 from echopath.cli.run import write_outputs
 from echopath.plots.style import new_figure, save_png
+from support.radars import build_radar
 
 SEED = 2**63 + 11  # no default, and more than a double holds
 NOISE_SEED = 7
@@ -23,9 +24,7 @@ def folder(tmp_path_factory):
     scene = ep.Scene()
     scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(4, 0, 1), material="clothing",
               motion=ep.LinearMotion(velocity=(-2, 0, 0)))
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=8,
-                                chirp_interval=1e-4)
-    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))], transmit_power=10.0)
+    radar = build_radar([(0, 0, 1)], [(0, 0.01, 1)], num_chirps=8, chirp_interval=1e-4, transmit_power=10.0)
     frame = ep.simulate(scene, radar, num_rays=2000, seed=SEED, noise_seed=NOISE_SEED, parts={"one": "T . R"}, labels=True,
                         detections={"false_alarm_rate": 1e-2})
     assert len(frame.detections) > 0

@@ -78,7 +78,8 @@ def test_random_selections_are_read_back(paths):
         mask = selection.matches(paths)
         assert np.array_equal(ep.Selection(selection.text).matches(paths), mask), selection
         shares.append(mask.mean())
-    assert np.mean((np.array(shares) > 0.02) & (np.array(shares) < 0.98)) > 0.3  # neither all nor none, else it proves little
+    # neither all nor none, else it proves little
+    assert np.mean((np.array(shares) > 0.02) & (np.array(shares) < 0.98)) > 0.3
 
 
 def test_power_compares_like_the_powers_of_the_paths(paths):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipkm1
 from support.arm import BEND, ELBOW, LENGTH, arm_weights, make_arm, tube
+from support.radars import build_radar
 from support.shapes import METAL, lambert
 from support.slow_lengths import deformed
 
@@ -17,10 +18,8 @@ SEAM_TOLERANCE = 1e-6          # of the field: float weights of rays that a seam
 GRAVITY, START_ANGLE = 9.81, np.radians(30)
 
 
-def make_radar(position=(0, 0, 0), num_chirps=64, chirp_interval=60e-6):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(position)], receivers=[ep.Antenna(position)])
+def make_radar(num_chirps=64, **settings):
+    return build_radar(num_samples=512, num_chirps=num_chirps, **settings)
 
 
 def pendulum_angle(times, length=1.0):
@@ -51,7 +50,8 @@ def swung(point, angle):
 def pendulum():
     """An arm whose shoulder swings, its tip 1 m below, rigid at the elbow."""
     mesh = ep.Mesh(tube().vertices / LENGTH, tube().triangles)
-    return mesh, ep.Skin(mesh.vertices, [ep.Joint("upper", motion=swing()), ep.Joint("fore", "upper", position=(0, 0, -0.5))],
+    return mesh, ep.Skin(mesh.vertices,
+                         [ep.Joint("upper", motion=swing()), ep.Joint("fore", "upper", position=(0, 0, -0.5))],
                          arm_weights(mesh.vertices * LENGTH))
 
 

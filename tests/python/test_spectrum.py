@@ -3,14 +3,13 @@ import pytest
 
 import echopath as ep
 from echopath import _core
+from support.radars import build_radar
 
 C = 299792458.0
 
 
-def radar_of(num_chirps=128, num_tx=1, real=False, **changes):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=30e-6, real=real)
-    return ep.Radar(waveform, transmitters=[ep.Antenna()] * num_tx, receivers=[ep.Antenna()], **changes)
+def radar_of(num_chirps=128, num_tx=1, **settings):
+    return build_radar([(0, 0, 0)] * num_tx, num_samples=512, num_chirps=num_chirps, chirp_interval=30e-6, **settings)
 
 
 def moving_point(radar, distance, speed, amplitude=1.0):

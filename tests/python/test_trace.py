@@ -3,16 +3,15 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 from support.slow_rays import closest_hit, segment_is_free
 
 BARYCENTRIC_TOLERANCE = 2e-3  # single precision of a ray over some metres on triangles of decimetres
 ON_RAY_TOLERANCE = 1e-4       # m, likewise
 
 
-def make_radar(transmitter=(0.0, 0.0, 0.0), receiver=(0.0, 0.3, 0.0), num_chirps=1, **keywords):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=30e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter)], receivers=[ep.Antenna(receiver)], **keywords)
+def make_radar(transmitter=(0.0, 0.0, 0.0), receiver=(0.0, 0.3, 0.0), **settings):
+    return build_radar([transmitter], [receiver], num_samples=512, **settings)
 
 
 def triangle_soup(seed, count=60):

@@ -7,7 +7,8 @@ import pytest
 import echopath as ep
 from echopath.materials import data_folder
 from support import shapes
-from support.slides import TARGET, TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
+from support.radars import build_radar
+from support.slides import TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of transmitter and target, 3 m aside
@@ -71,10 +72,8 @@ def test_phase_error_of_two_slides_is_that_of_a_search(radii):
 # --- a warning for each way in which one trace fails ---
 
 def radar_of(num_chirps=128, chirp_interval=40e-6, transmitters=((0, 0, 1),), receivers=((0, 0, 1),), motion=None):
-    waveform = ep.ChirpSequence(start_frequency=shapes.FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=chirp_interval)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(p) for p in transmitters],
-                    receivers=[ep.Antenna(p) for p in receivers], motion=motion)
+    return build_radar(transmitters, receivers, num_samples=512, num_chirps=num_chirps, chirp_interval=chirp_interval,
+                       motion=motion)
 
 
 def scene_of(**objects):
@@ -239,15 +238,19 @@ def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
     """Legs are shared by the paths over all pairs of mirror chains to a hit: alone, each path is asked for itself."""
     rough, tall = ep.Material(reflectivity=0.5, scattering=0.6), shapes.rectangle((0, 4, -2), (14, 0, 0), (0, 0, 6))
     floor = shapes.rectangle((0, -4, 0), (14, 0, 0), (0, 8, 0))
-    scene = scene_of(wall=(tall, rough.replace(mirror=True), (0, 0, 0), None), floor=(floor, rough.replace(mirror=True), (0, 0, 0), None),
-                     ball=(BALL, rough, (10, 0, 1), moving(velocity=(0, 30, 0))), block=(ep.actors.box((1, 1, 1)), rough, (9, 1.6, 1), None),
+    scene = scene_of(wall=(tall, rough.replace(mirror=True), (0, 0, 0), None),
+                     floor=(floor, rough.replace(mirror=True), (0, 0, 0), None),
+                     ball=(BALL, rough, (10, 0, 1), moving(velocity=(0, 30, 0))), 
+                     block=(ep.actors.box((1, 1, 1)), rough, (9, 1.6, 1), None),
                      screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.5), ROUGH, (4, -1.5, 1), moving(velocity=(0, 400, 0))))
-    apart = ep.Radar(radar_of(num_chirps=1).waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, -2, 1))])
+    apart = ep.Radar(radar_of(num_chirps=1).waveform, transmitters=[ep.Antenna((0, 0, 1))],
+                     receivers=[ep.Antenna((0, -2, 1))])
     paths = ep.trace(scene, apart, num_rays=3000)
     times = [paths.frame.trace_time + lateness for lateness in (0.5 / 400, 1.5 / 400)]
     kinds = ("blocked", "receiver_blocked", "left")
     together = ep.validity(paths, times=times, arrays=True)
-    findings = np.stack([getattr(together, kind) for kind in kinds] + [paths.num_bounces, paths.diffuse == 0, paths.flags & 1])
+    findings = np.stack([*(getattr(together, kind) for kind in kinds), paths.num_bounces, paths.diffuse == 0,
+                         paths.flags & 1])
     last_of_kind = {tuple(column): path for path, column in enumerate(findings.T)}
     assert len(last_of_kind) > 40
     for path in sorted(last_of_kind.values())[::len(last_of_kind) // 40]:

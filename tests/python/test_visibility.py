@@ -1,14 +1,14 @@
 """Which objects a radar can see, against geometry."""
 import echopath as ep
 import pytest
+from support.radars import build_radar
 
 SHARE_ERROR = 1e-3  # of 4096 directions: 24 plates behind screens at random had 4e-4 rms, 9e-4 at most
 
 
 def radar_at(position, **antenna):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=1e6, num_chirps=2,
-                                chirp_interval=60e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna(position, **antenna)], receivers=[ep.Antenna(position, **antenna)])
+    antennas = [ep.Antenna(position, **antenna)]
+    return build_radar(antennas, antennas, num_samples=16, sampling_rate=1e6, num_chirps=2)
 
 
 def person_and_car(gap):

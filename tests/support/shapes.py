@@ -3,7 +3,8 @@ import numpy as np
 
 import echopath as ep
 
-FREQUENCY = 77e9                                # Hz
+from .radars import FREQUENCY, build_radar
+
 WAVELENGTH = ep.speed_of_light / FREQUENCY      # m
 METAL = ep.Material.metal()
 
@@ -71,11 +72,9 @@ def scene_of(**objects):
 
 def make_radar(transmitter, receiver=None, polarization=(0.0, 0.0, 1.0), frequency=FREQUENCY):
     """1 W, isotropic antennas, one chirp."""
-    waveform = ep.ChirpSequence(start_frequency=frequency, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
-                                num_chirps=1, chirp_interval=30e-6)
-    receiver = transmitter if receiver is None else receiver
-    return ep.Radar(waveform, transmitters=[ep.Antenna(transmitter, polarization=polarization)],
-                    receivers=[ep.Antenna(receiver, polarization=polarization)], transmit_power=1.0)
+    places = (transmitter, transmitter if receiver is None else receiver)
+    antennas = [ep.Antenna(place, polarization=polarization) for place in places]
+    return build_radar(antennas[:1], antennas[1:], start_frequency=frequency, num_samples=512, transmit_power=1.0)
 
 
 def fields(paths):

@@ -1,0 +1,136 @@
+"""How labels are asked for: by themselves and from `simulate`, with right and wrong keywords, beside other threads."""
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import _core
+from support.labelled import make_radar, trace_plates_and_wall
+
+ROUNDING = 1e-9  # relative: sums in another order
+
+
+@pytest.fixture(scope="module")
+def plates_and_wall():
+    return trace_plates_and_wall()
+
+
+@pytest.fixture(scope="module")
+def labels(plates_and_wall):
+    paths, parts, _ = plates_and_wall
+    return ep.annotate(paths, parts, window="blackman_harris", zero_pad=2, dynamic_range_db=80.0)
+
+
+def test_simulate_carries_the_labels_of_its_parts(plates_and_wall):
+    paths, parts, _ = plates_and_wall
+    settings = {"num_rays": 5000, "parts": parts, "tolerance": 1e-9}
+    frame = ep.simulate(paths.scene, make_radar(), labels={"dynamic_range_db": 50.0}, **settings)
+    (labels,) = frame.labels.values()
+    alone = ep.annotate(frame.paths, parts, dynamic_range_db=50.0, tolerance=1e-9)
+    assert np.array_equal(labels.dominant, alone.dominant) and labels.objects[0].cells == alone.objects[0].cells
+    assert np.abs(labels.power - alone.power).max() < ROUNDING * alone.whole.max()
+    assert ep.simulate(paths.scene, make_radar(), **settings).labels == {}
+    bare = ep.simulate(paths.scene, make_radar(), num_rays=1000, labels=True)
+    assert bare.parts == {} and bare.labels["parts"].part_names == ["other"]
+
+
+def test_words_name_objects_and_ghosts(labels):
+    text = str(labels)
+    assert "object a: seen" in text and "ghost  a: type" in text and "part   wall:" in text
+    assert "range_doppler" in repr(labels)
+
+
+@pytest.mark.parametrize("keywords, message", [
+    ({"plane": "elevation"}, "plane: must be 'range_doppler' or 'range_azimuth', got 'elevation'"),
+    ({"plane": "range_azimuth"}, "plane: 'range_azimuth' needs antennas side by side"),
+    ({"angles": {}}, "angles: are for the plane 'range_azimuth'"),
+    ({"dynamic_range_db": -1}, "dynamic_range_db: must not be negative"),
+    ({"noise_margin_db": np.nan}, "noise_margin_db: must be finite"),
+    ({"errors": True}, r"errors: need independent batches of rays, trace\(batches=8\)"),
+    ({"window": "han"}, "window"),
+    ({"zero_pad": 0}, "zero_pad"),
+    ({"objects": ["bicycle"]}, "bicycle"),
+    ({"parts": {"one": {"a": "T . R"}}}, "parts: must be one partition"),
+    ({"parts": {"one": np.zeros((1, 1, 2, 2))}}, "parts: cubes must have shape"),
+    ({"parts": ep.parts.Parts({"other": np.zeros((1, 1, 64, 256))}, {}, make_radar(height=1.1)), "radar": make_radar()},
+     "parts: must be of the radar, got those of another transmitters"),
+])
+def test_bad_settings_are_named(plates_and_wall, keywords, message):
+    with pytest.raises(ValueError, match=message):
+        ep.annotate(plates_and_wall[0], **{"parts": {}} | keywords)
+
+
+def test_unknown_keywords_name_the_nearest(plates_and_wall):
+    with pytest.raises(TypeError, match="annotate: unknown keyword 'tolerence', the nearest right one is 'tolerance'"):
+        ep.annotate(plates_and_wall[0], tolerence=1e-6)
+    with pytest.raises(TypeError, match="annotate_frame: unknown keyword 'object', the nearest right one is 'objects'"):
+        ep.annotate_frame(None, object=["a"])
+    with pytest.raises(TypeError,
+                       match="labels: unknown keyword 'noise_margin', the nearest right one is 'noise_margin_db'"):
+        ep.simulate(ep.Scene(), make_radar(), labels={"noise_margin": 3})
+
+
+@pytest.mark.parametrize("objects, message", [({"x": "bicycle"}, "objects: .*'bicycle'"),
+                                              ({"x": "a", "y": "a"}, "objects: must each have a mesh")])
+def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkeypatch, objects, message):
+    monkeypatch.setattr(ep, "trace", None)
+    with pytest.raises(ValueError, match=message):
+        ep.simulate(plates_and_wall[0].scene, make_radar(), labels={"objects": objects})
+
+
+def test_no_keywords_are_all_defaults(plates_and_wall):
+    paths, _, _ = plates_and_wall
+    frame = ep.simulate(paths.scene, make_radar(), num_rays=1000, labels={}, detections={})
+    assert list(frame.labels) == ["parts"] and len(frame.detections) > 0
+    none = ep.simulate(paths.scene, make_radar(), num_rays=1000, labels=False, detections=False)
+    assert none.labels == {} and none.detections is None
+
+
+def test_detections_have_the_objects_of_the_labels(plates_and_wall):
+    paths, _, _ = plates_and_wall
+    frame = ep.simulate(paths.scene, make_radar(), num_rays=5000, labels={"objects": {"target": ["a", "b"]}},
+                        detections=True)
+    assert {"target"} <= set(frame.detections.object) <= {"target", ""}
+
+
+@pytest.mark.parametrize("keywords, error, message", [
+    ({"false_alarm": 1e-3}, TypeError,
+     "detections: unknown keyword 'false_alarm', the nearest right one is 'false_alarm_rate'"),
+    ({"false_alarm_rate": 2.0}, ValueError, "false_alarm_rate: must be in"),
+    ({"objects": ["bicycle"]}, ValueError, "bicycle"),
+])
+def test_bad_keywords_of_detections_are_told_before_the_trace(plates_and_wall, monkeypatch, keywords, error, message):
+    monkeypatch.setattr(ep, "trace", None)
+    with pytest.raises(error, match=message):
+        ep.simulate(plates_and_wall[0].scene, make_radar(), detections=keywords)
+
+
+GIL_CALLS = {
+    "power_shares": lambda power, mask: _core.power_shares(power),
+    "cell_masks": lambda power, mask: _core.cell_masks(power[0], 0.5, 0.0),
+    "strongest_part": lambda power, mask: _core.strongest_part(power, mask)}
+TRIES = 100  # a busy machine may let the other thread wait for longer than one call
+
+
+@pytest.mark.parametrize("name", GIL_CALLS)
+def test_other_threads_run_beside_labels(name):
+    power = np.ones((4, 2000, 1000))
+    arrays = power, np.ones((2000, 1000), bool)
+    go, ran, interval = threading.Lock(), threading.Event(), sys.getswitchinterval()
+    go.acquire()
+    other = threading.Thread(target=lambda: (go.acquire(), ran.set()))
+    other.start()
+    sys.setswitchinterval(1000.0)  # s: another thread runs only where this one lets it
+    try:
+        go.release()
+        for _ in range(TRIES):
+            GIL_CALLS[name](*arrays)
+            if ran.is_set():
+                break
+        was_run = ran.is_set()
+    finally:
+        sys.setswitchinterval(interval)
+        other.join()
+    assert was_run

@@ -19,6 +19,14 @@ ROUNDING = 1e-10             # relative to the peak, of sums of some hundred ter
 TARGET_RADIUS = 0.05         # m, of the spheres that stand for points
 # A sphere's echo comes from its point nearest to the antennas, within the footprint's error; beams of 7 to 30 degrees.
 DIRECTION_TOLERANCE = 0.15 * DEGREE
+SPACING_PHASE = 5e-4  # rad: the phase across half a wavelength near broadside, of four digits
+SAMPLED = 0.02        # relative: 2e4 independent cells of noise (0.7 %), or side lobes of a second target (1.2 %)
+SAMPLED_LINE = 0.05   # relative: one map of noise instead of six
+SLOT_PHASE = 1e-4     # rad: of an echo beside the middle of its cell; 3e-5 found
+SPEED_CELL = 0.2      # m/s: of the nearest cell, which are 0.34 m/s wide
+NEAR_BEAM = 0.6       # degrees: from the nearest point of the grid, 1 degree wide
+WIDE_BEAM = 0.1       # degrees: the places are points of the grid
+ROUNDING = 1e-12
 
 
 def waveform(num_chirps=32, num_samples=128, start_frequency=77e9):
@@ -128,9 +136,9 @@ def test_noise_falls_by_the_number_of_elements():
     radar = three_by_four()
     power = np.mean([ep.beamform(noise_map(radar, seed), radar, [-0.5, 0.2]).power.mean() for seed in range(6)])
     cell = _core.noise_power(radar) * 1.5**2 / (32 * 128)  # of one channel, Hann on both axes
-    assert power == pytest.approx(cell / 12, rel=0.02, abs=0)     # 2e4 independent cells: 0.7 % each way
+    assert power == pytest.approx(cell / 12, rel=SAMPLED, abs=0)
     assert ep.range_azimuth(noise_map(radar), radar, [-0.5, 0.2]).power.mean() == pytest.approx(
-        _core.noise_power(radar) * 1.5 / 128 / 12, rel=0.05)
+        _core.noise_power(radar) * 1.5 / 128 / 12, rel=SAMPLED_LINE)
 
 
 def test_the_edge_of_an_array_near_a_target_is_behind_by_its_published_phase():
@@ -141,8 +149,8 @@ def test_the_edge_of_an_array_near_a_target_is_behind_by_its_published_phase():
     spectrum = ep.range_doppler(cube_of_points(radar, [((5.0, 0, 0), (0, 0, 0), 1.0)]), radar)
     _, distance = strongest_cell(spectrum)
     left, middle, right = spectrum.values[0, :, 0, distance]
-    assert np.angle(left / middle) == pytest.approx(0.4035, abs=5e-4)
-    assert np.angle(right / middle) == pytest.approx(0.4035, abs=5e-4)
+    assert np.angle(left / middle) == pytest.approx(0.4035, abs=SPACING_PHASE)
+    assert np.angle(right / middle) == pytest.approx(0.4035, abs=SPACING_PHASE)
 
 
 def scene_of_spheres(*centres, velocity=None):
@@ -216,7 +224,7 @@ def test_slots_of_one_place_differ_by_the_published_phase():
     radar = mimo([(0, 0), (0, 0)], [(0, 0)], chirps=waveform(num_chirps=128))
     spectrum = spectrum_of(scene_of_spheres([8.0, 0, 0], velocity=(10.0, 0, 0)), radar)
     first, second = spectrum.values[(slice(None), 0, *strongest_cell(spectrum))]
-    assert np.angle(second / first) == pytest.approx(0.974568, abs=1e-3)
+    assert np.angle(second / first) == pytest.approx(0.974568, abs=SLOT_PHASE)
 
 
 def test_fast_targets_unfold_by_their_slots():
@@ -224,9 +232,9 @@ def test_fast_targets_unfold_by_their_slots():
     radar = three_by_four(chirps=waveform(num_chirps=64))
     spectrum = ep.range_doppler(cube_of_points(radar, [(at(10.0, 0.4, 0.0), at(14.0, 0.4, 0.0), 1e-5)]), radar)
     cell = strongest_cell(spectrum)
-    assert spectrum.velocity[cell[0]] == pytest.approx(14.0 - 2 * radar.waveform.max_velocity(3), abs=0.2)
+    assert spectrum.velocity[cell[0]] == pytest.approx(14.0 - 2 * radar.waveform.max_velocity(3), abs=SPEED_CELL)
     found = ep.estimate_angles(spectrum, radar, cells=[cell], folds=1)
-    assert found.velocity[0] == pytest.approx(14.0, abs=0.2)
+    assert found.velocity[0] == pytest.approx(14.0, abs=SPEED_CELL)
     assert found.azimuth[0] == pytest.approx(0.4, abs=DIRECTION_TOLERANCE)
     assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
 
@@ -240,8 +248,8 @@ def test_a_map_shows_targets_at_their_range_azimuth_and_power():
     for distance, azimuth in ((5.0, 0.5), (8.0, -0.2)):
         near = np.abs(picture.range - distance + TARGET_RADIUS) < 0.3
         a, r = np.unravel_index(picture.power[:, near].argmax(), (len(picture.azimuth), near.sum()))
-        assert picture.azimuth[a] == pytest.approx(azimuth, abs=0.6 * DEGREE)
-        assert picture.power[:, near][a, r] == pytest.approx(power[near][r], rel=0.02, abs=0)  # of the other's side lobes
+        assert picture.azimuth[a] == pytest.approx(azimuth, abs=NEAR_BEAM * DEGREE)
+        assert picture.power[:, near][a, r] == pytest.approx(power[near][r], rel=SAMPLED, abs=0)
 
 
 def test_the_scene_of_corners_shows_each_target_at_its_place():
@@ -256,7 +264,7 @@ def test_the_scene_of_corners_shows_each_target_at_its_place():
         one = maps["corners" if name.startswith("corner") else "balls"]
         near = np.abs(one.range - distance) < 0.3
         a, r = np.unravel_index(one.power[:, near].argmax(), (len(one.azimuth), near.sum()))
-        assert one.azimuth[a] == pytest.approx(azimuth * DEGREE, abs=1.0 * DEGREE), name
+        assert one.azimuth[a] == pytest.approx(azimuth * DEGREE, abs=WIDE_BEAM * DEGREE), name
     assert frame.range_azimuth.power.shape == (301, 256)
 
 
@@ -289,8 +297,8 @@ def test_virtual_arrays_tell_what_they_are():
     np.testing.assert_allclose(array.positions, slow_beams.channel_positions(mimo([(0, 0), (3, 0)], LINE, height=1.0)))
     assert array.num_overlaps == 1 and array.element_of_channel.tolist() == [[0, 1, 2, 3], [3, 4, 5, 6]]
     assert array.grid_shape == (1, 7) and array.gaps.shape == (0, 2)
-    assert array.grid_spacing == pytest.approx((0.0, HALF)) and array.grid_deviation < 1e-12
-    np.testing.assert_allclose(array.grid_axes, [[0, 0, 1], [0, 1, 0]], atol=1e-12)
+    assert array.grid_spacing == pytest.approx((0.0, HALF)) and array.grid_deviation < ROUNDING
+    np.testing.assert_allclose(array.grid_axes, [[0, 0, 1], [0, 1, 0]], atol=ROUNDING)
     assert "7 elements on a grid of 1 x 7" in repr(array)
     sparse = ep.virtual_array(mimo([(0, 0)], [(0, 0), (1, 0), (4, 0)]))
     assert sparse.gaps.tolist() == [[0, 2], [0, 3]]

@@ -132,7 +132,7 @@ def test_power_of_an_object_is_that_of_its_cube(plates_and_wall):
     paths, parts, _ = plates_and_wall
     made = ep.decompose(paths, None, parts)
     for label in ep.annotate(paths, made).objects:
-        assert label.power / np.mean(np.abs(made[label.name]) ** 2) == pytest.approx(1.0, abs=1e-6)
+        assert label.power / np.mean(np.abs(made[label.name]) ** 2) == pytest.approx(1.0, abs=ROUNDING)
 
 
 class OneCell:
@@ -153,7 +153,7 @@ def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
         found.add(cubes, powers.CubeSet(None, 0.5, {}))
     cells = np.stack([found.cells[family] for family in families])
     assert objects._strongest_family(found, families, cells, np.ones((1, 1), bool)).item() == wins
-    assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=1e-8)
+    assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=10 * ROUNDING)
 
 
 def test_pairs_of_ghosts_have_their_cells_together(labels):

@@ -12,6 +12,7 @@ PARTS = {"rough": "T 'rough' R", "metal": "T 'metal' R"}
 SPREAD = 0.45
 SPECKLE = 0.2  # relative, three times the error of the mean of 40 independent sums over few cells
 HANN_BANDWIDTH = 1.5  # cells
+ROUNDING = 1e-9
 
 
 def make_radar(num_rx=2):
@@ -86,7 +87,7 @@ def test_certain_cells_keep_their_label_from_seed_to_seed(seeds):
 
 def test_mean_shares_sum_to_one_where_there_is_power(seeds):
     total = seeds[0].mean_share.sum(axis=0)
-    assert np.all((np.abs(total - 1) < 1e-9) | (total == 0)) and np.any(total > 0)
+    assert np.all((np.abs(total - 1) < ROUNDING) | (total == 0)) and np.any(total > 0)
 
 
 def test_beams_have_errors_where_their_power_is_a_mean():

@@ -5,6 +5,8 @@ import pytest
 import echopath as ep
 from support.labelled import ROUGH, add_plate, add_wall, make_radar, way
 
+DEPTH = 0.4  # m: the body is that deep
+
 
 def person_behind_car(with_wall: bool):
     """A person 2 m behind a car that hides it, seen from bumper height."""
@@ -36,7 +38,7 @@ def test_only_cells_that_multipath_lights_are_ghosts_of_a_hidden_person():
     two_way = max(ghosts, key=lambda ghost: ghost.peak.power)
     assert two_way.via == ("wall",) and two_way.order == 3
     distance, _ = way((9 - 0.15, -0.75, 1), (0, 0, 0), over_wall=True)  # of the front, from the image of the radar
-    assert two_way.peak.range == pytest.approx(distance, abs=0.4)       # the body is that deep
+    assert two_way.peak.range == pytest.approx(distance, abs=DEPTH)
 
 
 def test_why_an_object_is_not_in_the_map():

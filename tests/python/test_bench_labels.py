@@ -8,6 +8,8 @@ import echopath as ep
 from echopath.bench import labels
 from echopath.cli import main
 
+COUNT = 0.02  # relative: counts of hits drawn at random
+
 
 @pytest.fixture(scope="module")
 def paths():
@@ -22,7 +24,7 @@ def paths():
 
 def test_random_paths_have_the_hits_that_are_asked_for(paths):
     made = labels.random_paths(paths, 30_000, 1, 4)
-    assert len(made.mesh_id) == int(made.num_bounces.sum()) == pytest.approx(30_000, rel=0.02, abs=0)
+    assert len(made.mesh_id) == int(made.num_bounces.sum()) == pytest.approx(30_000, rel=COUNT, abs=0)
     assert set(made.num_bounces) == {1, 2, 3, 4} and set(made.mesh_id) == {0, 1, 2}
     assert np.array_equal(made.offsets[1:], np.cumsum(made.num_bounces)[:-1])
     is_diffuse = np.array([[mask >> k & 1 for k in range(5)] for mask in made.diffuse.tolist()], bool)

@@ -9,6 +9,10 @@ from echopath.bench import speed, speed_frames, speed_retrace, speed_synthesis
 from echopath.cli import main
 
 EXTENDED = 1e-12   # of a sum in extended precision against the direct one
+RATES = 1e-9         # relative: differences of delays tell the rate to 1e-10
+FINUFFT_MISS = 2.0   # times the tolerance that FINUFFT was asked for, which it estimates
+MOVING_S = 5e-9      # s of processor time for each moving path and chirp: 2.5 ns by the clock of two threads
+AT_TOLERANCE = 1.1   # times it: few echoes scatter about the mean error that kernels are made for
 
 
 def test_tones_at_rest_are_those_of_the_direct_sum():
@@ -32,7 +36,7 @@ def test_echoes_of_a_trial_move_as_they_should(scattered):
     constant = np.broadcast_to(echoes.amplitudes[0], echoes.amplitudes.shape)
     expected = ep._core.synthesize_echoes(echoes.waveform, delays, still, method="direct")
     made = ep._core.synthesis_trial(echoes.waveform, echoes.delays, constant, method="direct")[2]
-    assert speed_synthesis.relative_error(made, expected) < 1e-8  # differences of delays tell the rate to 1e-10
+    assert speed_synthesis.relative_error(made, expected) < RATES
 
 
 def test_records_have_the_paths_that_were_asked_for():
@@ -48,7 +52,7 @@ def test_the_street_counts_the_paths_that_move_and_adds_up_its_floor():
         assert (row["paths"], row["chirps"]) == (paths.num_paths, street.radar.waveform.num_chirps)
         assert row["moving_paths"] == paths.select("T .* 'pedestrian' .* R").num_paths > 0
         floor = row["floor"]
-        assert floor["moving_s"] == pytest.approx(5e-9 * row["moving_paths"] * row["chirps"] / ep.num_threads())
+        assert floor["moving_s"] == pytest.approx(MOVING_S * row["moving_paths"] * row["chirps"] / ep.num_threads())
         assert row["floor_s"] == pytest.approx(floor["queries_s"] + floor["moving_s"] + floor["still_s"])
 
 
@@ -83,7 +87,7 @@ def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsy
     assert main(["bench", "speed", "--quick", "--out", str(tmp_path / "b")]) == 0
     results = json.loads((tmp_path / "b" / "speed.json").read_text())
     for row in results["synthesis"]["rows"]:
-        assert row["error"] < 1.1 * row["tolerance"] and "finufft_ns" not in row
+        assert row["error"] < AT_TOLERANCE * row["tolerance"] and "finufft_ns" not in row
     for row in results["synthesis"]["slow"]:
         assert row["error"] < row["tolerance"]
     assert results["guard"]["paths"] > 0 and 0.0 <= results["guard"]["share"] < 1.0
@@ -98,4 +102,6 @@ def test_finufft_holds_its_own_tolerance_against_our_direct_sum():
     echoes = speed_synthesis.Echoes(500, 1)
     points, strengths = speed_synthesis.tones(echoes.delays[0], echoes.amplitudes[0], echoes.waveform)
     direct = ep._core.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
-    assert speed_synthesis.relative_error(speed_synthesis.Finufft(points, strengths, 512, 1e-9).samples(), direct) < 1e-8
+    asked = 1e-9
+    theirs = speed_synthesis.Finufft(points, strengths, 512, asked).samples()
+    assert speed_synthesis.relative_error(theirs, direct) < FINUFFT_MISS * asked

@@ -9,7 +9,6 @@ import pytest
 import echopath as ep
 from echopath.cli import report
 from echopath.effects import rules
-from support.radars import build_radar
 
 SPECULAR, ROUGH = "metal", "clothing"
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
@@ -17,7 +16,8 @@ PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)
 
 def make_radar(num_transmitters=1, motion=None, real=False, **antenna):
     transmitters = [ep.Antenna((0, 0.002 * i, 0), **antenna) for i in range(num_transmitters)]
-    return build_radar(transmitters, num_chirps=2, real=real, motion=motion)
+    return ep.Radar(ep.ChirpSequence(num_chirps=2, real=real), transmitters=transmitters, receivers=[ep.Antenna()],
+                    motion=motion)
 
 
 def make_scene(material=SPECULAR, motion=None, smooth=False):

@@ -10,6 +10,7 @@ WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 EXACT = 1e-9                # rad
 NOTE_TOLERANCE = 0.02       # relative: the numbers of the note have two or three digits, its formulas are of second order
 AMPLITUDE_TOLERANCE = 3e-3  # relative and rad: 2^14 rays on the sphere
+SAME_LENGTH = 1e-12  # m: rounding of lengths of some metres
 
 
 def test_displaced_receiver_equals_a_fresh_trace_of_the_same_rays():
@@ -24,7 +25,7 @@ def test_displaced_receiver_equals_a_fresh_trace_of_the_same_rays():
         assert len(here) > 0.9 * fresh.num_paths > 1000
         lengths = paths.lengths([0.0], receiver=receiver)[0, here], fresh.lengths([0.0])[0, there]
         assert np.abs(WAVENUMBER * (lengths[0] - lengths[1])).max() < EXACT
-        assert np.abs(lengths[1] - legs(fresh, receiver)[there]).max() < 1e-12
+        assert np.abs(lengths[1] - legs(fresh, receiver)[there]).max() < SAME_LENGTH
 
 
 def same_hits(first, second):

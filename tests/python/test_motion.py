@@ -7,6 +7,7 @@ import pytest
 import echopath as ep
 
 ROUNDING = 1e-13  # of a few operations on numbers of order 1
+ROUNDING = 1e-12  # m
 
 
 def quaternion_about_z(angle):
@@ -39,7 +40,7 @@ def test_cubic_keyframes_reproduce_a_cubic():
     curve = np.polynomial.Polynomial([1.0, -2.0, 0.5, 3.0])
     motion = ep.KeyframeMotion(times=times, translations=np.outer(curve(times), [1.0, 2.0, -1.0]))
     for time in np.linspace(0, 1, 33):
-        np.testing.assert_allclose(motion.at(time)[:3, 3], curve(time) * np.array([1.0, 2.0, -1.0]), atol=1e-12)
+        np.testing.assert_allclose(motion.at(time)[:3, 3], curve(time) * np.array([1.0, 2.0, -1.0]), atol=ROUNDING)
 
 
 def test_keyframes_give_back_what_they_were_made_from():

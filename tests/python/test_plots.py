@@ -13,6 +13,7 @@ from echopath.plots.clip import clip_triangles, outline
 from support.radars import build_radar
 
 AREA_TOLERANCE = 1e-12
+PLACE = 0.005  # m, of corners of cells about the brightest one; 8e-4 found
 
 
 def area(polygon) -> float:
@@ -128,8 +129,8 @@ def brightest_corner(axes):
 def test_left_is_left_and_ahead_is_up_from_above(from_above):
     axes = plot_range_azimuth(from_above).axes[0]
     left, ahead = brightest_corner(axes)
-    assert left == pytest.approx(6.0 * np.sin(np.radians(30.0)), abs=0.05)
-    assert ahead == pytest.approx(6.0 * np.cos(np.radians(30.0)), abs=0.05)
+    assert left == pytest.approx(6.0 * np.sin(np.radians(30.0)), abs=PLACE)
+    assert ahead == pytest.approx(6.0 * np.cos(np.radians(30.0)), abs=PLACE)
     assert axes.get_xlim()[0] > left > axes.get_xlim()[1]  # larger to the left
     assert axes.get_ylim()[0] < ahead < axes.get_ylim()[1] < 9.0
 

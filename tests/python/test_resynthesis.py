@@ -7,6 +7,8 @@ import echopath as ep
 DISTANCE, AZIMUTH, SPEED = 9.0, np.radians(20.0), -3.0  # of a small plate in the middle of the frame
 ANGLE_TOLERANCE = np.radians(1.0)  # of the phase centre of a plate whose points have random phases
 WAVELENGTH = ep.speed_of_light / 77.5e9
+ADDITIVITY = 1e-12  # of the whole
+RANGE_CELL = 0.15   # m
 
 
 def waveform(**changes):
@@ -72,11 +74,11 @@ def test_another_array_sees_the_direction(paths, read_back):
     above = ep.range_azimuth(ep.range_doppler(cube, seen_by), seen_by, combine="peak")
     row, column = np.unravel_index(above.power.argmax(), above.power.shape)
     assert above.azimuth[row] == pytest.approx(AZIMUTH, abs=ANGLE_TOLERANCE)
-    assert above.range[column] == pytest.approx(DISTANCE, abs=2.0 * 0.15)
+    assert above.range[column] == pytest.approx(DISTANCE, abs=2.0 * RANGE_CELL)
 
 
 def test_parts_of_the_file_add_up_for_another_radar(read_back):
     seen_by = radar(num_rx=2, bandwidth=5e8)
     parts = ep.decompose(read_back, seen_by, {"near": "T 'plate' R & power > 1e-20"})
     whole = ep.synthesize(read_back, seen_by)
-    assert np.linalg.norm(whole - sum(parts.values())) <= 1e-12 * np.linalg.norm(whole)
+    assert np.linalg.norm(whole - sum(parts.values())) <= ADDITIVITY * np.linalg.norm(whole)

@@ -8,6 +8,9 @@ from support.radars import FREQUENCY, build_radar, chirp_times
 WAVE_NUMBER = 2 * np.pi * FREQUENCY / ep.speed_of_light
 ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
 ON_FERMAT = 1e-3       # rad: the least that a renewal mends
+SAME_POWER = 1e-9      # relative: sums in another order
+ADDITIVITY = 1e-12     # of the whole
+MONOTONE = 1e-3        # of the power before: speckle within a stretch may rise a little
 
 
 def radar_of(num_chirps=64, chirp_interval=100e-6, num_samples=64):
@@ -44,10 +47,10 @@ def test_what_comes_in_the_way_takes_its_echoes_out():
     renewed = power_of_chirps(ep.synthesize(target, radar, retrace="invalid", keyframes=16))
     # The shutter needs 0.5 ms over the target, whose shadow is half as wide at 10 m: 5 chirps, in stretches of 4.
     edge = 32
-    assert np.allclose(renewed[:edge - 4], never[:edge - 4], rtol=1e-9) and never.min() > 0
+    assert np.allclose(renewed[:edge - 4], never[:edge - 4], rtol=SAME_POWER) and never.min() > 0
     assert np.all(renewed[edge + 12:] == 0)
     between = renewed[edge - 4:edge + 12].reshape(4, 4).mean(axis=1)
-    assert np.all(np.diff(between) <= 1e-3 * never.max())
+    assert np.all(np.diff(between) <= MONOTONE * never.max())
 
 
 @pytest.mark.hard
@@ -128,7 +131,7 @@ def test_parts_of_renewed_frames_add_up():
     settings = {"retrace": "invalid", "keyframes": 4, "method": "nufft"}
     parts = ep.decompose(paths, radar, {"target": "T 'target' R"}, **settings)
     whole = ep.synthesize(paths, radar, **settings)
-    assert np.abs(sum(parts.values()) - whole).max() < 1e-12 * np.abs(whole).max()
+    assert np.abs(sum(parts.values()) - whole).max() < ADDITIVITY * np.abs(whole).max()
 
 
 @pytest.mark.hard

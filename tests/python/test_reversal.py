@@ -8,6 +8,8 @@ from support.shapes import rectangle
 
 RECIPROCITY = 1e-6  # relative, of the power of a path when the antennas change places
 POLARIZED_RECIPROCITY = 1e-4  # likewise: matrices are kept in single precision, and some receivers are nearly crossed
+SAME_LENGTH = 1e-9      # m: hits found from either end
+ROUNDING = 1e-12        # m
 
 
 def make_radar(transmitter, receiver, sent=(0, 0, 1), received=(0, 0, 1)):
@@ -50,7 +52,7 @@ def test_exchanged_antennas_exchange_the_paths():
         hits = points[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
         for start, end, length in ((here, there, lengths[path]), (there, here, swapped[path])):
             chain = np.vstack([start, hits, end])
-            assert abs(np.linalg.norm(np.diff(chain, axis=0), axis=1).sum() - length) < 1e-12
+            assert abs(np.linalg.norm(np.diff(chain, axis=0), axis=1).sum() - length) < ROUNDING
 
 
 def test_a_small_plate_is_no_mirror():
@@ -148,7 +150,7 @@ def test_exchanged_antennas_receive_the_same_over_mirrors_alone():
     assert len(records[0]) > 10 and set(records[1]) == {chain[::-1] for chain in records[0]}
     for chain, (power, length) in records[0].items():
         opposite = records[1][chain[::-1]]
-        assert abs(opposite[0] / power - 1) < RECIPROCITY and abs(opposite[1] - length) < 1e-9
+        assert abs(opposite[0] / power - 1) < RECIPROCITY and abs(opposite[1] - length) < SAME_LENGTH
 
 
 @pytest.mark.parametrize("here, there", [((0, 0, 0), (0, 0, 0)), ((0, 1000, 0), (0, -1000, 0))])

@@ -11,6 +11,7 @@ import echopath as ep
 ROUNDING = 1e-13  # of a few operations on numbers of order 10
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 SQUARE = [[0, 1, 2], [0, 2, 3]]
+ROUNDING = 1e-12     # of lengths and areas of some metres
 
 
 @pytest.fixture
@@ -252,10 +253,10 @@ def test_overlaps_name_their_meshes_and_tell_area_and_distance():
     scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(3, 0, 1))
     found, = scene.coplanar_overlaps()
     assert found.names == ("ground", "box") and found.mesh_ids == (0, 1) and found.num_triangles == 4
-    assert found.area == pytest.approx(0.36, rel=1e-12) and found.distance < 1e-15
+    assert found.area == pytest.approx(0.36, rel=ROUNDING) and found.distance < ROUNDING
     assert str(found) == "CoplanarOverlap('ground', 'box', 4 triangles, 0.36 m^2)"
     later, = scene.coplanar_overlaps(time=2.0)
-    assert later.distance == pytest.approx(8e-6, abs=1e-12)
+    assert later.distance == pytest.approx(8e-6, abs=ROUNDING)
     assert scene.coplanar_overlaps(time=2.0, max_distance=7e-6) == [] == ep.Scene().coplanar_overlaps()
     with pytest.raises(ValueError, match="max_distance: must be positive and finite, m, got 0"):
         scene.coplanar_overlaps(max_distance=0.0)

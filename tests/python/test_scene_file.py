@@ -20,6 +20,8 @@ position = [0.0, 0.01, 1.0]
 """
 QUAD = "v 0 0 0\nv 1000 0 0\nv 1000 500 0\nv 0 500 0\nf 1 2 3 4\n"
 DATA = Path(__file__).resolve().parents[2] / "data"
+ROUNDING = 1e-12  # m
+SWAY = 0.05       # relative: the torso sways by a few centimetres within a step
 
 
 @pytest.fixture
@@ -88,7 +90,7 @@ def test_groups_of_a_mesh_file_are_meshes_of_their_own(write, tmp_path):
 def test_linear_motion_moves_the_object(write):
     scene = ep.load_scene(write(mesh_object(
         'material = "metal"\nmotion = {kind = "linear", velocity = [-1.5, 0.0, 0.0]}'))).scene
-    assert np.allclose(scene.world_vertices(0, 2.0) - scene.world_vertices(0, 0.0), [-3.0, 0.0, 0.0], atol=1e-12)
+    assert np.allclose(scene.world_vertices(0, 2.0) - scene.world_vertices(0, 0.0), [-3.0, 0.0, 0.0], atol=ROUNDING)
 
 
 def test_keyframes_move_the_object_through_their_points(write):
@@ -98,7 +100,7 @@ kind = "keyframes"
 times = [0.0, 1.0, 2.0, 3.0]
 translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.0]]"""))).scene
     rest = scene.world_vertices(0, 0.0)
-    assert np.allclose(scene.world_vertices(0, 2.0) - rest, [1.0, 1.0, 0.0], atol=1e-12)
+    assert np.allclose(scene.world_vertices(0, 2.0) - rest, [1.0, 1.0, 0.0], atol=ROUNDING)
 
 
 def test_a_material_table_changes_a_named_material(write):
@@ -264,7 +266,7 @@ def test_the_pedestrian_of_the_street_walks_towards_the_radar():
     begin, end = (street.scene.world_vertices(mesh.id, time).mean(axis=0) for time in (0.0, 2.0))
     speed = math.dist(begin[:2], end[:2]) / 2.0
     assert 10.0 <= begin[0] <= 12.0 and end[0] < begin[0]
-    assert speed == pytest.approx(1.4, rel=0.05, abs=0)  # the torso sways by a few centimetres within a step
+    assert speed == pytest.approx(1.4, rel=SWAY, abs=0)
 
 
 def tables() -> dict:

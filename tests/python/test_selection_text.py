@@ -9,6 +9,8 @@ import pytest
 import echopath as ep
 from support import shapes
 
+ADDITIVITY = 1e-12  # of the whole
+
 
 @pytest.fixture(scope="module")
 def paths():
@@ -131,4 +133,4 @@ def test_parts_remember_what_they_are(paths):
     views = ep.decompose(paths, None, {"a": {"one": "T . R"}, "b": {"two": TWO}})
     assert views["a"].selections == {"one": "T . R"} and list(views["b"]) == ["two", "other"]
     whole = ep.synthesize(paths)
-    assert np.abs(whole - sum(parts.values())).max() < 1e-12 * np.abs(whole).max()
+    assert np.abs(whole - sum(parts.values())).max() < ADDITIVITY * np.abs(whole).max()

@@ -8,6 +8,7 @@ from support.slow_rays import closest_hit, segment_is_free
 
 BARYCENTRIC_TOLERANCE = 2e-3  # single precision of a ray over some metres on triangles of decimetres
 ON_RAY_TOLERANCE = 1e-4       # m, likewise
+ROUNDING = 1e-12              # m: sums of lengths of some metres in double precision
 
 
 def make_radar(transmitter=(0.0, 0.0, 0.0), receiver=(0.0, 0.3, 0.0), **settings):
@@ -49,7 +50,7 @@ def test_recorded_hits_are_those_of_a_slow_loop():
             corners = soup[hit["mesh_id"]]
             u, v = float(hit["u"]), float(hit["v"])
             point = (1 - u - v) * corners[0] + u * corners[1] + v * corners[2]
-            assert np.allclose(points[paths.offsets[path] + k], point, atol=1e-12)
+            assert np.allclose(points[paths.offsets[path] + k], point, atol=ROUNDING)
             direction = (point - start) / np.linalg.norm(point - start)
             index, slow_u, slow_v, distance = closest_hit(start + 1e-4 * direction, direction, soup)
             origin, start = start, point
@@ -82,7 +83,7 @@ def test_lengths_are_those_of_the_points():
         hits = points[paths.offsets[path]:paths.offsets[path] + paths.num_bounces[path]]
         corners = np.vstack([[0, 0, 0], hits, [0, 0.3, 0]])
         expected = np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()
-        assert abs(lengths[path] - expected) < 1e-12
+        assert abs(lengths[path] - expected) < ROUNDING
 
 
 def test_columns_are_read_only_views():

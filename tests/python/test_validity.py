@@ -15,6 +15,9 @@ MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of tran
 NOTE_TOLERANCE = 0.012       # relative: the formulas of the note are second order in the slide and have two or three digits
 EXCESS_TOLERANCE = 0.01      # relative, up to 1 rad: e = g H^-1 g / 2 is second order in the slide
 GRAZING_SHARE = 1e-6         # of the power: rays within single precision of a facet's horizon
+SUMS = 1e-6             # relative: sums in single precision
+FEW = 0.02              # of the paths: horizons of the ball itself
+LITTLE = 1e-5           # rad: hits in single precision; 4e-7 found
 
 
 def phase_error(paths):
@@ -214,8 +217,8 @@ def test_phase_error_share_and_mean_are_those_of_the_arrays():
     power, phase = report.power, report.phase_error.astype(float)
     assert report.shares.power == pytest.approx(power.sum())
     assert report.phase_error_share == pytest.approx(power[phase > 0.3].sum() / power.sum())
-    assert report.rms_phase_error == pytest.approx(np.sqrt(np.sum(power * phase**2) / power.sum()), rel=1e-6, abs=0)
-    assert report.largest_phase_error == pytest.approx(phase.max(), rel=1e-6, abs=0)
+    assert report.rms_phase_error == pytest.approx(np.sqrt(np.sum(power * phase**2) / power.sum()), rel=SUMS, abs=0)
+    assert report.largest_phase_error == pytest.approx(phase.max(), rel=SUMS, abs=0)
 
 
 def test_arrays_name_the_leg_that_is_blocked():
@@ -266,7 +269,7 @@ def test_arrays_name_the_mirror_that_a_point_has_left():
     for select, left in (("'wall' 'ball'", 1), ("'ball' 'wall'", 2), ("'wall' 'ball' 'wall'", 5), ("'ball'", 0)):
         report = ep.validity(paths.select(f"T {select} R"), times=[paths.frame.trace_time + 0.01], arrays=True)
         hidden = (report.blocked != 0) | (report.receiver_blocked != 0)  # a few, by the ball's own horizon
-        assert report.num_paths > 20 and np.mean(hidden) < 0.02 and np.all(report.left[~hidden] == left), select
+        assert report.num_paths > 20 and np.mean(hidden) < FEW and np.all(report.left[~hidden] == left), select
 
 
 def test_nothing_is_wrong_at_the_trace_time():
@@ -282,7 +285,7 @@ def test_nothing_is_wrong_at_the_trace_time():
     assert paths.num_bounces.max() == 4
     for share in ("slid", "left", "blocked", "turned", "new_surface"):
         assert getattr(report.shares, share) < GRAZING_SHARE, share
-    assert report.rms_phase_error < 1e-5
+    assert report.rms_phase_error < LITTLE
 
 
 @pytest.mark.hard

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine (as root, or with sudo) to a running echopath. Safe to call again: only what is missing or has
-# changed is done.
+# From a fresh Debian 12 machine (as root, or with sudo) to a running echopath. Safe to call again: only what is missing or
+# has changed is done.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libembree-dev libopenmesh-dev libtinyobjloader-dev
-  libeigen3-dev libfftw3-dev libtbb-dev libgtest-dev)
+packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libembree-dev libopenmesh-dev
+  libtinyobjloader-dev libeigen3-dev libfftw3-dev libtbb-dev libgtest-dev)
 # A Qt window with OpenGL, and a virtual screen for its tests.
 screen_packages=(xvfb xauth)
 viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
@@ -78,7 +78,9 @@ install_project() {
   say "installing echopath into .venv"
   pip_install --no-build-isolation -e ".${extras:+[$extras]}"
   # On the path itself, too: in the folder above, the project's own folder would else be taken for the package.
-  printf '%s\n' "$PWD/python" >"$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/echopath_sources.pth"
+  local packages_folder
+  packages_folder=$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+  printf '%s\n' "$PWD/python" >"$packages_folder/echopath_sources.pth"
   touch ".venv/installed-$hash-$extras"
 }
 
@@ -152,7 +154,8 @@ case $verb in
     exec .venv/bin/echopath demo "$@"
     ;;
   test)
-    if has_viewer_tests; then prepare test,viewer,test-viewer "${packages[@]}" "${viewer_packages[@]}" "${screen_packages[@]}"
+    if has_viewer_tests
+    then prepare test,viewer,test-viewer "${packages[@]}" "${viewer_packages[@]}" "${screen_packages[@]}"
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"

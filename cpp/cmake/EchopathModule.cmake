@@ -6,7 +6,8 @@ if(ECHOPATH_WERROR)
   target_compile_options(echopath_options INTERFACE -Werror)
 endif()
 if(ECHOPATH_SANITIZE)
-  target_compile_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_compile_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
   if(ECHOPATH_SANITIZE MATCHES address AND ECHOPATH_SANITIZE MATCHES undefined)
     # Left out for a third of the time of compiling. The address sanitizer sees accesses through null and outside of objects
     # by itself; misaligned ones, and references to null that nothing is read through, are not seen.
@@ -30,13 +31,15 @@ function(echopath_module name)
   target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options)
 endfunction()
 
-# Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for infinities,
-# and square roots without errno. Nothing that reorders sums, and nothing that a program notices by linking with it.
+# Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for
+# infinities, and square roots without errno. Nothing that reorders sums, and nothing that a program notices by linking with
+# it.
 function(echopath_finite_numbers name)
   target_compile_options(echopath_${name} PRIVATE -fcx-limited-range -fno-math-errno)
 endfunction()
 
-# echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one GoogleTest program, test_NAME.
+# echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one
+# GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
 # EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
 function(echopath_test name)

@@ -129,7 +129,8 @@ void bind_cells(py::module_& m) {
   m.def("power_shares", &shares_of, py::arg("power"), "Shares of the powers [K, V, R] in their sums.");
   m.def("cell_masks", &masks_of, py::arg("power"), py::arg("noise_floor"), py::arg("dynamic_range"),
         "(above_noise, labelled), bool [V, R], of powers [V, R].");
-  m.def("strongest_part", &strongest_of, py::arg("power"), py::arg("mask"), "Index of the largest of [K, V, R], -1 outside.");
+  m.def("strongest_part", &strongest_of, py::arg("power"), py::arg("mask"),
+        "Index of the largest of [K, V, R], -1 outside.");
   m.def("label_regions", &regions_of, py::arg("label"), py::arg("power"), py::arg("rows_wrap"),
         "Cells, peak and box of each label: list of dict or None.");
   m.def("share_errors", &errors_of, py::arg("cross"), py::arg("coherent"), py::arg("diffuse"), py::arg("dominant"),

@@ -18,7 +18,8 @@ namespace {
 
 constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
 
-constexpr const char* kCfarDoc = R"(Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
+constexpr const char* kCfarDoc =
+    R"(Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
 
 A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
 right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
@@ -34,7 +35,8 @@ rank: of "os", the share of the training cells that the statistic is not below, 
 progress: callable(stage, fraction) or None
 Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each side,
 "os" several times that; Ctrl-C is heard.
-Returns a CfarResult. Raises ValueError naming the argument, also for windows of more than 2000 cells, counted without padding.)";
+Returns a CfarResult. Raises ValueError naming the argument, also for windows of more than 2000 cells, counted without
+padding.)";
 
 CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
                    std::optional<int> guard_velocity, std::optional<int> guard_range,

@@ -21,7 +21,9 @@ using Objects = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
 py::object text_key(const std::string& name) { return py::str(name); }
 
-KeyedGrouping selections_grouping(const SelectionPairs& parts) { return {by_selections(named_selections(parts)), &text_key}; }
+KeyedGrouping selections_grouping(const SelectionPairs& parts) {
+  return {by_selections(named_selections(parts)), &text_key};
+}
 
 // Remembers the families that it meets, also those of later records.
 KeyedGrouping families_grouping(SurfaceMap surfaces) {
@@ -89,7 +91,8 @@ std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Rada
   const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
   VisibilitySettings settings;
   settings.time = paths.frame.trace_time;
-  return run_job("visibility", progress, [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job); });
+  return run_job("visibility", progress,
+                 [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job); });
 }
 
 py::tuple sight_tuple(const Sight& sight) {

@@ -128,7 +128,8 @@ Selection power(Selection::Comparison comparison, double watts) { return Selecti
 
 void bind_power(py::module_& m) {
   using Comparison = Selection::Comparison;
-  py::class_<Power> type(m, "Power", R"(The power of a path in W, at the trace time for the first antennas of the radar that traced.
+  py::class_<Power> type(m, "Power",
+                         R"(The power of a path in W, at the trace time for the first antennas of the radar that traced.
 
 ep.power > 1e-15 is a Selection; `paths.power` has the values.)");
   type.def("__lt__", [](const Power&, double watts) { return power(Comparison::kBelow, watts); })

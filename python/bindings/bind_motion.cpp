@@ -104,7 +104,8 @@ Between two keys a rotation goes the shorter way. Raises ValueError naming the a
                              "[T, 3] in m, [0, 3] where none were given")
       .def_property_readonly("rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
                              "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
-      .def_property_readonly("interpolation", [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
+      .def_property_readonly("interpolation",
+                             [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
                              "\"cubic\" or \"linear\"")
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
@@ -124,7 +125,8 @@ void bind_deformation(py::module_& m) {
 }
 
 void bind_sequence(py::module_& m) {
-  py::class_<VertexSequence, Deformation, std::shared_ptr<VertexSequence>>(m, "VertexSequence", R"(Deforming mesh: time -> vertices.
+  py::class_<VertexSequence, Deformation, std::shared_ptr<VertexSequence>>(m, "VertexSequence",
+                                                                           R"(Deforming mesh: time -> vertices.
 
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
@@ -134,7 +136,8 @@ Raises ValueError naming the argument. Cubic sequences take twice the memory of 
       .def_property_readonly("times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly("vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); },
                              "[T, V, 3] in m, a copy")
-      .def_property_readonly("interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
+      .def_property_readonly("interpolation",
+                             [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
                              "\"cubic\" or \"linear\"")
       .def("__repr__", [](const VertexSequence& self) {
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";

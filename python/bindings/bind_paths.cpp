@@ -135,7 +135,8 @@ std::string paths_text(const Paths& self) {
 
 void bind_paths(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Hit, mesh_id, triangle_id, u, v);
-  py::class_<Paths, PathsPtr>(m, "Paths", R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
+  py::class_<Paths, PathsPtr>(m, "Paths",
+                              R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
 
 Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
 share hits; selections share all hits of their trace.)")
@@ -152,17 +153,21 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
-      .def_property_readonly("flags", path_column(&Paths::flags), "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays")
+      .def_property_readonly("flags", path_column(&Paths::flags),
+                             "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays")
       .def_property_readonly("jones", &jones_of,
-                             "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter")
+                             "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
+                             "transmitter")
       .def_property_readonly("curved_cell", &curved_cell_of,
-                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat chains")
+                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat "
+                             "chains")
       .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
                              "snapshot of the scene")
       .def_readonly("radar", &Paths::radar, "snapshot of the radar")
       .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
       .def_property_readonly("amplitude", &amplitude_of,
-                             "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length")
+                             "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the "
+                             "length")
       .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
       .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
            py::arg("replay") = "material",
@@ -170,10 +175,11 @@ share hits; selections share all hits of their trace.)")
            "replay as in synthesize.")
       .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
            py::arg("replay") = "material",
-           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's "
-           "frame; replay as in synthesize.")
+           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the "
+           "radar's frame; replay as in synthesize.")
       .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
-      .def("select", &select_paths, py::arg("selection"), "The paths that `selection`, a path expression or a Selection, takes.")
+      .def("select", &select_paths, py::arg("selection"),
+           "The paths that `selection`, a path expression or a Selection, takes.")
       .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")
       .def("_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
            "The paths where a mask, bool [P], is true, with only the hits that they use.")

@@ -272,7 +272,8 @@ Raises ValueError naming the argument.)")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB")
-      .def_property_readonly("multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
+      .def_property_readonly("multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); },
+                             "\"tdm\"")
       .def_property_readonly("motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
                              "Motion of the radar's frame, or None")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")

@@ -40,7 +40,8 @@ auto share(double ValidityShares::* field) {
 
 std::string repr_of(const Validity& self) {
   std::ostringstream text;
-  text << "Validity(" << (self.warnings().empty() ? "one trace serves" : std::to_string(self.warnings().size()) + " warnings")
+  text << "Validity(" << (self.warnings().empty() ? "one trace serves"
+                                                  : std::to_string(self.warnings().size()) + " warnings")
        << ", " << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
   return text.str();
 }
@@ -110,7 +111,8 @@ the trace time and the times of the check; physical-optics paths are scaled to t
       .def_property_readonly("receiver_blocked", array_column(&ValidityArrays::receiver_blocked),
                              "[P] 1: something comes in the way of the leg to the receiver")
       .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
-      .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change), "[P] largest of a cosine, linear")
+      .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
+                             "[P] largest of a cosine, linear")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
 }
@@ -131,15 +133,16 @@ void bind_renewal(py::module_& m) {
       .def_readonly("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface.")
       .def_readonly("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew.")
       .def("__repr__", [](const Renewal& self) {
-        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) + ", num_blocked=" + std::to_string(self.num_blocked) +
-               ", num_lost=" + std::to_string(self.num_lost) + ", num_moved=" + std::to_string(self.num_moved) + ")";
+        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) + ", num_blocked=" +
+               std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) + ", num_moved=" +
+               std::to_string(self.num_moved) + ")";
       });
   m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
         py::arg("progress") = py::none(),
         R"(A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
 
-Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view has
-no paths.
+Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view
+has no paths.
 
 paths: of a trace
 radar: whose motion carries the antennas of the trace along, or None: that of the trace
@@ -155,7 +158,8 @@ void bind_replay(py::module_& m) {
   bind_shares(m);
   bind_report(m);
   m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false, py::arg("progress") = py::none(),
+        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
+        py::arg("progress") = py::none(),
         R"(Whether one trace serves the whole frame and the whole array: a report with warnings.
 
 Checks all paths at the ends of the frame, for the antennas of the trace and those at the rim of the array: phase errors of

@@ -40,8 +40,9 @@ std::optional<double> as_optional_number(const py::object& value, const char* ar
 
 // --- Material ---
 
-const std::vector<std::string> kMaterialFields = {"conductor",  "permittivity",       "conductivity", "reflectivity", "roughness_height",
-                                                  "scattering", "cross_polarization", "mirror"};
+const std::vector<std::string> kMaterialFields = {"conductor",    "permittivity",     "conductivity",
+                                                  "reflectivity", "roughness_height", "scattering",
+                                                  "cross_polarization", "mirror"};
 
 std::shared_ptr<Material> material(const py::object& conductor, const py::object& permittivity,
                                    const py::object& conductivity, const py::object& reflectivity,

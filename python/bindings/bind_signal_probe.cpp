@@ -57,8 +57,9 @@ void bind_signal_probe(py::module_& m) {
   py::class_<SignalProbe>(m, "SignalProbe",
                           R"(Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
 
-A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each as
-direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly there.)")
+A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each
+as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
+there.)")
       .def(py::init([](uint64_t seed) { return SignalProbe{seed, 0, {}}; }), py::kw_only(), py::arg("seed") = 1)
       .def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
       .def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")
@@ -75,8 +76,8 @@ direct sums of all echoes, and moving echoes, the strongest and random ones of a
       .def_property_readonly("amplitude_error", column(&ProbedChirp::amplitude_error),
                              "[N] rms of the differences of amplitudes in sqrt(W) over their rms")
       .def_property_readonly("share_field", &share_fields,
-                             "[2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, of "
-                             "both halves of the rays of each batch in turn, then of the paths that rays did not find")
+                             "[2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, "
+                             "of both halves of the rays of each batch in turn, then of the paths that rays did not find")
       .def_property_readonly("share_power", &share_powers,
                              "[2 batches + 1] in W: sums of |amplitude|^2 of the paths over rough surfaces, likewise")
       .def_property_readonly("power_sum", column(&ProbedChirp::power_sum), "[N] in W, sum of |amplitude|^2 of all paths")

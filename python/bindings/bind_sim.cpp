@@ -141,15 +141,15 @@ void bind_sim(py::module_& m) {
   }, py::arg("waveform"), py::arg("num_nodes"), "Times [num_nodes] in s of the nodes of synthesis_trial.");
   m.def("synthesis_trial", &synthesis_trial, py::arg("waveform"), py::arg("delays"), py::arg("amplitudes"), py::kw_only(),
         py::arg("method") = "auto", py::arg("tolerance") = 1e-7,
-        "What synthesis of echoes costs that polynomials give over a frame, for benchmarks: delays [K, P] in s and amplitudes "
-        "[K, P] in sqrt(W) at trial_node_times -> (wall seconds, processor seconds, samples [chirp, sample]).");
+        "What synthesis of echoes costs that polynomials give over a frame, for benchmarks: delays [K, P] in s and "
+        "amplitudes [K, P] in sqrt(W) at trial_node_times -> (wall seconds, processor seconds, samples [chirp, sample]).");
   m.def("replay_only", [](const Paths& paths, const Radar& radar, double phase_tolerance) {
     ReplaySettings settings;
     settings.phase_tolerance = phase_tolerance;
     return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
   }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
-        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels, one echo for paths over the "
-        "same hits as synthesis has them, and returns how many path-chirps that were.");
+        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels, one echo for "
+        "paths over the same hits as synthesis has them, and returns how many path-chirps that were.");
   m.def("replay_error", [](const Paths& paths, const Radar& radar, const std::vector<int>& chirps, double phase_tolerance) {
     ReplaySettings settings;
     settings.phase_tolerance = phase_tolerance;
@@ -157,11 +157,13 @@ void bind_sim(py::module_& m) {
         run_job("replay", py::none(), [&](Job& job) { return replay_error(paths, radar, settings, chirps, &job); });
     return py::make_tuple(error.phase, error.amplitude);
   }, py::arg("paths"), py::arg("radar"), py::arg("chirps"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
-        "How far interpolated paths are from paths evaluated at these chirps, for benchmarks: largest errors of phase (rad) and of amplitude (share).");
+        "How far interpolated paths are from paths evaluated at these chirps, for benchmarks: largest errors of phase (rad) "
+        "and of amplitude (share).");
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance, py::arg("retrace") = "never",
-        py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
+        py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::arg("probe") = py::none(),
         R"(The noise-free IF signal of paths.
 
 radar: another waveform, array or motion than that of the trace, or None
@@ -169,19 +171,21 @@ tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-
 method: "auto", "direct" (the reference), "recurrence" or "nufft"
 replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with their
     triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
-evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of each path), "chirps" (in every chirp: the
-    reference), or "samples" (interpolated, and moving echoes with the delay of every sample: for fast rotors, a sine and a
-    cosine per path and sample)
+evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
+    each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
+    every sample: for fast rotors, a sine and a cosine per path and sample)
 retrace: "never" (one record serves the frame), "invalid" (shadow rays and points of reflection are renewed, see `renew`) or
-    "always" (the scene is traced anew by the same rays, to which phases of rough surfaces then belong: for coherent echoes), for each of `keyframes` stretches of chirps
+    "always" (the scene is traced anew by the same rays, to which phases of rough surfaces then belong: for coherent echoes),
+    for each of `keyframes` stretches of chirps
 keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
 progress: callable(stage, fraction) or None
 probe: a SignalProbe, filled with spot checks of this signal, or None
 Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance, py::arg("retrace") = "never",
-        py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(),
+        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
+        py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
+        py::arg("probe") = py::none(),
         R"(The signals of parts of the paths, several views of them replayed once.
 
 views: list of Grouping

@@ -134,7 +134,8 @@ Raises ValueError naming the argument.)")
       .def_property_readonly("parent", [](const NamedJoint& self) { return self.parent; }, "name of the parent, or None")
       .def_property_readonly("transform", [](const NamedJoint& self) { return to_numpy(self.joint.placement); },
                              "[4, 4] at rest, relative to the parent, m")
-      .def_property_readonly("motion", [](const NamedJoint& self) { return std::const_pointer_cast<Motion>(self.joint.motion); },
+      .def_property_readonly("motion",
+                             [](const NamedJoint& self) { return std::const_pointer_cast<Motion>(self.joint.motion); },
                              "a motion or None")
       .def_property_readonly("inverse_bind", [](const NamedJoint& self) -> py::object {
         return self.joint.inverse_bind ? py::object(to_numpy(*self.joint.inverse_bind)) : py::none();
@@ -153,7 +154,8 @@ joints: list [J] of Joint, parents first
 weights: [V, J], or [V, K] with joint_indices; >= 0, and each row adds up to 1 (less than 1e-4 off is scaled)
 joint_indices: [V, K] which joint each weight is of; None: column j of weights is joint j
 Raises ValueError naming the argument.)")
-      .def(py::init(&skin), py::arg("vertices"), py::arg("joints"), py::arg("weights"), py::arg("joint_indices") = py::none())
+      .def(py::init(&skin), py::arg("vertices"), py::arg("joints"), py::arg("weights"),
+           py::arg("joint_indices") = py::none())
       .def_property_readonly("vertices", [](const Skin& self) { return to_numpy(self.vertices()); }, "[V, 3] in m, as bound")
       .def_property_readonly("joints", &named_joints, "list [J] of Joint, each with its inverse_bind")
       .def_property_readonly("weights", [](const Skin& self) { return by_vertex(self, self.weights().weight); },

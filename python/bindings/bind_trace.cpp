@@ -95,8 +95,8 @@ target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at
 received power is no larger: its standard error and what the last doubling changed. 8 batches unless given; a
 RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
 progress: callable(stage, fraction) or None
-kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for about
-200 bytes a triangle while the scene lives
+kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for
+about 200 bytes a triangle while the scene lives
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
 
   m.def("bare_queries", &time_bare_queries, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),

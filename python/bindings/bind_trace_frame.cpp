@@ -36,11 +36,13 @@ void bind_trace_frame(py::module_& m) {
       });
 
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
-      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing, int64_t small,
+      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
+                       int64_t small,
                        int64_t false_hits) {
              return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits};
            }),
-           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0, py::arg("num_paths") = 0,
+           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
+           py::arg("num_paths") = 0,
            py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
            py::arg("num_false_hits") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
@@ -60,7 +62,8 @@ void bind_trace_frame(py::module_& m) {
                        double target_error_db, double error_db, const std::string& sampler) {
              return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
                                std::move(strata), seed, max_bounces, kPolarization.value_of(polarization),
-                               kFootprint.value_of(footprint), kSampler.value_of(sampler), statistics, num_batches, target_error_db,
+                               kFootprint.value_of(footprint), kSampler.value_of(sampler), statistics, num_batches,
+                               target_error_db,
                                error_db};
            }),
            py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),

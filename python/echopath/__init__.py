@@ -12,13 +12,13 @@ answer_ctrl_c_while_loading()
 
 from . import _core
 from ._core import (
-    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap, CosinePower,
-    Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion, Material, Mesh, Motion,
-    Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame,
-    TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise, angle_fft, beamform,
-    boltzmann, cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes, mie_rcs, num_bounces, num_threads,
-    power, range_azimuth, range_doppler, received_power, renew, set_num_threads, speed_of_light,
-    synthesize, validity, virtual_array,
+    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
+    CosinePower, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion,
+    Material, Mesh, Motion, Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin,
+    Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise,
+    angle_fft, beamform, boltzmann, cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes,
+    mie_rcs, num_bounces, num_threads, power, range_azimuth, range_doppler, received_power, renew, set_num_threads,
+    speed_of_light, synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
 from .materials import materials
@@ -67,16 +67,16 @@ def _viewer():
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
-    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families", "Family",
-    "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Isotropic", "Joint", "KeyframeMotion", "Labels",
-    "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells",
-    "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection",
-    "Sight", "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity",
-    "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate",
-    "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect",
-    "detect_frame", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame",
-    "load_labels", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads",
-    "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power",
-    "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "speed_of_light",
-    "synthesize", "to_xarray", "trace", "validity", "view", "virtual_array", "visibility",
+    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families",
+    "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Isotropic", "Joint", "KeyframeMotion",
+    "Labels", "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells",
+    "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight",
+    "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares",
+    "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame", "beamform",
+    "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects",
+    "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
+    "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "power",
+    "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "save_label_images",
+    "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view",
+    "virtual_array", "visibility",
 ]

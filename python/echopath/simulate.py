@@ -33,7 +33,8 @@ class Frame:
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
-    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not asked
+    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not
+    asked
         for
     detections: Detections in its map, None when not asked for
     checks: list [C] of Check, what the guard of the run compared; [] when it was off
@@ -119,16 +120,16 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     tolerance, method, replay, evaluate, retrace, keyframes: as in `synthesize`; window, zero_pad: as in `range_doppler`
     noise_seed: of the thermal noise, which only the whole gets; None: no noise
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
-    labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors): the
-        frame carries the labels of its map, from the same pass, with the cubes of all families in memory; {}: as True; None or
-        False: none, and nothing is spent on them
+    labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors):
+        the frame carries the labels of its map, from the same pass, with the cubes of all families in memory; {}: as True;
+        None or False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
     guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
         other: see `Frame.checks`
     progress: callable (stage, fraction) or None
-    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning) where a check disagrees
-    by more than is promised.
+    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning) where a check
+    disagrees by more than is promised.
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)

@@ -8,8 +8,9 @@
 
 namespace echopath {
 
-// Sums over the channels of a map, of B batches of one part. Field C_b [channels]: B times the coherent field of the paths of
-// batch b, and that of the paths that belong to no batch; d_b: the field of its diffuse paths. W, means over the channels.
+// Sums over the channels of a map, of B batches of one part. Field C_b [channels]: B times the coherent field of the paths
+// of batch b, and that of the paths that belong to no batch; d_b: the field of its diffuse paths. W, means over the
+// channels.
 struct BatchPowers {
   std::span<const double> cross;     // [B, N] Re[mean(C)* C_b]
   std::span<const double> coherent;  // [B, N] |C_b|^2
@@ -25,14 +26,16 @@ struct ShareErrors {
   std::vector<uint8_t> certain;
 };
 
-// Coherent power U = (B^2 |mean C|^2 - sum |C_b|^2)/(B (B - 1)), free of the bias by noise; diffuse power D = mean B |d_b|^2;
+// Coherent power U = (B^2 |mean C|^2 - sum |C_b|^2)/(B (B - 1)), free of the bias by noise; diffuse power
+// D = mean B |d_b|^2;
 // the power is P = max(U + D, 0). Each batch's influence on it (delta method) is
 //   x_b = 2 f (Re[mean(C)* C_b] - |mean C|^2) + B |d_b|^2 - D,   f^2 = max(U, 0)/|mean C|^2,
 //   SE^2 = sum x_b^2/(B (B - 1)) + n,
 // where n = s^4/(B (B - 1)), s^2 the variance of the C_b, is what noise alone has (second order), as in
-// replay/received_power.h. Errors of shares and of their differences: jackknife over the shares of P - x_b/(B - 1), which has
-// in it the covariance of parts by the same rays and that a share is no linear function of powers; and n as above.
-// s^4 takes the channels as copies of each other, which for the elements of one array seen from one cell they are to a phase;
+// replay/received_power.h. Errors of shares and of their differences: jackknife over the shares of P - x_b/(B - 1), which
+// has in it the covariance of parts by the same rays and that a share is no linear function of powers; and n as above.
+// s^4 takes the channels as copies of each other, which for the elements of one array seen from one cell they are, but
+// for a phase;
 // channels that differ get too large an error.
 // dominant [N]: the part that a label names, -1: none. Raises invalid_argument without parts, for less than two batches or
 // when sizes differ; Cancelled when the job is.

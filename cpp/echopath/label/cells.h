@@ -23,8 +23,8 @@ struct CellMask {
 // invalid_argument for others.
 CellMask cell_mask(std::span<const double> power, double noise_floor, double dynamic_range);
 
-// The part of the largest power in each cell, the first of equal ones, [N] from [K, N]; kNoLabel where `labelled` [N] is 0 or
-// no part has power. At most 32767 parts.
+// The part of the largest power in each cell, the first of equal ones, [N] from [K, N]; kNoLabel where `labelled` [N] is 0
+// or no part has power. At most 32767 parts.
 std::vector<int16_t> strongest_part(std::span<const double> power, int64_t num_parts, std::span<const uint8_t> labelled);
 
 struct MapShape {

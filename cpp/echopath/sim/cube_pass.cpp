@@ -77,7 +77,8 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
 }
 
 Cube CubePass::cube(size_t way, int group, Job* job) const {
-  return {static_cast<int>(radar_.transmitters.size()), static_cast<int>(radar_.receivers.size()), radar_.waveform.num_chirps,
+  return {static_cast<int>(radar_.transmitters.size()), static_cast<int>(radar_.receivers.size()),
+          radar_.waveform.num_chirps,
           radar_.waveform.num_samples, synthesizers_[way].cube(group, job)};
 }
 

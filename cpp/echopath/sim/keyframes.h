@@ -1,5 +1,6 @@
 #pragma once
-// A frame in several stretches of chirps, each with a record of its own time: where one trace does not serve the whole frame.
+// A frame in several stretches of chirps, each with a record of its own time: where one trace does not serve the whole
+// frame.
 #include <vector>
 
 #include "echopath/base/job.h"
@@ -11,8 +12,8 @@ namespace echopath {
 enum class Retrace {
   kNever,    // one record serves the frame
   kInvalid,  // hits stay, shadow rays and points of reflection are renewed (replay/renewal.h)
-  // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so that
-  // their echoes have wrong Doppler: a reference for coherent echoes.
+  // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so
+  // that their echoes have wrong Doppler: a reference for coherent echoes.
   kAlways,
 };
 
@@ -39,6 +40,7 @@ inline constexpr int kOcclusionKeyframes = 8;
 
 // The record of a stretch. Its frame starts with the stretch. Raises invalid_argument for kAlways with a selection of paths.
 // `kept`: geometry that goes from stretch to stretch.
-Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr, KeptGeometry* kept = nullptr);
+Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr,
+                KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

@@ -46,9 +46,9 @@ struct SignalProbe {
   std::vector<ProbedChirp> chirps;
 };
 
-// Looks at the echoes of one pass, at one chirp, or at two where there are several channels. What share of trace and synthesis
-// of one channel it may cost is TARGET of python/echopath/bench/speed_guard.py; more channels cost less. Same bits for any
-// number of threads.
+// Looks at the echoes of one pass, at one chirp, or at two where there are several channels. What share of trace and
+// synthesis of one channel it may cost is TARGET of python/echopath/bench/speed_guard.py; more channels cost less. Same bits
+// for any number of threads.
 class PassProbe : public PathWatcher {
  public:
   // All must outlive it.

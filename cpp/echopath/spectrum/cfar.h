@@ -39,7 +39,8 @@ struct CfarResult {
 // Cost per cell: CA as many additions as the window has rows, and log2 of its columns; OS about a quarter of its
 // training cells, counted. Parallel over velocities; independent of threads.
 // Cost of the thresholds, once for each design (the last 8 are kept): cubic in the number of cells of the window, counted
-// without padding. CA, one core: 0.1 s for the defaults, 3 s for 12 x 24 training cells on each side; OS three to six times that.
+// without padding. CA, one core: 0.1 s for the defaults, 3 s for 12 x 24 training cells on each side; OS three to six times
+// that.
 // Raises invalid_argument naming the argument, also unless the map is the radar's and for windows of more than 2000 cells,
 // counted without padding; Cancelled when the job is, within half a second.
 CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options = {}, Job* job = nullptr);

@@ -54,8 +54,8 @@ double false_alarm_probability(double alpha, const std::vector<double>& eigenval
 // is right to 0.2 % (without taper, padded: 1 %).
 // OS: mean over 8192 / num_channels (at least 512) draws of the training cells, conditional on which the probability is
 // closed; drawn from the tilted distribution in which false alarms happen: the standard error is about 1 % of a false-alarm
-// rate of 1e-3, 2 % of 1e-6. Near the ends of the range axis, and in what correlation with the cell under test is left beyond
-// the guard cells, OS follows CA.
+// rate of 1e-3, 2 % of 1e-6. Near the ends of the range axis, and in what correlation with the cell under test is left
+// beyond the guard cells, OS follows CA.
 // Independent of threads. Raises as CfarDesign::validate.
 CfarFactors cfar_factors(const CfarDesign& design, Job* job = nullptr);
 

@@ -53,7 +53,8 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     _tell(progress, steps)
     for least, most in HITS_PER_PATH:
         made = random_paths(paths, QUICK_NUM_HITS if quick else NUM_HITS, least, most)
-        results["rates"].append(_rates(f"random, {least} to {most} hits" if most > least else f"random, hits: {least}", made))
+        results["rates"].append(_rates(f"random, {least} to {most} hits" if most > least else f"random, hits: {least}",
+                                       made))
         _tell(progress, steps)
     results["false_alarms"] = measure_false_alarms(QUICK_NOISE_CELLS if quick else NOISE_CELLS)
     _tell(progress, steps)
@@ -112,7 +113,8 @@ def random_paths(paths, num_hits: int, least: int, most: int):
     none = np.zeros(len(counts))
     return ep.Paths.from_arrays(
         hits=hits, offsets=np.cumsum(counts) - counts, num_bounces=counts.astype(np.uint8),
-        diffuse=draw.integers(0, 2**63, len(counts), np.uint64) & ((np.uint64(1) << counts.astype(np.uint64)) - np.uint64(1)),
+        diffuse=draw.integers(0, 2**63, len(counts), np.uint64)
+        & ((np.uint64(1) << counts.astype(np.uint64)) - np.uint64(1)),
         weight=none.astype(np.complex64), stratum=none.astype(np.uint8), batch=none.astype(np.uint8),
         flags=none.astype(np.uint32), scene=paths.scene, radar=paths.radar, frame=paths.frame)
 
@@ -141,7 +143,8 @@ def describe(results: dict) -> list[str]:
     found = results["machine"]
     lines = [f"{found['processor']}, {found['threads']} threads", "",
              "street, processor time of decompose over that of synthesize (median); |whole - sum of parts| / |whole|",
-             f"{'rays':>10}{'paths':>12}{'parts':>8}{'of them lit':>13}{'over synthesize':>17}{'matching, s':>13}{'sum':>10}"]
+             f"{'rays':>10}{'paths':>12}{'parts':>8}{'of them lit':>13}{'over synthesize':>17}{'matching, s':>13}"
+             f"{'sum':>10}"]
     for case in results["parts"]:
         for row in case["rows"]:
             verdict = "" if row["sum_error"] <= SUM_TARGET else "   MISSES 1e-12"

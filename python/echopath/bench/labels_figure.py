@@ -38,7 +38,8 @@ def _draw_rates(axes, cases: list) -> None:
     height = 0.8 / len(cases)
     for index, (colour, case) in enumerate(zip(CURVE_COLOURS, cases)):
         rates = np.array([case["bare_hits_per_second"], *case["hits_per_second"].values()]) * 1e-6
-        axes.barh(np.arange(len(labels)) + (index + 0.5) * height - 0.4, rates, 0.9 * height, color=colour, label=case["title"])
+        axes.barh(np.arange(len(labels)) + (index + 0.5) * height - 0.4, rates, 0.9 * height, color=colour,
+                  label=case["title"])
     axes.axvline(RATE_TARGET * 1e-6, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_yticks(np.arange(len(labels)), labels, family="monospace", fontsize=7)
     axes.invert_yaxis()

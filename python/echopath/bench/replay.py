@@ -135,7 +135,8 @@ def _aperture(aperture: float, distance: float) -> dict:
     scene.add(shapes.wall(4.0 * distance, 2.0 * distance), name="wall", position=(distance, WALL, -distance),
               material=ep.Material.metal())
     width, height = 0.15 * distance, 0.4 * distance
-    target = ep.Mesh([[0, -width, -height], [0, width, -height], [0, width, height], [0, -width, height]], [[0, 1, 2], [0, 2, 3]])
+    target = ep.Mesh([[0, -width, -height], [0, width, -height], [0, width, height], [0, -width, height]],
+                     [[0, 1, 2], [0, 2, 3]])
     scene.add(target, name="target", position=(distance, min(0.0, 0.8 * WALL - width), 0.0), material=_diffuse())
     centre = ep.Radar(radar(num_chirps=1).waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
     paths = ep.trace(scene, centre, num_rays=100_000, max_bounces=2).select("T 'wall' 'target' R")
@@ -163,17 +164,20 @@ def describe(results: dict) -> list[str]:
              f"{'':26}   paths   trace  replay  signal  every chirp   replay/  every chirp/",
              f"{'':26}               s       s       s  traced, s    trace       replay"]
     for case in results["cases"].values():
-        lines.append(f"{case['title']:<26}{case['paths']:>8}{case['trace_s']:8.3f}{case['replay_s']:8.3f}{case['synthesis_s']:8.3f}"
-                     f"{case['every_chirp_s']:12.1f}{case['replay_over_trace']:9.2f}{case['gain']:13.0f}")
+        lines.append(f"{case['title']:<26}{case['paths']:>8}{case['trace_s']:8.3f}{case['replay_s']:8.3f}"
+                     f"{case['synthesis_s']:8.3f}{case['every_chirp_s']:12.1f}{case['replay_over_trace']:9.2f}"
+                     f"{case['gain']:13.0f}")
     lines += ["", "error of the map against hits renewed at every chirp, dB of its peak (time, share of that)"]
     for label in VARIANTS:
         rows = [next(row for row in case["variants"] if row["label"] == label) for case in results["cases"].values()]
-        lines.append(f"  {label:<34}" + "".join(f"{row['error_db']:8.0f} ({row['share_of_every_chirp']:.3f})" for row in rows))
+        lines.append(f"  {label:<34}" + "".join(f"{row['error_db']:8.0f} ({row['share_of_every_chirp']:.3f})"
+                                                for row in rows))
     lines += ["", "  arrays      rays    paths   trace  replay  signal   ns per path,      every pair and chirp traced /"]
     lines += ["                                  s       s       s   chirp, channel                       replay"]
     for row in results["arrays"]:
-        lines.append(f"  {row['transmitters']:>2} x {row['receivers']:<2}{row['rays']:>10}{row['paths']:>9}{row['trace_s']:8.3f}"
-                     f"{row['replay_s']:8.3f}{row['synthesis_s']:8.3f}{row['ns_per_path_chirp_channel']:12.1f}{row['gain']:30.0f}")
+        lines.append(f"  {row['transmitters']:>2} x {row['receivers']:<2}{row['rays']:>10}{row['paths']:>9}"
+                     f"{row['trace_s']:8.3f}{row['replay_s']:8.3f}{row['synthesis_s']:8.3f}"
+                     f"{row['ns_per_path_chirp_channel']:12.1f}{row['gain']:30.0f}")
     lines += ["", "phase error of echoes over a wall 1 m aside at the rim of an array, rad: recorded points | Newton step"]
     lines += ["  aperture   " + "".join(f"{f'target at {distance:g} m':>22}" for distance in RANGES)]
     for aperture in APERTURES:

@@ -23,7 +23,10 @@ class Case:
 
 
 def radar(*, transmitters=1, receivers=1, chirp_interval=60e-6, num_chirps=CHIRPS, motion=None):
-    """Radar at the origin, 1 m high, with half-wavelength receivers across y; transmitters carry them on. chirp_interval in s."""
+    """Radar 1 m above the origin, receivers across y by half wavelengths, carried on by transmitters.
+
+    chirp_interval: s
+    """
     half = ep.speed_of_light / FREQUENCY / 2.0
     waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=256, sampling_rate=20e6,
                                 num_chirps=num_chirps, chirp_interval=chirp_interval)

@@ -4,7 +4,8 @@ from __future__ import annotations
 from ..origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
 
-MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interpolated, 1e-5 rad (default)": "o", "every chirp": "s",
+MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interpolated, 1e-5 rad (default)": "o",
+           "every chirp": "s",
            "Newton step": "D", "renewed 4 times": "P", "renewed 16 times": "X"}
 FLOOR_RAD = 1e-6
 FLOOR_DB = -150.0  # errors below stand there
@@ -22,7 +23,8 @@ def draw_replay(results: dict, path) -> None:
 def _draw_variants(axes, cases: dict) -> None:
     for colour, case in zip(CURVE_COLOURS, cases.values()):
         for row in case["variants"]:
-            axes.plot(row["share_of_every_chirp"], max(row["error_db"], FLOOR_DB), MARKERS[row["label"]], color=colour, markersize=7,
+            axes.plot(row["share_of_every_chirp"], max(row["error_db"], FLOOR_DB), MARKERS[row["label"]], color=colour,
+                      markersize=7,
                       markerfacecolor="none" if row["label"] != "interpolated, 1e-5 rad (default)" else colour)
         axes.plot([], [], "-", color=colour, linewidth=3, label=case["title"])
     for label, marker in MARKERS.items():
@@ -41,7 +43,8 @@ def _draw_apertures(axes, rows: list) -> None:
     for colour, distance in zip(CURVE_COLOURS, sorted({row["distance_m"] for row in rows})):
         shown = [row for row in rows if row["distance_m"] == distance and row["paths"]]
         for key, line, text in (("material_rad", "-", "recorded points"), ("fermat_rad", "--", "Newton step")):
-            axes.plot([row["aperture_m"] for row in shown], [max(row[key], FLOOR_RAD) for row in shown], line, color=colour, marker=".",
+            axes.plot([row["aperture_m"] for row in shown], [max(row[key], FLOOR_RAD) for row in shown], line, color=colour,
+                      marker=".",
                       label=f"target at {distance:g} m, {text}")
     axes.axhline(0.3, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_xscale("log")

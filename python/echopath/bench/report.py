@@ -61,7 +61,8 @@ def describe(results: dict) -> list[str]:
     lines += ["", "must reach" + " " * 54 + "limit  measured"]
     lines += [f"  {row['what']:<60} {row['limit']:7.3f} {row['measured']:8.3f}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
-    lines += ["", f"{'two spheres, 3 bounces':<28}{'rays/s':>10}{'replayed paths/s':>18}{'bytes per hit':>15}{'per path':>10}"
+    lines += ["",
+              f"{'two spheres, 3 bounces':<28}{'rays/s':>10}{'replayed paths/s':>18}{'bytes per hit':>15}{'per path':>10}"
               f"{'of it smooth':>14}{'jones':>8}"]
     lines += [f"  {row['label']:<26}{row['rays_per_second']:10.3g}{row['replayed_paths_per_second']:18.3g}"
               f"{row['bytes_per_hit']:15.1f}{row['bytes_per_path']:10.1f}{row['bytes_of_curved_cell']:14.1f}"
@@ -87,7 +88,8 @@ def _plates(results: dict) -> list[str]:
         return []
     return ["", "plate 0.1 m, over the same shifts     filtered  unfiltered   margin +- standard error, dB rms",
             *(f"  {pair['angle_deg']:5.1f} deg, {_rays(pair['num_rays'])}, {pair['shifts']} shifts"
-              f"{pair['filtered_db']:15.4f}{pair['unfiltered_db']:12.4f}{pair['margin_db']:+11.4f} +- {pair['margin_error_db']:.4f}"
+              f"{pair['filtered_db']:15.4f}{pair['unfiltered_db']:12.4f}{pair['margin_db']:+11.4f} +- "
+              f"{pair['margin_error_db']:.4f}"
               for pair in results["plates"])]
 
 

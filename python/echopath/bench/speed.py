@@ -1,5 +1,5 @@
-"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, tracer, the street frame
-beside its floor."""
+"""`echopath bench speed`: synthesis beside FINUFFT and the direct sum, whole frames, memory, replay, tracer, the street
+frame beside its floor."""
 from __future__ import annotations
 
 import csv
@@ -81,7 +81,7 @@ def _csv(rows: list[dict]) -> str:
 
 
 def _replay(case, quick: bool) -> dict:
-    """Processor seconds of a trace and of its replay at all chirps without synthesis, for each aim for the phase: medians."""
+    """Processor seconds of a trace and of its replay at all chirps without synthesis, for each aim of the phase: medians."""
     rays = QUICK_REPLAY_RAYS if quick else REPLAY_RAYS
 
     def median_of(work) -> float:
@@ -127,7 +127,8 @@ def verdicts(results: dict) -> list[dict]:
         what, seconds = f"street frame, {street['rays']:,} rays", speed_frames.STREET_SECONDS.get(street["rays"])
         if seconds:
             rows.append(_row(f"{what}, s", seconds, street["frame_s"], most=True))
-        rows.append(_row(f"{what}, over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"], most=True))
+        rows.append(_row(f"{what}, over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"],
+                         most=True))
     return rows
 
 
@@ -154,7 +155,8 @@ def describe(results: dict) -> list[str]:
              *_large_lines(results["large"]),
              *_replay_lines(results["replay"]),
              *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
-             *(line for street in results["street"] for line in _street_lines(street)), *speed_guard.describe_guard(results["guard"]), "",
+             *(line for street in results["street"] for line in _street_lines(street)),
+             *speed_guard.describe_guard(results["guard"]), "",
              "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
@@ -174,7 +176,8 @@ def _synthesis_lines(found: dict) -> list[str]:
     lines += [f"{row['method']:>10}{row['ns']:14.2f}{row['error']:12.1e}" for row in found["sums"]]
     lines += ["", f"beside a slow sum, one chirp of {speed_synthesis.SLOW_SAMPLES} samples: rms error over the samples",
               "    echoes      method  tolerance   of the sum of |a|   of the signal's rms",
-              *(f"{row['echoes']:>10,}{row['method']:>12}{row['tolerance']:11.0e}{row['error']:20.1e}{row['error_of_signal']:22.1e}"
+              *(f"{row['echoes']:>10,}{row['method']:>12}{row['tolerance']:11.0e}{row['error']:20.1e}"
+                f"{row['error_of_signal']:22.1e}"
                 for row in found["slow"]), ""]
     for row in found["rates"]:
         kind = "a speed of its own each" if row["scattered"] else "bodies"
@@ -200,12 +203,13 @@ def _linear_lines(rows: list[dict]) -> list[str]:
 
 
 def _large_lines(row: dict | None) -> list[str]:
-    return [f"{row['paths']:,} paths, {row['chirps']} chirps, {row['channels']} channels: trace {row['trace_s']:.1f} s, signal "
-            f"{row['signal_s']:.1f} s by the clock, peak {row['peak_bytes'] / 2 ** 20:,.0f} MiB"] if row else []
+    return [f"{row['paths']:,} paths, {row['chirps']} chirps, {row['channels']} channels: trace {row['trace_s']:.1f} s, "
+            f"signal {row['signal_s']:.1f} s by the clock, peak {row['peak_bytes'] / 2 ** 20:,.0f} MiB"] if row else []
 
 
 def _replay_lines(cases: list[dict]) -> list[str]:
-    lines = ["", "replay of 128 chirps without synthesis, processor time over that of the trace, by aim for the phase in rad",
+    lines = ["",
+             "replay of 128 chirps without synthesis, processor time over that of the trace, by aim for the phase in rad",
              f"{'':26}   paths  trace s" + "".join(f"{tolerance:>9.0e}" for tolerance in PHASE_TOLERANCES)]
     for case in cases:
         shares = "".join(f"{row['replay_s'] / max(case['trace_s'], 1e-9):9.2f}" for row in case["rows"])
@@ -224,8 +228,9 @@ def _street_lines(street: dict) -> list[str]:
     floor, first = street["floor"], street["first"]
     return ["", f"street, {street['rays']:,} rays, {street['chirps']} chirps, {street['paths']:,} paths, "
             f"{street['moving_paths']:,} moving, {street['frame_s']:.3f} s a frame by the clock",
-            f"  trace {street['trace_s']:.3f} s, both partitions {street['decompose_s']:.3f} s; of the first frame, which has to "
-            f"be given its memory, {first['trace_s']:.3f} s and {first['decompose_s']:.3f} s",
+            f"  trace {street['trace_s']:.3f} s, both partitions {street['decompose_s']:.3f} s; of the first frame, which "
+            f"has to be given its memory, {first['trace_s']:.3f} s and {first['decompose_s']:.3f} s",
             f"  besides: replay alone {street['replay_s']:.3f} s, signal without partitions {street['synthesize_s']:.3f} s",
             f"  floor {street['floor_s']:.3f} s: own Embree queries at the bare rate {floor['queries_s']:.3f} s, moving "
-            f"path-chirps x {speed_frames.MOVING_NS} ns {floor['moving_s']:.3f} s, static paths once {floor['still_s']:.3f} s"]
+            f"path-chirps x {speed_frames.MOVING_NS} ns {floor['moving_s']:.3f} s, static paths once "
+            f"{floor['still_s']:.3f} s"]

@@ -63,7 +63,8 @@ def _measured(work, num_paths: int) -> dict:
     for _ in range(int(np.clip(MEASURED_PATHS // num_paths, 5, 31))):
         with clock("work"):
             processor_s.append(processor_time(work)[0])
-    return {"wall_s": float(np.median([stage.seconds for stage in clock.stages])), "processor_s": float(np.median(processor_s)),
+    return {"wall_s": float(np.median([stage.seconds for stage in clock.stages])),
+            "processor_s": float(np.median(processor_s)),
             "peak_bytes": max(stage.peak_memory for stage in clock.stages), "repeats": len(processor_s)}
 
 
@@ -112,8 +113,8 @@ def _parts(scene, count: int) -> dict:
 
 
 def measure_linearity() -> list[dict]:
-    """Rows {paths, processor_s} of frames from LINEAR_FROM paths on. All sizes in turn, since machines have faster and slower
-    minutes; medians of the rounds."""
+    """Rows {paths, processor_s} of frames from LINEAR_FROM paths on. All sizes in turn, since machines have faster and
+    slower minutes; medians of the rounds."""
     scene = street()
     few = with_frame(scene.radar, FRAME_CHIRPS)
     records = [record_of(scene, count) for count in PATHS if count >= LINEAR_FROM]

@@ -13,7 +13,7 @@ TARGET = 0.03  # of the processor time of trace and signal: the most that the gu
 
 
 def measure_guard(*, quick: bool = False) -> dict:
-    """Medians of processor seconds of trace, signal without and with spot checks, and the share of the guard in their sum."""
+    """Medians of processor seconds of trace, signal without and with spot checks, and the share of the guard in the sum."""
     scene = street()
     settings = scene.trace_settings() | {"num_rays": QUICK_RAYS if quick else RAYS}
     seconds = {"trace_s": [], "without_s": [], "with_s": []}

@@ -80,6 +80,7 @@ def describe_retrace(rows: list[dict]) -> list[str]:
     lines = ["the next trace of a scene, processor time", f"{'':<28}{'triangles':>10}{'rays':>9}{'paths':>11}{'anew':>10}"
              f"{'kept':>10}{'share':>7}  hits"]
     lines += [f"{row['name']:<28}{row['triangles']:>10,}{row['rays']:>9,}{row['paths']:>11,}{row['fresh_s']:>8.3f} s"
-              f"{row['kept_s']:>8.3f} s{row['kept_s'] / row['fresh_s']:>7.2f}  {'same bits' if row['same_hits'] else 'DIFFER'}"
+              f"{row['kept_s']:>8.3f} s{row['kept_s'] / row['fresh_s']:>7.2f}  "
+              f"{'same bits' if row['same_hits'] else 'DIFFER'}"
               for row in rows]
     return [*lines, ""]

@@ -100,7 +100,8 @@ def tones(delays, amplitudes, of_waveform, rates=0.0):
 
 def slow_sum(points, strengths, num_samples: int):
     """Samples [num_samples] of the type-1 transform, one complex exponential for each point and sample."""
-    return np.array([(strengths * np.exp(1j * points * n)).sum() for n in range(-(num_samples // 2), (num_samples + 1) // 2)])
+    numbers = range(-(num_samples // 2), (num_samples + 1) // 2)
+    return np.array([(strengths * np.exp(1j * points * n)).sum() for n in numbers])
 
 
 class Finufft:
@@ -142,7 +143,7 @@ def relative_error(actual, expected) -> float:
 
 
 def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
-    """Processor time of one thread in ns per path and chirp, medians of alternated repeats; errors against the direct sum."""
+    """Processor time of one thread in ns per path and chirp, medians of alternated repeats; errors against direct sums."""
     paths, chirps = (QUICK_PATHS, QUICK_CHIRPS) if quick else (PATHS, CHIRPS)
     threads = ep.num_threads()
     ep.set_num_threads(1)
@@ -206,7 +207,8 @@ def _against_slow_sum(count: int) -> list[dict]:
     for method, tolerance in SLOW_METHODS:
         made = echoes.trial(method=method, tolerance=tolerance)[2][0]
         rms = float(np.sqrt(np.mean(np.abs(made - truth) ** 2)))
-        rows.append({"echoes": count, "method": method, "tolerance": tolerance, "error": rms / float(np.abs(amplitudes).sum()),
+        rows.append({"echoes": count, "method": method, "tolerance": tolerance,
+                     "error": rms / float(np.abs(amplitudes).sum()),
                      "error_of_signal": relative_error(made, truth)})
     return rows
 

@@ -43,7 +43,8 @@ def radar() -> ep.Radar:
 
 
 def all_targets() -> list[Target]:
-    return [*_spheres(), _ellipsoid(), *map(plate, (0.0, 5.0, 20.3)), _dihedral(), _trihedral(), _lambert_plate(), _two_ray(),
+    return [*_spheres(), _ellipsoid(), *map(plate, (0.0, 5.0, 20.3)), _dihedral(), _trihedral(), _lambert_plate(),
+            _two_ray(),
             _wall_ghost()]
 
 

@@ -224,7 +224,8 @@ def _bench(options) -> None:
 
     with progress_bars() as progress:
         if options.what == "physics":
-            lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick, progress=progress))
+            lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick,
+                                                progress=progress))
         elif options.what == "labels":
             lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
         elif options.what == "hard":

@@ -10,7 +10,8 @@ from ..families import check_objects
 from ..keywords import refuse_unknown
 from ..labels.planes import with_receivers
 
-CFAR_KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range", "rank")
+CFAR_KEYWORDS = ("method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity", "training_range",
+                 "rank")
 KEYWORDS = (*CFAR_KEYWORDS, "objects", "max_peaks")
 
 

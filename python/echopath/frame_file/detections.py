@@ -10,7 +10,8 @@ from ..detections.echo_fields import EchoFields
 from .h5 import read_array, read_texts, write_array, write_texts
 
 NUMBERS = {"range": (np.float64, "m"), "velocity": (np.float64, "m/s"), "azimuth": (np.float64, "rad"),
-           "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"), "share": (np.float64, ""),
+           "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"), 
+           "share": (np.float64, ""),
            "ghost_type": (np.int32, ""), "order": (np.int32, ""), "class_code": (np.int32, ""), "is_noise": (np.uint8, "")}
 TEXTS = ("part", "object")
 

@@ -159,8 +159,8 @@ def reading(path):
         raise ep.FileError(f"{path}: no such file") from None
     except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
         if Path(path).suffix.lower() == ".toml":
-            raise ep.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out DIR` "
-                               "makes DIR/frame.h5 of it") from None
+            raise ep.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
+                               "DIR` makes DIR/frame.h5 of it") from None
         raise ep.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
 
 

@@ -22,7 +22,8 @@ class Plane(NamedTuple):
     make_box: type
 
 
-PLANES = {"range_doppler": Plane("velocity", "m/s", Peak, Box), "range_azimuth": Plane("azimuth", "rad", AzimuthPeak, AzimuthBox)}
+PLANES = {"range_doppler": Plane("velocity", "m/s", Peak, Box),
+          "range_azimuth": Plane("azimuth", "rad", AzimuthPeak, AzimuthBox)}
 SETTINGS = ("noise_power", "noise_margin_db", "dynamic_range_db")
 CELL_FIELDS = {"whole": (np.float64, "W"), "above_noise": (np.uint8, ""), "mask": (np.uint8, ""), "dominant": (np.int16, ""),
                "object_map": (np.int16, ""), "ghost_map": (np.int16, "")}
@@ -154,7 +155,8 @@ def _read_ghosts(group, plane: Plane) -> list:
     via = [[] for _ in range(count)]
     for index, name in zip(_within(group, "mirrored", mirrored, count), read_texts(group, "mirror", len(mirrored))):
         via[index].append(name)
-    return [GhostLabel(object=objects[i], via=tuple(via[i]), **{name: int(values[i]) for name, values in codes.items()}, **cells)
+    return [GhostLabel(object=objects[i], via=tuple(via[i]), **{name: int(values[i]) for name, values in codes.items()},
+                       **cells)
             for i, cells in enumerate(_read_cells(group, count, plane))]
 
 

@@ -1,10 +1,10 @@
 """What halves and batches of the rays of one run say of each other.
 
 Model: at the eight samples of the first probed chirp each share of the rays gives an estimate of the received power:
-coherent fields by their sum, paths over rough surfaces by their powers. Halves of the rays are compared by what rough surfaces
-return alone: half of a lattice aliases, so that coherent fields of halves differ by decibels where the whole is right to
-hundredths; batches are lattices of their own. All that is compared comes from the rays of the run: what none of them has
-found, and what all of them do wrong in the same way (a coarse mesh, a footprint), shows nowhere here.
+coherent fields by their sum, paths over rough surfaces by their powers. Halves of the rays are compared by what rough
+surfaces return alone: half of a lattice aliases, so that coherent fields of halves differ by decibels where the whole is
+right to hundredths; batches are lattices of their own. All that is compared comes from the rays of the run: what none of
+them has found, and what all of them do wrong in the same way (a coarse mesh, a footprint), shows nowhere here.
 """
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def check_rays(probe, frame) -> list[Check]:
 
     probe: a SignalProbe that was filled with all paths of a trace; frame: TraceFrame of these paths
     Returns list [C] of Check: halves of the rays in dB, or with batches in standard errors; half of the batches and each
-    single one against the others; the share of the strongest path; the error in dB where a target was set. Empty for no paths.
+    single one against the others; the share of the strongest path; the error in dB where a target was set. Empty for no
+    paths.
     """
     if len(probe.share_power) != 2 * frame.num_batches + 1 or not _has_paths(probe):
         return []

@@ -107,7 +107,8 @@ def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler"
     return Request(radar, objects, made, bool(noise), float(noise_margin_db), dynamic_range_db, bool(errors))
 
 
-def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict, settings: dict) -> dict:
+def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict,
+                     settings: dict) -> dict:
     """{partition: Labels} from ViewPowers of the families and {partition: ViewPowers}; objects and ghosts are the same in
     all.
 
@@ -146,7 +147,8 @@ def _label_parts(request: Request, paths, powers, selections: dict, scene_labels
     return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
 
 
-def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict, settings: dict) -> dict:
+def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict,
+                settings: dict) -> dict:
     """{partition: Labels} from {partition: {part: cube}} and {Family: cube}, cubes [tx, rx, chirp, sample] in sqrt(W).
 
     selections: {partition: {name: selection}}; settings: signal settings.
@@ -182,7 +184,8 @@ def _selections_and_cubes(parts, radar, start_time: float, errors: bool):
     _check_cubes(parts, radar, start_time)
     selections = getattr(parts, "selections", None) or {}  # None: of families
     if errors and [*selections, "other"] != list(parts):
-        raise ValueError("errors: need the selections of the parts, got cubes alone; give {name: selection} or Parts of them")
+        raise ValueError("errors: need the selections of the parts, got cubes alone; give {name: selection} or Parts of "
+                         "them")
     return dict(selections), dict(parts)
 
 

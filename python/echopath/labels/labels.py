@@ -178,5 +178,5 @@ class Labels:
         return text_of(self)
 
     def __repr__(self) -> str:
-        return (f"Labels({self.plane}, {list(self.shape)}, parts: {', '.join(self.part_names)}, {len(self.objects)} objects, "
-                f"{len(self.ghosts)} ghosts)")
+        return (f"Labels({self.plane}, {list(self.shape)}, parts: {', '.join(self.part_names)}, {len(self.objects)} "
+                f"objects, {len(self.ghosts)} ghosts)")

@@ -55,8 +55,8 @@ class RangeAzimuthPlane:
             raise ValueError("plane: 'range_azimuth' needs antennas side by side, got a radar that sees no azimuth")
         self._angles = checked_settings(radar, angles)
         if self._angles.get("method", "bartlett") != "bartlett":
-            raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those of "
-                             f"a part are not those of the whole), got {self._angles['method']!r}")
+            raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
+                             f"of a part are not those of the whole), got {self._angles['method']!r}")
         self._settings = {"window": window, "zero_pad": zero_pad}
         noise = self._map(ep.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED), radar)
         self.velocity, self.azimuth, self.range = None, noise.azimuth.copy(), noise.range.copy()

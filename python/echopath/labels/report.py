@@ -8,7 +8,8 @@ from ..measures import in_dbm
 
 def text_of(labels) -> str:
     """A table of the parts, objects and ghosts of Labels, with the cells that each has and its peak."""
-    rows = [_header(labels), *_parts(labels), *map(_object, labels.objects), *(_ghost(ghost) for ghost in _with_cells(labels))]
+    rows = [_header(labels), *_parts(labels), *map(_object, labels.objects),
+            *(_ghost(ghost) for ghost in _with_cells(labels))]
     hidden = len(labels.ghosts) - len(_with_cells(labels))
     rows += [f"{hidden} more ghosts have no cells"] if hidden else []
     return "\n".join(rows)

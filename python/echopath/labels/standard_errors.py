@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
 
 from .. import _core
 from .powers import decomposed

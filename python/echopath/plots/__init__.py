@@ -5,5 +5,6 @@ from .scene_view import plot_scene
 from .style import save_png
 from .top_view import plot_range_azimuth
 
-__all__ = ["colour_limits", "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers", "plot_partition",
+__all__ = ["colour_limits", "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers",
+           "plot_partition",
            "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png"]

@@ -116,7 +116,8 @@ def _name_object(axes, labels, label) -> None:
     axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
     left, right = axes.get_xlim()
     is_far = distance > left + 0.7 * (right - left)  # its name then stands on the near side, within the map
-    axes.annotate(label.name, (distance, row), xytext=(-14 if is_far else 14, -22), textcoords="offset points", color="white",
+    axes.annotate(label.name, (distance, row), xytext=(-14 if is_far else 14, -22), textcoords="offset points",
+                  color="white",
                   fontsize=8, horizontalalignment="right" if is_far else "left",
                   arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7},
                   bbox={"boxstyle": "round,pad=0.15", "facecolor": "black", "alpha": 0.6, "edgecolor": "none"})

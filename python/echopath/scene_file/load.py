@@ -19,7 +19,8 @@ from ..families import named_globs
 from ..parts import check_partitions
 from ..simulate import as_partitions
 from .errors import validated
-from .schema import (AngleTable, DetectionsTable, LabelsTable, ObjectTable, RadarTable, ReplayTable, SceneTable, SpectrumTable,
+from .schema import (AngleTable, DetectionsTable, LabelsTable, ObjectTable, RadarTable, ReplayTable, SceneTable,
+                     SpectrumTable,
                      Table, TraceTable, nearest_key)
 
 

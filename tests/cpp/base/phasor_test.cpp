@@ -16,7 +16,8 @@ constexpr double kTolerance = 5e-15;  // 5e-16 of the polynomial, and roundings 
 // 24 bits times 40 bits: more than a double holds, and exact in the 64 bits of a long double.
 TEST(PhasorOfProduct, IsThatOfLongDoubleForUpToATrillionTurns) {
   std::mt19937_64 random(7);
-  std::uniform_int_distribution<int64_t> of_24_bits(1 << 23, (1 << 24) - 1), of_40_bits(int64_t{1} << 39, (int64_t{1} << 40) - 1);
+  std::uniform_int_distribution<int64_t> of_24_bits(1 << 23, (1 << 24) - 1);
+  std::uniform_int_distribution<int64_t> of_40_bits(int64_t{1} << 39, (int64_t{1} << 40) - 1);
   double largest = 0.0;
   for (const int exponent : {0, 10, 20, 30, 40}) {  // turns below 2^exponent
     for (int i = 0; i < 2000; ++i) {

@@ -20,7 +20,7 @@ constexpr double kSide = 0.1;               // m
 Surface grid(uint32_t n) {
   Surface surface;
   for (uint32_t i = 0; i <= n; ++i) {
-    for (uint32_t j = 0; j <= n; ++j) surface.vertices.emplace_back(0.0, static_cast<double>(i) / n, static_cast<double>(j) / n);
+    for (uint32_t j = 0; j <= n; ++j) surface.vertices.push_back(Vec3(0, i, j) / n);
   }
   for (uint32_t i = 0; i < n; ++i) {
     for (uint32_t j = 0; j < n; ++j) {
@@ -98,7 +98,9 @@ Replayed replayed_at(const Paths& paths, double time) {
 double cross_section_db(const Replayed& echoes) {
   const double wavenumber = kTwoPi * plain_radar(Vec3::Zero(), Vec3::Zero()).waveform.start_frequency / kSpeedOfLight;
   std::complex<double> sum = 0.0;
-  for (size_t p = 0; p < echoes.lengths.size(); ++p) sum += echoes.amplitudes[p] * std::polar(1.0, -wavenumber * echoes.lengths[p]);
+  for (size_t p = 0; p < echoes.lengths.size(); ++p) {
+    sum += echoes.amplitudes[p] * std::polar(1.0, -wavenumber * echoes.lengths[p]);
+  }
   return decibel(rcs_of(std::norm(sum), kDistance, wavenumber / kTwoPi * kSpeedOfLight));
 }
 
@@ -132,7 +134,8 @@ TEST(Deforming, APlateThatStretchesHasTheCrossSectionOfItsNewSize) {
     EXPECT_NEAR(cross_section_db(replayed_at(paths, time)), closed_form, kSizeTolerance) << time;
   }
   const Paths fresh = traced(plate.scene, 1.0, 1 << 15);
-  EXPECT_NEAR(cross_section_db(replayed_at(paths, 1.0)), cross_section_db(replayed_at(fresh, fresh.frame.trace_time)), kSizeTolerance);
+  EXPECT_NEAR(cross_section_db(replayed_at(paths, 1.0)), cross_section_db(replayed_at(fresh, fresh.frame.trace_time)),
+              kSizeTolerance);
 }
 
 TEST(Deforming, UnevenStretchingIsWeighedTriangleByTriangle) {
@@ -176,8 +179,8 @@ TEST(Deforming, ARoughPlateThatStretchesScattersByItsArea) {
 }
 
 TEST(Deforming, APlateThatTurnsBelowAnUnevenPlacementStretches) {
-  // Turned by x about z below diag(1, 2, 1) a unit area has the area vector (2 cos x, sin x, 0), and a rough plate seen along
-  // the x axis scatters by the square of its first component over its length.
+  // Turned by x about z below diag(1, 2, 1) a unit area has the area vector (2 cos x, sin x, 0), and a rough plate seen
+  // along the x axis scatters by the square of its first component over its length.
   constexpr double kRate = kPi / 4;  // rad/s
   Scene scene;
   Node squeeze;
@@ -189,8 +192,9 @@ TEST(Deforming, APlateThatTurnsBelowAnUnevenPlacementStretches) {
   plate.name = "plate";
   plate.parent = 0;
   const double half = 5e-4;
-  plate.mesh = std::make_shared<Mesh>(std::vector<Vec3>{{0, -half, -half}, {0, -half, half}, {0, half, half}, {0, half, -half}},
-                                      std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+  plate.mesh = std::make_shared<Mesh>(
+      std::vector<Vec3>{{0, -half, -half}, {0, -half, half}, {0, half, half}, {0, half, -half}},
+      std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
   plate.material = lambert(0.5);
   plate.motion = std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, kRate));
   scene.add(plate);
@@ -217,7 +221,8 @@ TEST(Deforming, RigidMotionKeepsTheWeightOfEveryHit) {
   Node skin = node;
   node.motion = motion;
   rigid.add(node);
-  const SkinWeights weights{1, std::vector<uint32_t>(ball.vertices.size(), 0), std::vector<double>(ball.vertices.size(), 1.0)};
+  const SkinWeights weights{1, std::vector<uint32_t>(ball.vertices.size(), 0),
+                            std::vector<double>(ball.vertices.size(), 1.0)};
   skin.deformation = std::make_shared<Skin>(
       ball.vertices, std::vector<Joint>{Joint{"root", -1, Transform::Identity(), motion, {}}}, weights);
   skinned.add(skin);

@@ -1,4 +1,5 @@
-// What turns away from the radar fades with the root of a cosine: its amplitude is that of each chirp, its length a polynomial.
+// What turns away from the radar fades with the root of a cosine: its amplitude is that of each chirp, its length a
+// polynomial.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,13 +114,14 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   int num_turned = 0, num_facing = 0;
   for (const int64_t path : indices) {
     const double first = facing(paths, localise, radar, path, start), last = facing(paths, localise, radar, path, end);
-    const auto one = std::find_if(failed.begin(), failed.end(), [path](const FailedPath& other) { return other.path == path; });
+    const auto one = std::find_if(failed.begin(), failed.end(),
+                                  [path](const FailedPath& other) { return other.path == path; });
     if ((first > 0) != (last > 0)) {
       ++num_turned;
       ASSERT_NE(one, failed.end());
       EXPECT_TRUE(one->by_chirp);
       EXPECT_EQ(one->next_level, level);
-    } else if (std::min(first, last) > kGrazing) {  // the rotor turns by less than half a turn, so this side is seen all along
+    } else if (std::min(first, last) > kGrazing) {  // turned by less than half a turn: seen all along
       ++num_facing;
       EXPECT_EQ(one, failed.end());
     }
@@ -128,7 +130,8 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   EXPECT_GT(num_facing, 10);
 }
 
-// Lengths and amplitudes of the paths that a polynomial follows are those of the paths alone, wherever they stand in their block.
+// Lengths and amplitudes of the paths that a polynomial follows are those of the paths alone, wherever they stand in their
+// block.
 TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);

@@ -33,7 +33,8 @@ std::pair<double, double> errors(const FrameNodes& nodes, const Radar& radar, co
       double value = 0.0, slope = 0.0;
       for (int k = 0; k < sampling.order; ++k) {
         const auto weight = static_cast<size_t>(chirp * sampling.order + k);
-        const double node = f(nodes.times[static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k)] - kStart);
+        const auto place = static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k);
+        const double node = f(nodes.times[place] - kStart);
         value += sampling.value[weight] * node;
         slope += sampling.slope[weight] * node;
       }
@@ -60,7 +61,8 @@ TEST(ChebyshevNodes, KinksAtBreakpointsDoNoHarm) {
   const double kink = 0.4 * radar.frame_duration();
   const auto f = [&](double t) { return t < kink ? t / kink : 1.0 - 2.0 * (t - kink) / kink; };
   const auto derivative = [&](double t) { return t < kink ? 1.0 / kink : -2.0 / kink; };
-  const auto [value, slope] = errors(chebyshev_nodes(radar, kStart, {kStart - 1.0, kStart + kink, kStart + 9.0}, 6), radar, f, derivative);
+  const auto [value, slope] = errors(chebyshev_nodes(radar, kStart, {kStart - 1.0, kStart + kink, kStart + 9.0}, 6), radar,
+                                     f, derivative);
   EXPECT_LT(value, kPolynomialTolerance);
   EXPECT_LT(slope * kink, 100 * kPolynomialTolerance);
   const auto [without, ignored] = errors(chebyshev_nodes(radar, kStart, {}, 6), radar, f, derivative);
@@ -74,7 +76,8 @@ TEST(ChebyshevNodes, TailShowsWhatThePolynomialLacks) {
   double before_last = 0.0, last = 0.0;
   for (size_t k = 0; k < 6; ++k) {
     const double x = 2.0 * nodes.times[k] / frame - 1.0;
-    const double value = 7.0 + 0.5 * (8 * std::pow(x, 4) - 8 * x * x + 1) + 0.25 * (16 * std::pow(x, 5) - 20 * x * x * x + 5 * x);
+    const double fourth = 8 * std::pow(x, 4) - 8 * x * x + 1, fifth = 16 * std::pow(x, 5) - 20 * x * x * x + 5 * x;
+    const double value = 7.0 + 0.5 * fourth + 0.25 * fifth;
     before_last += nodes.tail[k] * value;   // T_4
     last += nodes.tail[6 + k] * value;      // T_5
   }
@@ -102,7 +105,8 @@ TEST(ExactNodes, DerivativesAreThoseOfTheCubicInAChirp) {
     const double middle = kStart + radar.chirp_time(1, chirp);
     double bend = 0.0, twist = 0.0;
     for (int k = 0; k < 5; ++k) {
-      const double x = (nodes.times[static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k)] - middle) / half;
+      const auto place = static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k);
+      const double x = (nodes.times[place] - middle) / half;
       const double value = 1.0 + 2.0 * x - 3.0 * x * x + 4.0 * x * x * x;
       bend += sampling.bend[static_cast<size_t>(5 * chirp + k)] * value;
       twist += sampling.twist[static_cast<size_t>(5 * chirp + k)] * value;

@@ -17,7 +17,8 @@ const Vec3 kCentre(kFarRange, 0, 0);
 
 double rcs_dbsm(const Paths& paths) { return decibel(rcs_of(std::norm(coherent_sum(paths)), kFarRange, 77e9)); }
 
-Paths far_trace(const Scene& scene, int64_t num_rays, int max_bounces, PolarizationModel model = PolarizationModel::kScalar) {
+Paths far_trace(const Scene& scene, int64_t num_rays, int max_bounces,
+                PolarizationModel model = PolarizationModel::kScalar) {
   TraceSettings settings;
   settings.polarization = model;
   settings.num_rays = num_rays;
@@ -48,7 +49,8 @@ TEST(Plate, BroadsideRcsIsThatOfPhysicalOptics) {
 TEST(Plate, RcsOverAngleFollowsTheSincPattern) {
   EXPECT_NEAR(plate_dbsm(0.1, 0.5), 16.096, kMainLobeTolerance);
   const double bound = 0.05 * std::pow(10.0, 19.185 / 20);  // 0.05 of the main lobe's amplitude beyond the first null
-  const std::pair<double, double> table[] = {{1.0, .277}, {2.0, -.183}, {3.0, -.980}, {5.0, -3.833}, {10.0, -21.996}, {20.0, -16.400}};
+  const std::pair<double, double> table[] = {{1.0, .277},   {2.0, -.183},    {3.0, -.980},
+                                             {5.0, -3.833}, {10.0, -21.996}, {20.0, -16.400}};
   for (const auto& [angle_deg, expected] : table) {
     EXPECT_NEAR(std::pow(10.0, plate_dbsm(0.1, angle_deg) / 20), std::pow(10.0, expected / 20), bound) << angle_deg;
   }
@@ -189,7 +191,8 @@ TEST(Furnace, DiffusePowerIsConserved) {
 
   radar.receivers.clear();
   for (int i = 0; i < kReceivers; ++i) {  // spherical Fibonacci points
-    const double z = 1.0 - (2.0 * i + 1.0) / kReceivers, turn = kTwoPi * i * 0.6180339887498949, ring = std::sqrt(1.0 - z * z);
+    const double z = 1.0 - (2.0 * i + 1.0) / kReceivers, ring = std::sqrt(1.0 - z * z);
+    const double turn = kTwoPi * i * 0.6180339887498949;
     radar.receivers.push_back(antenna_at(centre + kRadius * Vec3(z, ring * std::cos(turn), ring * std::sin(turn))));
   }
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));

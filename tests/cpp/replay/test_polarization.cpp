@@ -22,7 +22,8 @@ Levels dihedral(const Material& material, double angle, const Vec3& polarization
                 int64_t num_rays = 1 << 15) {
   const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix();
   const double h = 0.1 * std::sqrt(0.5);
-  const Vec3 centre(kRange, 0, 0), edge = turn * Vec3(0, 0, 0.1), left = turn * Vec3(-h, h, 0), right = turn * Vec3(-h, -h, 0);
+  const Vec3 centre(kRange, 0, 0), edge = turn * Vec3(0, 0, 0.1);
+  const Vec3 left = turn * Vec3(-h, h, 0), right = turn * Vec3(-h, -h, 0);
   Scene scene;
   add_rectangle(scene, "left", centre - 0.5 * edge, left, edge, share(material));
   add_rectangle(scene, "right", centre - 0.5 * edge, right, edge, share(material));
@@ -65,8 +66,8 @@ TEST(Polarization, MetalDihedralTurnsThePolarization) {
 }
 
 TEST(Polarization, SingleBouncesOfTheTurnedDihedralRemain) {
-  // With all bounces the co-polar null is filled by the single ones, far side lobes of both faces: -20.3 dBsm. Their edges are
-  // what is sampled, hence many rays and a wide bound.
+  // With all bounces the co-polar null is filled by the single ones, far side lobes of both faces: -20.3 dBsm. Their edges
+  // are what is sampled, hence many rays and a wide bound.
   EXPECT_NEAR(dihedral(Material::metal(), kPi / 4, Vec3::UnitZ(), 0, 1 << 19).co, -20.3, 0.5);
 }
 

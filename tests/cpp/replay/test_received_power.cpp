@@ -14,7 +14,8 @@ namespace {
 using namespace testing;
 
 constexpr int kSeeds = 1000;
-constexpr double kErrorOfErrors = 0.15;  // relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
+// relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
+constexpr double kErrorOfErrors = 0.15;
 constexpr double kFourSigma = 4.0;
 constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
 

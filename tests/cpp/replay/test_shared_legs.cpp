@@ -16,8 +16,10 @@ constexpr double kRounding = 1e-13;  // relative: sums and products of about ten
 // relative: cosines near zero are differences of products of order one; at the rim of an antenna that is dark behind, 1e-5
 // of its gain and less
 constexpr double kGrazingRounding = 3e-11;
-constexpr double kFilterRounding = 3e-10;  // relative: footprints are exponentials, and multiply the rounding of thousands of rad
-constexpr double kGrazingFilterRounding = 5e-8;  // likewise: grazing cells stretch a thousandfold; edges are three footprints
+// relative: footprints are exponentials, and multiply the rounding of thousands of rad
+constexpr double kFilterRounding = 3e-10;
+// likewise: grazing cells stretch a thousandfold; edges are three footprints
+constexpr double kGrazingFilterRounding = 5e-8;
 constexpr double kFaintest = 1e-11;  // sqrt(W): flat-top footprints are differences from one, of echoes of 1e-6
 
 MaterialPtr rough(double diffuse_share, bool mirror) {
@@ -46,7 +48,8 @@ Scene scene_of_all_kinds(bool has_mirrors = true) {
   Scene scene;
   add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, has_mirrors));
   add_rectangle(scene, "ground", {-20, -20, -1}, {60, 0, 0}, {0, 40, 0}, rough(0.1, has_mirrors));
-  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, has_mirrors), std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
+  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, has_mirrors),
+                std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
   const auto turns = std::make_shared<LinearMotion>(Vec3(-3, 1, 0), Vec3(0.5, 1, 4));
   add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
   add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
@@ -202,7 +205,9 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };
   EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.is_reversed; }));
   EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.inner == ChainPlan::kNone; }));
-  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) { return chain.inner != ChainPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0; }));
+  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) {
+    return chain.inner != ChainPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
+  }));
   EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
   EXPECT_GT(plan.inner.size(), 10u);
 }

@@ -13,7 +13,8 @@ namespace {
 using namespace testing;
 
 constexpr double kFamilyTolerance = 0.1;  // dB; the weakest family errs by 0.05 at 4e4 rays
-constexpr double kTurnTolerance = 0.2;    // dB; over a wall and a floor true fields turn a little, which the reference has not
+// dB; over a wall and a floor true fields turn a little, which the reference has not
+constexpr double kTurnTolerance = 0.2;
 
 MaterialPtr rough_mirror(double diffuse_share) {
   Material material;

@@ -187,7 +187,8 @@ TEST(Coplanar, SliversLieOnEachOtherToo) {
 // Pairs of k copies are k^2 / 2; the report names each copy once and other meshes with the first alone.
 TEST(Coplanar, CopiesAtOnePlaceAreListedWithTheFirstOfThemAlone) {
   constexpr uint32_t kCopies = 300;
-  const Soup square = rectangle(0, 0, 1, 1, 0, 4), bent = both(square, rectangle(0.5, 0, 1, 1, 4e-6));  // on itself by .5 m^2
+  // on itself by .5 m^2
+  const Soup square = rectangle(0, 0, 1, 1, 0, 4), bent = both(square, rectangle(0.5, 0, 1, 1, 4e-6));
   const Transform place = random_place(7, kUtm);
   Scene scene = scene_of({rectangle(0, 0, 1, 0.25, -3e-6)}, place);
   for (uint32_t k = 0; k < kCopies; ++k) add(scene, bent, place);

@@ -98,7 +98,8 @@ TEST(Trace, WorldOffsetDoesNoHarm) {
   const std::complex<double> at_origin = coherent_sum(near), at_offset = coherent_sum(far);
   double scale = 0.0;
   for (const std::complex<double>& amplitude : replayed(near).amplitudes) scale += std::norm(amplitude);
-  // Relative to the level of the speckle; a ray that falls on the other side of an edge changes it by 1 / sqrt(paths) at most.
+  // Relative to the level of the speckle; a ray that falls on the other side of an edge changes it by 1 / sqrt(paths) at
+  // most.
   EXPECT_LT(std::abs(at_origin - at_offset), 1e-2 * std::sqrt(scale));
 }
 
@@ -136,7 +137,8 @@ void add_slivers(Scene& scene, double distance, double width, double height, int
 // 10 m by 0.1 mm: single-precision (u, v) lose one ray in four, and leave 0.1 mm (median) to those they keep.
 TEST(Trace, SliversAreMetInDoublePrecision) {
   constexpr double kDistance = 5.0;
-  constexpr double kPosition = 1e-6;  // m, median: 10 m times the rounding of u and v; where less rounds the ray, 10 times that
+  // m, median: 10 m times the rounding of u and v; where less rounds the ray, 10 times that
+  constexpr double kPosition = 1e-6;
   Scene scene;
   add_slivers(scene, kDistance, 1e-4, 10.0, 10000);
   const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
@@ -160,7 +162,9 @@ TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
   const Scene scene = mixed_scene(Vec3::Zero());
   const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
   std::vector<Vec3> directions;
-  for (int i = 0; i < 5000; ++i) directions.push_back(Vec3(std::cos(0.01 * i), std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized());
+  for (int i = 0; i < 5000; ++i) {
+    directions.push_back(Vec3(std::cos(0.01 * i), std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized());
+  }
   std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
   std::array<RayHit, kPacketSize> hits;
   int num_hits = 0, num_different = 0;
@@ -229,11 +233,13 @@ TEST(Trace, BadInputIsNamed) {
   EXPECT_NE(message(Scene(), radar, late).find("start_time"), std::string::npos);
 
   Scene bent;
-  add_mesh(bent, "bent", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, share(Material::metal(true)));
+  add_mesh(bent, "bent", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}},
+           share(Material::metal(true)));
   EXPECT_NE(message(bent, radar, small()).find("'bent' must be flat"), std::string::npos);
 
   Scene brief;
-  const auto motion = std::make_shared<KeyframeMotion>(std::vector<double>{0.0, 1e-6}, std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX()},
+  const auto motion = std::make_shared<KeyframeMotion>(std::vector<double>{0.0, 1e-6},
+                                                       std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX()},
                                                        std::vector<Quaternion>{}, Interpolation::kLinear);
   add_rectangle(brief, "brief", {5, 0, 0}, {0, 1, 0}, {0, 0, 1}, lambert(0.5), motion);
   EXPECT_NE(message(brief, radar, small()).find("brief"), std::string::npos);

@@ -137,7 +137,8 @@ print(traced(1000).num_paths > 0)
 """
 
 
-@cases("memory exceeded", "300 MiB for a record of a gigabyte: MemoryError, what was made is given back (but for the room that "
+@cases("memory exceeded",
+       "300 MiB for a record of a gigabyte: MemoryError, what was made is given back (but for the room that "
        "threads keep, less than half) and the next trace works (of these three, broken)", bound=0.0, unit="promises",
        broken="blocks of rays kept after the failure: 1")
 def no_memory() -> float:

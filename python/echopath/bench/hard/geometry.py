@@ -69,14 +69,15 @@ def utm_hits() -> float:
 
 
 def path_keys(paths) -> list:
-    """Of each path its weight, its events and where it hits, rounded: one ray's paths are the same wherever the world begins."""
+    """Of each path its weight, its events and where it hits, rounded: a ray's paths are alike wherever the world begins."""
     places = np.column_stack([paths.hits["triangle_id"], np.round(1e4 * paths.hits["u"])]).astype(np.int64).tolist()
     weights = np.round(1e5 * np.asarray(paths.weight)).tolist()
     return [(weight, diffuse, *map(tuple, places[begin:begin + count])) for weight, diffuse, begin, count
             in zip(weights, paths.diffuse.tolist(), paths.offsets.tolist(), paths.num_bounces.tolist())]
 
 
-@cases("signal at UTM coordinates", "double precision resolves 9e-10 m there: relative change of the signal of the paths that "
+@cases("signal at UTM coordinates",
+       "double precision resolves 9e-10 m there: relative change of the signal of the paths that "
        "both worlds have, all but a thousandth", bound=1e-5,
        broken="rays in world coordinates instead of those about the scene: 0.85 of the paths are others")
 def utm_signal() -> float:

@@ -199,7 +199,7 @@ def default_null() -> float:
 
 
 def over_ground(distance: float, height: float, antenna_height: float, side: float) -> complex:
-    """The four ways between an antenna and a small upright plate over metal ground, summed over its height: re the direct one."""
+    """The four ways between an antenna and an upright plate over metal ground, summed over its height: re the direct one."""
     z = height + side * ((np.arange(64) + 0.5) / 64 - 0.5)
     lengths = [np.hypot(distance, z - antenna_height), np.hypot(distance, z + antenna_height)]
     direct, image = (np.exp(-1j * exact.WAVENUMBER * length) / length for length in lengths)

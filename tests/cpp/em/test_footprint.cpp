@@ -10,6 +10,16 @@
 namespace echopath {
 namespace {
 
+constexpr double kSum = 1e-12;             // of a sum of 1.6e5 terms, which is exact to rounding
+constexpr double kThreeSums = 1e-11;       // of three of them, whose weights add up to 7
+constexpr double kRounding = 1e-15;
+constexpr double kStep = 0.05;             // of 1, between curvatures that differ by 2 %
+constexpr double kFlat = 1e-3;             // what cells that turn by a tenth of a cycle may lose
+constexpr double kFlatTop = 1e-4;          // likewise, at half a radian
+constexpr double kFaded = 1e-6;            // of cells that turn by two cycles
+constexpr double kSmallCell = 1e-5;        // of the first order in phases of 1e-5
+constexpr double kSmallCellSquared = 1e-9; // of their second order
+
 // Trapezoidal sum over +-9 standard deviations: exact to rounding for a Gaussian times a resolved phase.
 std::complex<double> gaussian_mean(const FootprintPhase& phase, double spread) {
   constexpr int kSteps = 400;
@@ -31,7 +41,7 @@ TEST(Footprint, SecondOrderIsTheGaussianIntegral) {
   std::uniform_real_distribution<double> slope(-4.0, 4.0), curvature(-6.0, 6.0);
   for (int i = 0; i < 40; ++i) {
     const FootprintPhase phase{slope(random), slope(random), curvature(random), curvature(random), curvature(random)};
-    EXPECT_LT(std::abs(second_order_footprint(phase, 0.6) - gaussian_mean(phase, 0.6)), 1e-12);
+    EXPECT_LT(std::abs(second_order_footprint(phase, 0.6) - gaussian_mean(phase, 0.6)), kSum);
   }
 }
 
@@ -40,8 +50,8 @@ TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
     std::complex<double> before = 1.0;
     for (double h = 0.0; h < 2000.0; h = h * 1.02 + 1e-3) {
       const std::complex<double> now = second_order_footprint({0.3, -0.2, sign * h, 0.1 * h, sign * 0.7 * h}, 0.6);
-      EXPECT_LE(std::abs(now), 1.0 + 1e-15);
-      EXPECT_LT(std::abs(now - before), 0.05);
+      EXPECT_LE(std::abs(now), 1.0 + kRounding);
+      EXPECT_LT(std::abs(now - before), kStep);
       before = now;
     }
   }
@@ -50,16 +60,16 @@ TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
 TEST(Footprint, EdgesCombineThreeGaussians) {
   const FootprintPhase phase{0.7, -0.4, 0.5, 0.2, -0.3};
   const auto mean = [&](double times) { return gaussian_mean(phase, 0.6 * std::sqrt(times)); };
-  EXPECT_LT(std::abs(edges_footprint(phase, 0.6) - (3.0 * mean(1.0) - 3.0 * mean(2.0) + mean(3.0))), 1e-11);
-  EXPECT_LT(std::abs(edges_footprint({0.2 * kPi, 0, 0, 0, 0}, 0.65) - 1.0), 1e-3);
-  EXPECT_LT(std::abs(edges_footprint({12.0, 0, 0, 0, 0}, 0.65)), 1e-6);
+  EXPECT_LT(std::abs(edges_footprint(phase, 0.6) - (3.0 * mean(1.0) - 3.0 * mean(2.0) + mean(3.0))), kThreeSums);
+  EXPECT_LT(std::abs(edges_footprint({0.2 * kPi, 0, 0, 0, 0}, 0.65) - 1.0), kFlat);
+  EXPECT_LT(std::abs(edges_footprint({12.0, 0, 0, 0, 0}, 0.65)), kFaded);
 }
 
 TEST(Footprint, AllTendToOneForSmallCells) {
   const FootprintPhase small{1e-5, -2e-5, 1e-5, 3e-6, -1e-5};
-  EXPECT_NEAR(first_order_footprint(small), 1.0, 1e-9);
-  EXPECT_NEAR(flat_top_footprint(small), 1.0, 1e-15);
-  EXPECT_LT(std::abs(second_order_footprint(small, 0.6) - 1.0), 1e-5);
+  EXPECT_NEAR(first_order_footprint(small), 1.0, kSmallCellSquared);
+  EXPECT_NEAR(flat_top_footprint(small), 1.0, kRounding);
+  EXPECT_LT(std::abs(second_order_footprint(small, 0.6) - 1.0), kSmallCell);
 }
 
 // sinc(g/2) = 1 - g^2/24 + ... : the Gaussian is its fit.
@@ -71,8 +81,8 @@ TEST(Footprint, FirstOrderFitsTheShapeFactorOfASquareCell) {
 }
 
 TEST(Footprint, FlatTopIsFlat) {
-  EXPECT_GT(flat_top_footprint({0.5, 0.5, 0, 0, 0}), 1.0 - 1e-4);
-  EXPECT_LT(flat_top_footprint({12.0, 0, 0, 0, 0}), 1e-6);
+  EXPECT_GT(flat_top_footprint({0.5, 0.5, 0, 0, 0}), 1.0 - kFlatTop);
+  EXPECT_LT(flat_top_footprint({12.0, 0, 0, 0, 0}), kFaded);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ namespace {
 using namespace testing;
 
 constexpr double kAdditivity = 1e-12;  // relative to the largest sample
+constexpr double kCell = 0.15;           // m and m/s: of the nearest cell
 
 // A box of two groups, "front" facing -x and "back", around the origin.
 const char* const kTwoPlates = R"(
@@ -98,14 +99,14 @@ TEST(Chain, MeshFileBecomesADecomposedMap) {
   const double coupling = radar.waveform.centre_frequency() * 4.0 / radar.waveform.slope();
   const double mid_frame = 4.0 * 0.5 * radar.frame_duration();
   const Peak front = strongest(views[0][0].cube, radar);
-  EXPECT_NEAR(front.range, 14.9 + mid_frame + coupling, 0.15);
-  EXPECT_NEAR(front.velocity, 4.0, 0.15);
+  EXPECT_NEAR(front.range, 14.9 + mid_frame + coupling, kCell);
+  EXPECT_NEAR(front.velocity, 4.0, kCell);
   const Peak back = strongest(views[0][1].cube, radar);
-  EXPECT_NEAR(back.range, std::hypot(15.1, 0.45) + mid_frame + coupling, 0.2);
+  EXPECT_NEAR(back.range, std::hypot(15.1, 0.45) + mid_frame + coupling, kCell);
   const Peak ghost = strongest(views[1][1].cube, radar);
   const double over_wall = std::hypot(14.9, 6.0);
-  EXPECT_NEAR(ghost.range, 0.5 * (14.9 + over_wall) + mid_frame + coupling, 0.15);
-  EXPECT_NEAR(ghost.velocity, 4.0 * 0.5 * (1.0 + 14.9 / over_wall), 0.15);
+  EXPECT_NEAR(ghost.range, 0.5 * (14.9 + over_wall) + mid_frame + coupling, kCell);
+  EXPECT_NEAR(ghost.velocity, 4.0 * 0.5 * (1.0 + 14.9 / over_wall), kCell);
 
   const Cube whole = synthesize(paths, radar);
   double scale = 0.0;

@@ -18,6 +18,7 @@ constexpr size_t kDraws = 20'000;  // cells with the same truth: independent dra
 constexpr double kMeanError = 0.03;
 // Standard errors are of first order and from eight batches: mean of their squares against the spread, relative.
 constexpr double kVarianceError = 0.15;
+constexpr double kRounding = 1e-12;
 
 // What one part is made of in each cell.
 struct Truth {
@@ -107,8 +108,8 @@ TEST(CellErrors, PartsThatVaryTogetherHaveASureShare) {
   for (double& value : three.diffuse) value *= 3.0;
   const ShareErrors errors = share_errors({one.view(), three.view()}, kBatches, std::vector<int16_t>(kDraws, 1));
   for (size_t i = 0; i < kDraws; ++i) {
-    ASSERT_NEAR(errors.share[i], 0.25, 1e-12);
-    ASSERT_NEAR(errors.share_error[i], 0.0, 1e-12);
+    ASSERT_NEAR(errors.share[i], 0.25, kRounding);
+    ASSERT_NEAR(errors.share_error[i], 0.0, kRounding);
     ASSERT_GT(errors.power_error[i], 0.0);
     ASSERT_TRUE(errors.certain[i]);
   }
@@ -140,7 +141,7 @@ TEST(CellErrors, OfTwoSharesEachHasTheSameErrorAndTheirDifferenceTwiceThat) {
   int64_t num_certain = 0;
   for (size_t i = 0; i < kDraws; ++i) {
     const double share = errors.share[i], error = errors.share_error[i];
-    ASSERT_NEAR(errors.share_error[kDraws + i], error, 1e-9);
+    ASSERT_NEAR(errors.share_error[kDraws + i], error, kRounding);
     const double excess = (2.0 * share - 1.0) - 2.0 * (2.0 * error);
     if (std::abs(excess) < 1e-9) continue;  // rounding decides
     ASSERT_EQ(errors.certain[i] != 0, excess > 0.0) << i;

@@ -21,6 +21,8 @@ constexpr double kAngleError = 3e-3;  // relative: all of the outline cuts cells
 // Of a share of an object that fills 2 % of its cone, for the 1400 directions on it after refinement; 90 before.
 constexpr double kThinShareError = 3e-3;
 constexpr double kRounding = 1e-12;  // m
+constexpr double kSum = 1e-15;       // of some shares
+
 
 // Solid angle of the rectangle 0 <= y <= a, 0 <= z <= b at x = d, signed; seen from the origin.
 double corner_angle(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
@@ -118,7 +120,7 @@ TEST(Visibility, NearestOccluderHasTheDirection) {
   EXPECT_NEAR(occluded_by(sight, "all"), 0.5, kShareError);
   double sum = 0.0;
   for (const auto& [name, share] : sight.occluders) sum += share;
-  EXPECT_NEAR(sum, 1.0, 1e-15);
+  EXPECT_NEAR(sum, 1.0, kSum);
   EXPECT_GE(sight.occluders[0].second, sight.occluders[1].second);
 }
 

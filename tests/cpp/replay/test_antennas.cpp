@@ -13,6 +13,7 @@ using namespace testing;
 constexpr double kInterpolation = 2e-3;  // relative: tables in steps of 2 degrees, amplitudes of gains that fall to 0
 constexpr double kPhaseTolerance = 1e-3; // rad, the same for phases of up to 1.6 rad
 constexpr double kWavenumber = kTwoPi * 77e9 / kSpeedOfLight;
+constexpr double kRounding = 1e-12;
 
 using OverDirection = std::function<double(const Vec3&)>;
 
@@ -133,7 +134,7 @@ TEST(AntennaTable, RaysFillTheHalfSpaceWhereThereIsNoGainBehind) {
   radar.transmitters[0].pattern = table(even, nullptr, 90);
   const Stratum front = paths_around(radar).frame.strata.back();
   EXPECT_EQ(front.versine, 1.0);
-  EXPECT_NEAR((front.axis - Vec3(std::cos(0.6), std::sin(0.6), 0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((front.axis - Vec3(std::cos(0.6), std::sin(0.6), 0)).norm(), 0.0, kRounding);
   radar.transmitters[0].pattern = table(even, nullptr, 92);
   EXPECT_EQ(paths_around(radar).frame.strata.back().versine, 2.0);
 }

@@ -17,6 +17,10 @@ constexpr int kSeeds = 1000;
 // relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
 constexpr double kErrorOfErrors = 0.15;
 constexpr double kFourSigma = 4.0;
+constexpr double kPlateDb = 0.1;         // the promise for a plate
+constexpr double kGhostDb = 0.05;        // of families of ghosts
+constexpr double kImage = 1e-6;          // relative: single precision of weights
+constexpr double kRounding = 1e-12;
 constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
@@ -90,7 +94,7 @@ TEST(ReceivedPower, ErrorOfATiltedPlateIsItsSpread) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const Spread plate = spread_of(tilted_plate(), radar, 4096);
   EXPECT_NEAR(plate.rms_error / plate.spread, 1.0, kErrorOfErrors);
-  EXPECT_NEAR(decibel(rcs_of(plate.mean_power, 10.0, radar.waveform.start_frequency)), kTiltedPlate, 0.1);
+  EXPECT_NEAR(decibel(rcs_of(plate.mean_power, 10.0, radar.waveform.start_frequency)), kTiltedPlate, kPlateDb);
 }
 
 TEST(ReceivedPower, ErrorOfADiffuseEchoIsItsSpread) {
@@ -143,14 +147,14 @@ TEST(ReceivedPower, OrdersOverAMirrorAddAsFields) {
     return received_power(paths.select(keep));
   };
   const ReceivedPower direct = of_bounces(1), pair = of_bounces(2), two_way = of_bounces(3);
-  EXPECT_NEAR(decibel(pair.power / direct.power), 4.053, 0.05);
-  EXPECT_NEAR(decibel(two_way.power / direct.power), -2.700, 0.05);
+  EXPECT_NEAR(decibel(pair.power / direct.power), 4.053, kGhostDb);
+  EXPECT_NEAR(decibel(two_way.power / direct.power), -2.700, kGhostDb);
   // Paths of the wall alone are known without rays: no error comes from them.
   std::vector<uint8_t> images;
   for (const uint8_t batch : paths.batch) images.push_back(batch == kNoBatch);
   const ReceivedPower wall = received_power(paths.select(images));
   const double image_field = kSpeedOfLight / 77e9 / (4 * kPi * 6.0);
-  EXPECT_NEAR(wall.power / (image_field * image_field), 1.0, 1e-6);
+  EXPECT_NEAR(wall.power / (image_field * image_field), 1.0, kImage);
   EXPECT_LT(wall.standard_error, 1e-9 * wall.power);
 }
 
@@ -164,7 +168,7 @@ TEST(ReceivedPower, PartsOfDiffusePowerAddUp) {
     second.push_back(!first.back());
   }
   const double sum = received_power(paths.select(first)).power + received_power(paths.select(second)).power;
-  EXPECT_NEAR(sum / received_power(paths).power, 1.0, 1e-12);
+  EXPECT_NEAR(sum / received_power(paths).power, 1.0, kRounding);
 }
 
 // The sum over all paths is the whole echo for any number of batches: what differs is the error of each lattice.
@@ -174,15 +178,15 @@ TEST(ReceivedPower, BatchesMakeOneEcho) {
   for (const int batches : {1, 2, 8, 64}) {
     const Paths paths = shot(tilted_plate(), radar, 1 << 16, 2, batches);
     EXPECT_EQ(paths.frame.statistics.num_rays, 1 << 16);
-    EXPECT_NEAR(level(std::norm(coherent_sum(paths))), kTiltedPlate, 0.1) << batches;
-    EXPECT_NEAR(level(received_power(paths).power), kTiltedPlate, 0.1) << batches;
+    EXPECT_NEAR(level(std::norm(coherent_sum(paths))), kTiltedPlate, kPlateDb) << batches;
+    EXPECT_NEAR(level(received_power(paths).power), kTiltedPlate, kPlateDb) << batches;
   }
 }
 
 TEST(ReceivedPower, OfOneBatchHasNoError) {
   const Paths paths = shot(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2000, 1, 1);
   const ReceivedPower power = received_power(paths);
-  EXPECT_NEAR(power.power / std::norm(coherent_sum(paths)), 1.0, 1e-9);
+  EXPECT_NEAR(power.power / std::norm(coherent_sum(paths)), 1.0, kRounding);
   EXPECT_TRUE(std::isnan(power.standard_error));
   EXPECT_FALSE(power.resolved);
 }

@@ -12,6 +12,9 @@ namespace {
 using namespace testing;
 
 constexpr double kLaw = 1e-9;  // of unit vectors, after Newton's method has ended
+constexpr double kRounding = 1e-15;
+constexpr double kFalls = 0.05;         // of the error before: a step of Newton squares it
+constexpr double kSecondOrder = 0.01;   // relative: the next order of the slide
 
 // Spheres (radius > 0: convex towards the path), planes (radius 0) and images, in order; the last hit is a material point.
 struct Chain {
@@ -115,7 +118,7 @@ TEST(SpecularSlide, NewtonsMethodEndsAtTheLawOfReflection) {
   Chain chain = two_spheres_with_mirrors();
   for (int i = 0; i < 12; ++i) chain.newton_step();
   EXPECT_LT(chain.break_of_law(), kLaw);
-  EXPECT_LT(std::abs(chain.newton_step()), 1e-15);
+  EXPECT_LT(std::abs(chain.newton_step()), kRounding);
 }
 
 TEST(SpecularSlide, ConvergesQuadratically) {
@@ -127,8 +130,8 @@ TEST(SpecularSlide, ConvergesQuadratically) {
   chain.newton_step();
   const double second = chain.break_of_law();
   chain.newton_step();
-  EXPECT_LT(second, first * 0.05);
-  EXPECT_LT(chain.break_of_law(), first * 0.05 * 0.05);
+  EXPECT_LT(second, first * kFalls);
+  EXPECT_LT(chain.break_of_law(), first * kFalls * kFalls);
 }
 
 // The length over the frozen points exceeds that over Fermat's by e.
@@ -144,7 +147,7 @@ TEST(SpecularSlide, ExcessIsTheDifferenceOfLengths) {
   ASSERT_TRUE(slide.solve(chain.path, chain.hits.data(), chain.start));
   const double excess = slide.length() - shortest;
   EXPECT_GT(std::abs(excess), 1e-6);
-  EXPECT_NEAR(slide.excess() / excess, 1.0, 0.01);
+  EXPECT_NEAR(slide.excess() / excess, 1.0, kSecondOrder);
 }
 
 TEST(SpecularSlide, AMaterialPointBetweenParts) {
@@ -161,8 +164,8 @@ TEST(SpecularSlide, AMaterialPointBetweenParts) {
   const double both = slide.excess();
   chain.move(0, {4.5, 2, 0});  // on the straight image line from 0 to the point behind: no excess left there
   ASSERT_TRUE(slide.solve(chain.path, chain.hits.data(), chain.start));
-  EXPECT_NEAR(slide.step(0).norm(), 0.0, 1e-12);
-  EXPECT_NEAR(slide.step(1).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(slide.step(0).norm(), 0.0, kRounding);
+  EXPECT_NEAR(slide.step(1).norm(), 0.0, kRounding);
   const double slid = 0.5;  // in the plane of incidence, at equal legs r with cosine c: e = slid^2 c^2 / r, about
   EXPECT_NEAR(both, slid * slid * (2 / 4.924) * (2 / 4.924) / 4.924, 0.05 * both);
 }
@@ -185,7 +188,7 @@ TEST(SurfacePoint, LiesOnItsSphere) {
     const double radius = hit.point.x() == 2 ? 0.1 : -0.5;
     for (const double step : {1e-3, 0.05, 0.4}) {
       const Vec3 moved = surface_point(hit, {0, 0.6 * step, 0.8 * step});
-      EXPECT_NEAR((moved - (hit.point - radius * hit.normal)).norm(), std::abs(radius), 1e-15);
+      EXPECT_NEAR((moved - (hit.point - radius * hit.normal)).norm(), std::abs(radius), kRounding);
     }
   }
 }

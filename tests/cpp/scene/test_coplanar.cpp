@@ -19,6 +19,8 @@ using Invalid = std::invalid_argument;
 
 constexpr double kAreaShare = 1e-7;     // of 1 m^2: corners at UTM coordinates are known to 9e-10 m
 constexpr double kDistance = 4e-9;      // m, likewise
+constexpr double kRounding = 1e-12;      // m^2
+constexpr double kMovedNormal = 1e-9;    // m and m^2: seen along the normal of the one or of the other
 const Vec3 kUtm(450'000.0, 5'400'000.0, 120.0);
 
 struct Soup {
@@ -162,7 +164,7 @@ TEST(Coplanar, SurfacesThatCrossOrBendAreNotOne) {
   Scene nearly = scene_of({square});
   add(nearly, square, Transform(Eigen::AngleAxisd(1e-5, Vec3::UnitX())));  // 5 um at the rim
   ASSERT_EQ(coplanar_overlaps(nearly).size(), 1u);
-  EXPECT_NEAR(coplanar_overlaps(nearly)[0].distance, 5e-6, 1e-9);
+  EXPECT_NEAR(coplanar_overlaps(nearly)[0].distance, 5e-6, kMovedNormal);
   const std::vector<Vec3> fine_ridge = {{0, 0, 0}, {5e-6, 0, 5e-6}, {0, 1, 0}, {10e-6, 0, 0}};  // triangles within 10 um
   EXPECT_TRUE(coplanar_overlaps(scene_of({{fine_ridge, {{0, 1, 2}, {1, 3, 2}, {0, 2, 3}}}})).empty());
 }
@@ -180,7 +182,7 @@ TEST(Coplanar, ABoxIsFreeOfThemUntilItStandsOnTheGround) {
 
 TEST(Coplanar, SliversLieOnEachOtherToo) {
   const Soup slivers = {{{0, 0, 0}, {1, 0, 0}, {0.4, 3e-6, 0}}, {{0, 1, 2}}};
-  EXPECT_NEAR(area_between(slivers, slivers, random_place(3)), 1.5e-6, 1e-12);
+  EXPECT_NEAR(area_between(slivers, slivers, random_place(3)), 1.5e-6, kRounding);
   EXPECT_EQ(area_between(slivers, {{{0, 0, 0}, {1, 0, 0}, {0.4, -3e-6, 0}}, {{0, 2, 1}}}, random_place(3)), 0.0);
 }
 
@@ -229,7 +231,7 @@ TEST(Coplanar, ACrowdHasThePairsOfItsTrianglesTwoByTwo) {
       ASSERT_LT(num_pairs, found.size());
       EXPECT_EQ(found[num_pairs].first_mesh_id, a);
       EXPECT_EQ(found[num_pairs].second_mesh_id, b);
-      EXPECT_NEAR(found[num_pairs].area, area, 1e-9);  // seen along the normal of the one or of the other
+      EXPECT_NEAR(found[num_pairs].area, area, kMovedNormal);
       ++num_pairs;
     }
   }
@@ -240,8 +242,8 @@ TEST(Coplanar, ACrowdHasThePairsOfItsTrianglesTwoByTwo) {
 TEST(Coplanar, HoldsAtItsTimeOnly) {
   Scene scene = scene_of({rectangle(0, 0, 1, 1)});
   add(scene, rectangle(0, 0, 1, 1), Transform::Identity(), std::make_shared<const LinearMotion>(Vec3(0.5, 0.0, 0.0)));
-  EXPECT_NEAR(coplanar_overlaps(scene, 0.0)[0].area, 1.0, 1e-12);
-  EXPECT_NEAR(coplanar_overlaps(scene, 1.0)[0].area, 0.5, 1e-12);
+  EXPECT_NEAR(coplanar_overlaps(scene, 0.0)[0].area, 1.0, kRounding);
+  EXPECT_NEAR(coplanar_overlaps(scene, 1.0)[0].area, 0.5, kRounding);
   EXPECT_TRUE(coplanar_overlaps(scene, 2.0).empty());
 }
 

@@ -14,6 +14,8 @@ namespace {
 using test::expect_error;
 using test::TemporaryFile;
 
+constexpr double kRounding = 1e-12;
+
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 std::vector<NamedMesh> read(const std::string& content, double unit = 1.0) {
@@ -73,7 +75,7 @@ TEST(Obj, CutsConcavePolygonsWithoutOverlap) {
       content << "f";
       for (size_t i = 0; i < corners.size(); ++i) content << " " << (first + i) % corners.size() + 1;
       const MeshPtr mesh = read(content.str() + "\n")[0].mesh;
-      EXPECT_NEAR(mesh->area(), area, 1e-12);
+      EXPECT_NEAR(mesh->area(), area, kRounding);
       EXPECT_EQ(mesh->num_duplicated_vertices(), 0);
     }
   }

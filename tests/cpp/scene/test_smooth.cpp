@@ -8,6 +8,8 @@
 namespace echopath {
 namespace {
 
+constexpr double kRounding = 1e-14;
+
 // A triangle on a surface of revolution or sphere, from a map of two parameters.
 template <class Map>
 std::array<Vec3, 3> triangle(const Map& map, double a, double b, double size) {
@@ -26,7 +28,7 @@ TEST(VertexNormals, AreExactOnASphereOfAnyTessellation) {
         {std::sin(reach[i]) * std::cos(angles[i]), std::sin(reach[i]) * std::sin(angles[i]), std::cos(reach[i])});
   }
   for (uint32_t i = 0; i < 6; ++i) triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
-  EXPECT_LT((vertex_normals(vertices, triangles)[0] - Vec3::UnitZ()).norm(), 1e-14);
+  EXPECT_LT((vertex_normals(vertices, triangles)[0] - Vec3::UnitZ()).norm(), kRounding);
 }
 
 TEST(SmoothPoint, PositionOnASphereErrsWithTheFourthPower) {
@@ -48,7 +50,7 @@ TEST(SmoothPoint, CurvatureIsThatOfTheSphere) {
   const SmoothPoint point = smooth_point(corners, normals, 0.3, 0.3);
   const Mat3 expected = (Mat3::Identity() - point.normal * point.normal.transpose()) / kRadius;
   EXPECT_LT((point.curvature - expected).norm(), 1e-3 / kRadius);
-  EXPECT_LT((point.curvature * point.normal).norm(), 1e-12);
+  EXPECT_LT((point.curvature * point.normal).norm(), kRounding);
 }
 
 TEST(SmoothPoint, CylinderIsFlatAlongItsAxis) {
@@ -59,7 +61,7 @@ TEST(SmoothPoint, CylinderIsFlatAlongItsAxis) {
   for (size_t i = 0; i < 3; ++i) normals[i] = Vec3(corners[i].x(), corners[i].y(), 0).normalized();
   const SmoothPoint point = smooth_point(corners, normals, 0.2, 0.4);
   const Vec3 around = Vec3::UnitZ().cross(point.normal);
-  EXPECT_LT(std::abs(Vec3::UnitZ().dot(point.curvature * Vec3::UnitZ())), 1e-12);
+  EXPECT_LT(std::abs(Vec3::UnitZ().dot(point.curvature * Vec3::UnitZ())), kRounding);
   EXPECT_NEAR(around.dot(point.curvature * around), 1.0 / kRadius, 1e-3);
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 using testing::Complex;
 
+constexpr double kLastDigitDb = 1e-3;  // as printed
+constexpr double kSampledDb = 0.1;     // of as many samples as there are in a frame
+
 Radar noisy_radar(bool real) {
   Radar radar;
   radar.waveform = testing::reference_waveform();
@@ -36,10 +39,10 @@ double mean_power(const std::vector<Complex>& cube) {
 double dbm(double watts) { return 10 * std::log10(watts) + 30; }
 
 TEST(Noise, PowerIsTheThermalOne) {
-  EXPECT_NEAR(dbm(noise_power(noisy_radar(false))), -88.965, 1e-3);
-  EXPECT_NEAR(dbm(noise_power(noisy_radar(true))), -91.975, 1e-3);
-  EXPECT_NEAR(dbm(mean_power(noise(noisy_radar(false), 1))), -88.965, 0.1);
-  EXPECT_NEAR(dbm(mean_power(noise(noisy_radar(true), 1))), -91.975, 0.1);
+  EXPECT_NEAR(dbm(noise_power(noisy_radar(false))), -88.965, kLastDigitDb);
+  EXPECT_NEAR(dbm(noise_power(noisy_radar(true))), -91.975, kLastDigitDb);
+  EXPECT_NEAR(dbm(mean_power(noise(noisy_radar(false), 1))), -88.965, kSampledDb);
+  EXPECT_NEAR(dbm(mean_power(noise(noisy_radar(true), 1))), -91.975, kSampledDb);
 }
 
 TEST(Noise, IsCircularGaussianAndWhite) {

@@ -12,6 +12,15 @@ using testing::Complex;
 
 constexpr double kC = 299792458.0;
 constexpr double kPowerRef = 0.01, kGainRef = 10.0;  // W, linear
+constexpr double kLastDigitDb = 5e-4;      // of levels printed with three decimals
+constexpr double kLastDigit = 5e-17;        // s and sqrt(W), of numbers printed with ten digits
+constexpr double kPrintedPhase = 1e-6;      // rad: printed with nine decimals; 1600 turns
+constexpr double kPrintedDb = 0.01;         // of an amplitude printed with ten digits
+constexpr double kBin = 1e-3;               // of bins printed with four decimals or more, read off an interpolated peak
+constexpr double kMovingBin = 0.01;         // likewise, of tones that change on the way, whose peaks are skewed
+constexpr double kSlotPhase = 1e-3;         // rad: of a tone beside the middle of its cell
+constexpr double kRounding = 1e-15;
+constexpr double kSlopeRounding = 1e-12;   // of differences over hundredths of a second
 
 double round_trip(double range) { return 2.0 * range / kC; }
 
@@ -71,26 +80,26 @@ INSTANTIATE_TEST_SUITE_P(Point, EveryMethod, ::testing::Values(Method::kDirect, 
 TEST(PointTarget, RadarEquationGivesThePublishedPowers) {
   const double rows[][3] = {{10, 1, -91.170}, {50, 1, -119.128}, {100, 10, -121.170}, {300, 10, -140.255}};
   for (const auto& [range, cross_section, dbm] : rows) {
-    EXPECT_NEAR(10 * std::log10(received_power(range, cross_section)) + 30, dbm, 5e-4);
+    EXPECT_NEAR(10 * std::log10(received_power(range, cross_section)) + 30, dbm, kLastDigitDb);
   }
 }
 
 TEST_P(EveryMethod, StaticPointAtTwentyMetres) {
   const ChirpSequence w = testing::reference_waveform();
   const double tau = round_trip(20.0), amplitude = std::sqrt(received_power(20.0, 1.0));
-  EXPECT_NEAR(tau, 1.334256381e-7, 5e-17);
-  EXPECT_NEAR(amplitude, 2.185018862e-7, 5e-17);
+  EXPECT_NEAR(tau, 1.334256381e-7, kLastDigit);
+  EXPECT_NEAR(amplitude, 2.185018862e-7, kLastDigit);
   const auto cube = testing::synthesize(w, testing::static_echoes(w.num_chirps, {tau}, {amplitude}), options());
   const auto samples = row(cube, w.num_samples, 77);
   // Phase of the first sample: 10273.426428961 turns with the residual video phase.
   const double cycles = 10273.426428961, beat = 5211938.987;
-  EXPECT_NEAR(std::arg(samples[0]), 2.679332180, 1e-6);
+  EXPECT_NEAR(std::arg(samples[0]), 2.679332180, kPrintedPhase);
   for (const int n : {0, 100, 511}) {
     const Complex expected = std::polar(1.0, 2 * M_PI * std::fmod(cycles + beat * n / w.sampling_rate, 1.0));
-    EXPECT_NEAR(std::arg(samples[n] / expected), 0.0, 1e-6) << n;
-    EXPECT_NEAR(20 * std::log10(std::abs(samples[n]) / 2.185018862e-7), 0.0, 0.01);
+    EXPECT_NEAR(std::arg(samples[n] / expected), 0.0, kPrintedPhase) << n;
+    EXPECT_NEAR(20 * std::log10(std::abs(samples[n]) / 2.185018862e-7), 0.0, kPrintedDb);
   }
-  EXPECT_NEAR(peak_bin(samples, 133.4), 133.425638, 1e-3);
+  EXPECT_NEAR(peak_bin(samples, 133.4), 133.425638, kBin);
 }
 
 TEST_P(EveryMethod, RangeBins) {
@@ -98,7 +107,7 @@ TEST_P(EveryMethod, RangeBins) {
   for (const auto& [range, bin] : {std::pair{10.0, 66.7128}, {37.5, 250.1731}, {60.0, 400.2769}}) {
     const auto cube =
         testing::synthesize(w, testing::static_echoes(w.num_chirps, {round_trip(range)}, {1.0}), options());
-    EXPECT_NEAR(peak_bin(row(cube, w.num_samples, 0), std::round(bin)), bin, 1e-3);
+    EXPECT_NEAR(peak_bin(row(cube, w.num_samples, 0), std::round(bin)), bin, kBin);
   }
 }
 
@@ -119,12 +128,12 @@ TEST_P(EveryMethod, MovingPoints) {
       echoes.delay[j] = round_trip(expected.range + expected.speed * (j * w.chirp_interval + w.window_centre()));
     }
     const auto cube = testing::synthesize(w, echoes, options());
-    EXPECT_NEAR(peak_bin(row(cube, w.num_samples, w.num_chirps / 2), expected.range_bin), expected.range_bin, 0.01);
+    EXPECT_NEAR(peak_bin(row(cube, w.num_samples, w.num_chirps / 2), expected.range_bin), expected.range_bin, kMovingBin);
     const double doppler = peak_bin(slow_time(w, cube, expected.range_bin), expected.doppler_bin);
-    EXPECT_NEAR(doppler, expected.doppler_bin, 0.01);
+    EXPECT_NEAR(doppler, expected.doppler_bin, kMovingBin);
     // Receding is positive; the wavelength belongs to the centre of the sweep.
     const double speed = doppler * w.wavelength() / (2 * w.num_chirps * w.chirp_interval);
-    EXPECT_NEAR(speed, expected.estimate, 0.01 * 0.5037);
+    EXPECT_NEAR(speed, expected.estimate, kMovingBin * 0.5037);
   }
 }
 
@@ -228,7 +237,7 @@ TEST(PointTarget, TdmSlotsTurnByTheDopplerPhase) {
   }
   const auto cube = synthesizer.cube();
   const size_t half = cube.size() / 2, sample = 64 * 512 + 256;
-  EXPECT_NEAR(std::arg(cube[half + sample] / cube[sample]), 0.974568, 1e-3);
+  EXPECT_NEAR(std::arg(cube[half + sample] / cube[sample]), 0.974568, kSlotPhase);
 }
 
 TEST(Sampling, ExactSlopesDifferentiateParabolas) {
@@ -242,8 +251,8 @@ TEST(Sampling, ExactSlopesDifferentiateParabolas) {
       value += sampling.value[j * sampling.order + k] * f;
       slope += sampling.slope[j * sampling.order + k] * f;
     }
-    EXPECT_NEAR(value, 3.0 - 2.0 * times[j] + 5.0 * times[j] * times[j], 1e-15);
-    EXPECT_NEAR(slope, -2.0 + 10.0 * times[j], 1e-12);
+    EXPECT_NEAR(value, 3.0 - 2.0 * times[j] + 5.0 * times[j] * times[j], kRounding);
+    EXPECT_NEAR(slope, -2.0 + 10.0 * times[j], kSlopeRounding);
   }
 }
 

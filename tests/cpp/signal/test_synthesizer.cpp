@@ -16,6 +16,7 @@ constexpr double kAdditivity = 1e-12;  // relative to the sum of |a|: order of a
 // Differences of equal delays of 5e-7 s over 60 us leave a rate of 2e-18, which turns the carrier by 1e-11 rad in a
 // chirp.
 constexpr double kRateRounding = 2e-11;
+constexpr double kRounding = 1e-13;
 
 ChirpSequence short_frame(int num_chirps = 13) {
   ChirpSequence w = testing::reference_waveform();
@@ -130,7 +131,7 @@ TEST(Synthesizer, ChannelsAreSeparateAndBlocksAddUp) {
   for (size_t i = 0; i < half; ++i) EXPECT_EQ(cube[i], Complex());
   auto sum = testing::synthesize(w, a, {.method = Method::kRecurrence});
   const auto still = testing::synthesize(w, b, {.method = Method::kRecurrence});
-  for (size_t i = 0; i < half; ++i) EXPECT_NEAR(std::abs(cube[half + i] - sum[i] - still[i]), 0.0, 1e-13);
+  for (size_t i = 0; i < half; ++i) EXPECT_NEAR(std::abs(cube[half + i] - sum[i] - still[i]), 0.0, kRounding);
 }
 
 // Many at once are shared among parts of all blocks together, few are not.
@@ -202,7 +203,7 @@ TEST(Synthesizer, RealSamplesAreRootTwoTimesTheRealPart) {
   const auto real_cube = testing::synthesize(w, echoes, {});
   for (size_t i = 0; i < real_cube.size(); ++i) {
     EXPECT_EQ(real_cube[i].imag(), 0.0);
-    EXPECT_NEAR(real_cube[i].real(), std::sqrt(2.0) * complex_cube[i].real(), 1e-12);
+    EXPECT_NEAR(real_cube[i].real(), std::sqrt(2.0) * complex_cube[i].real(), kRounding);
   }
 }
 

@@ -14,6 +14,7 @@ namespace {
 using testing::Complex;
 using testing::kDegree;
 constexpr double kRounding = 1e-12;  // of unit waves
+
 const Window kRect{WindowKind::kRect};
 const double kHalf = 0.5 * testing::wavelength();
 
@@ -120,7 +121,7 @@ TEST(AngleFft, WindowsOfArraysAreSymmetricAndNowhereZero) {
     for (const int n : {2, 3, 8}) {
       const auto w = centred_window_samples({kind, 40.0}, n);
       for (int i = 0; i < n; ++i) {
-        EXPECT_NEAR(w[i], w[n - 1 - i], 1e-14);
+        EXPECT_NEAR(w[i], w[n - 1 - i], kRounding);
         EXPECT_GT(w[i], 1e-6);
       }
     }

@@ -13,6 +13,9 @@ using testing::kDegree;
 const double kHalf = 0.5 * testing::wavelength();
 // The search ends with steps of the grid times 0.35^9, at most a few degrees.
 constexpr double kFine = 1e-5;
+constexpr double kPower = 1e-6;           // relative: second order in kFine, and the table of offsets
+constexpr double kBesideEachOther = 0.2;  // of powers of 1 and 4, near nulls of each other
+constexpr double kRounding = 1e-9;        // m/s
 
 AngleGrid search_grid(const Radar& radar) { return default_angles(virtual_array(radar), kSearchStep); }
 
@@ -34,7 +37,7 @@ TEST(EstimateAngles, AWaveIsFoundBetweenTheStepsOfTheGrid) {
       ASSERT_EQ(found.cell.size(), 1u);
       EXPECT_NEAR(found.azimuth[0], left, kFine);
       EXPECT_NEAR(found.elevation[0], up, kFine);
-      EXPECT_NEAR(found.power[0], 5.0, 1e-6);
+      EXPECT_NEAR(found.power[0], 5.0, kPower);
       EXPECT_EQ(found.velocity[0], map.velocity[3]);
       // From the middle between the transmitter and the mean receiver.
       const Vec3 middle(0.05, 0.25 * 7 * kHalf, 0.5 * (1.0 + 2.5 * kHalf));
@@ -55,8 +58,8 @@ TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {
   ASSERT_EQ(found.cell, (std::vector<int64_t>{1, 1}));  // nothing in the first cell; side lobes are 13 dB down
   EXPECT_NEAR(found.azimuth[0], std::asin(0.5), 0.5 * kDegree);
   EXPECT_NEAR(found.azimuth[1], std::asin(-0.25), 0.5 * kDegree);
-  EXPECT_NEAR(found.power[0], 4.0, 0.2);
-  EXPECT_NEAR(found.power[1], 1.0, 0.2);
+  EXPECT_NEAR(found.power[0], 4.0, kBesideEachOther);
+  EXPECT_NEAR(found.power[1], 1.0, kBesideEachOther);
 }
 
 TEST(EstimateAngles, FoldsAreTheVelocitiesWhoseSlotsAgree) {
@@ -69,9 +72,9 @@ TEST(EstimateAngles, FoldsAreTheVelocitiesWhoseSlotsAgree) {
     RangeDoppler map = testing::empty_map(radar);
     testing::add_wave(map, radar, direction(0.3, 0.0), 1.0, 6, 0, true, fold);
     const AngleEstimates found = estimate_angles(map, radar, {{6, 0}}, search_grid(radar), options);
-    EXPECT_NEAR(found.velocity[0], map.velocity[6] + fold * span, 1e-9);
+    EXPECT_NEAR(found.velocity[0], map.velocity[6] + fold * span, kRounding);
     EXPECT_NEAR(found.azimuth[0], 0.3, kFine);
-    EXPECT_NEAR(found.power[0], 1.0, 1e-6);
+    EXPECT_NEAR(found.power[0], 1.0, kPower);
   }
 }
 

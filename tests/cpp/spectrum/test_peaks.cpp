@@ -16,7 +16,9 @@ namespace {
 using testing::Complex;
 
 constexpr double kOffsetError = 1e-6;   // cells, of the table that turns ratios of neighbours into offsets
+constexpr double kVelocityError = 1e-5;  // m/s: likewise, in cells of some m/s
 constexpr double kPowerError = 1e-5;    // relative: a parabola of the main lobe at that error, and rounding
+
 
 constexpr int kChirps = 32, kSamples = 64;
 
@@ -70,8 +72,8 @@ TEST(Peaks, ATonesPlaceAndPowerAreExactForEveryWindowAndPadding) {
       EXPECT_NEAR(peaks.velocity_offset[i], up, kOffsetError) << static_cast<int>(kind) << " " << zero_pad;
       EXPECT_NEAR(peaks.range_offset[i], away, kOffsetError) << static_cast<int>(kind) << " " << zero_pad;
       EXPECT_NEAR(peaks.power[i] / power, 1.0, kPowerError) << static_cast<int>(kind) << " " << zero_pad;
-      EXPECT_NEAR(peaks.range[i], (20 + away) / zero_pad * radar.waveform.range_resolution(), 1e-6);
-      EXPECT_NEAR(peaks.velocity[i], (5 + up) / zero_pad * radar.waveform.velocity_resolution(1), 1e-5);
+      EXPECT_NEAR(peaks.range[i], (20 + away) / zero_pad * radar.waveform.range_resolution(), kOffsetError);
+      EXPECT_NEAR(peaks.velocity[i], (5 + up) / zero_pad * radar.waveform.velocity_resolution(1), kVelocityError);
     }
   }
 }
@@ -85,7 +87,7 @@ TEST(Peaks, ATonePeaksOnceAcrossTheEndsOfBothCircles) {
     EXPECT_NEAR(peaks.velocity_offset[0], away, kOffsetError);
     EXPECT_NEAR(peaks.range_offset[0], away, kOffsetError);
     const double v_max = radar.waveform.max_velocity(1), step = 2.0 * v_max / kChirps;
-    EXPECT_NEAR(peaks.velocity[0], -v_max + away * step, 1e-5);
+    EXPECT_NEAR(peaks.velocity[0], -v_max + away * step, kVelocityError);
   }
 }
 

@@ -13,6 +13,7 @@ namespace {
 using testing::Complex;
 constexpr double kRounding = 1e-12;  // of unit waves
 constexpr int kChirps = 16, kSamples = 40;
+constexpr double kPower = 1e-10;      // of powers of up to 10, of sums of some hundred unit waves
 
 // A cube of tones: range bin r and velocity bin v, from azimuth `left`, of half-wavelength receivers.
 void add_tone(std::vector<Complex>& cube, const Radar& radar, double r, double v, double left, double amplitude) {
@@ -38,11 +39,11 @@ TEST(RangeAzimuth, APointGivesItsPowerWhateverWindowAndPadding) {
     for (const int pad : {1, 3}) {
       const RangeDoppler map = range_doppler(cube, radar, {kind, 60.0}, pad);
       const RangeAzimuth all = range_azimuth(map, radar, kGrid);
-      EXPECT_NEAR(all.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      EXPECT_NEAR(all.power[2 * map.range.size() + 7 * pad], 9.0, kPower);
       const RangeAzimuth one = range_azimuth(map, radar, kGrid, {map.velocity[(kChirps / 2 + 2) * pad]});
-      EXPECT_NEAR(one.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      EXPECT_NEAR(one.power[2 * map.range.size() + 7 * pad], 9.0, kPower);
       const RangeAzimuth peak = range_azimuth(map, radar, kGrid, {{}, Combine::kPeak});
-      EXPECT_NEAR(peak.power[2 * map.range.size() + 7 * pad], 9.0, 1e-10);
+      EXPECT_NEAR(peak.power[2 * map.range.size() + 7 * pad], 9.0, kPower);
       EXPECT_FALSE(all.velocity.has_value());
       EXPECT_EQ(*one.velocity, map.velocity[(kChirps / 2 + 2) * pad]);
     }
@@ -55,14 +56,14 @@ TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowersOrGiveTheLargest) {
   add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
   add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
   const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
-  EXPECT_NEAR(range_azimuth(map, radar, kGrid).power[2 * kSamples + 7], 10.0, 1e-10);
+  EXPECT_NEAR(range_azimuth(map, radar, kGrid).power[2 * kSamples + 7], 10.0, kPower);
   BeamformOptions capon;
   capon.method = BeamMethod::kCapon;
   for (const BeamformOptions& options : {BeamformOptions{}, capon}) {
     const RangeAzimuth peak = range_azimuth(map, radar, kGrid, {{}, Combine::kPeak}, options);
-    EXPECT_NEAR(peak.power[2 * kSamples + 7], 9.0, 1e-10);
+    EXPECT_NEAR(peak.power[2 * kSamples + 7], 9.0, kPower);
   }
-  EXPECT_NEAR(range_azimuth(map, radar, kGrid, {map.velocity[3]}).power[2 * kSamples + 7], 1.0, 1e-10);
+  EXPECT_NEAR(range_azimuth(map, radar, kGrid, {map.velocity[3]}).power[2 * kSamples + 7], 1.0, kPower);
 }
 
 TEST(RangeAzimuth, BothMethodsGiveTheMeanOverChirps) {

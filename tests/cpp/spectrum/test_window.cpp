@@ -9,6 +9,10 @@
 namespace echopath {
 namespace {
 
+constexpr double kPrinted = 1e-4;      // of figures printed with four decimals
+constexpr double kPrintedDb = 1e-2;    // likewise, with two
+constexpr double kRounding = 1e-15;
+
 double level_db(const std::vector<double>& w, double bin) {
   std::complex<double> sum;
   double total = 0.0;
@@ -35,9 +39,9 @@ TEST(Window, FiguresOfMeritAreThePublishedOnes) {
   for (const Row& row : rows) {
     const auto w = window_samples(row.window, 512);
     const int kind = static_cast<int>(row.window.kind);
-    EXPECT_NEAR(coherent_gain(w), row.gain, 1e-4) << kind;
-    EXPECT_NEAR(equivalent_noise_bandwidth(w), row.bandwidth, 1e-4) << kind;
-    EXPECT_NEAR(scalloping_loss_db(w), row.scalloping, 1e-2) << kind;
+    EXPECT_NEAR(coherent_gain(w), row.gain, kPrinted) << kind;
+    EXPECT_NEAR(equivalent_noise_bandwidth(w), row.bandwidth, kPrinted) << kind;
+    EXPECT_NEAR(scalloping_loss_db(w), row.scalloping, kPrintedDb) << kind;
   }
 }
 
@@ -56,10 +60,10 @@ TEST(Window, CosineWindowsArePeriodicAndChebyshevIsSymmetric) {
   for (const int n : {16, 17}) {
     for (const auto kind : {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris}) {
       const auto w = window_samples({kind}, n);
-      for (int i = 1; i < n; ++i) EXPECT_NEAR(w[i], w[n - i], 1e-15);
+      for (int i = 1; i < n; ++i) EXPECT_NEAR(w[i], w[n - i], kRounding);
     }
     const auto w = window_samples({WindowKind::kChebyshev, 60.0}, n);
-    for (int i = 0; i < n; ++i) EXPECT_NEAR(w[i], w[n - 1 - i], 1e-14);
+    for (int i = 0; i < n; ++i) EXPECT_NEAR(w[i], w[n - 1 - i], kRounding);
   }
 }
 

@@ -15,6 +15,8 @@ namespace {
 using namespace testing;
 
 constexpr int kBatches = 8;
+constexpr double kMoments = 0.01;   // of 1/2: what the rim of a lattice of an eighth of the points adds
+constexpr double kSphere = 5e-3;    // relative: each batch covers the sphere to some of its points
 
 std::vector<Eigen::Vector2d> some_shifts() {
   std::vector<Eigen::Vector2d> shifts;
@@ -40,7 +42,7 @@ TEST(Batches, OfALatticeAddUpAndAreEven) {
     for (int b = 0; b < kBatches; ++b) {
       EXPECT_NEAR(size[static_cast<size_t>(b)] / share, 1.0, 2.0 / std::sqrt(share)) << b;
       // The mean of r^2 over the disc is 1/2; of a random set of this size it errs by 1 %.
-      EXPECT_NEAR(second_moment[static_cast<size_t>(b)] * lattice.cell_area() * kBatches / kPi, 0.5, 0.01) << b;
+      EXPECT_NEAR(second_moment[static_cast<size_t>(b)] * lattice.cell_area() * kBatches / kPi, 0.5, kMoments) << b;
     }
   }
 }
@@ -80,7 +82,7 @@ TEST(Batches, EachCoversTheSphere) {
     const double density = cones.density_of_ray(cones.direction(stratum, plan.point_of(stratum, ray)), stratum);
     solid_angle[static_cast<size_t>(plan.batch_of(stratum, ray))] += kBatches / density;
   }
-  for (const double covered : solid_angle) EXPECT_NEAR(covered / (4 * kPi), 1.0, 5e-3);
+  for (const double covered : solid_angle) EXPECT_NEAR(covered / (4 * kPi), 1.0, kSphere);
 }
 
 TEST(Batches, MarkPathsAndLeaveImagesOut) {

@@ -9,13 +9,16 @@
 namespace echopath {
 namespace {
 
+constexpr double kRim = 1e-12;     // points at the rim, but for rounding
+constexpr double kMoments = 3e-4;  // of 1/4: what the rim of a lattice adds
+
 const Eigen::Vector2d kShift(0.37, 0.81);
 
 TEST(DiscLattice, HasExactlyTheNumberAskedFor) {
   for (const int64_t count : {0, 1, 2, 3, 10, 63, 1000, 4097, 200000}) {
     const DiscLattice lattice(count, kShift);
     ASSERT_EQ(lattice.size(), count);
-    for (int64_t i = 0; i < count; ++i) ASSERT_LE(lattice.point(i).norm(), 1.0 + 1e-12);
+    for (int64_t i = 0; i < count; ++i) ASSERT_LE(lattice.point(i).norm(), 1.0 + kRim);
     if (count > 100) {
       EXPECT_NEAR(lattice.cell_area() * static_cast<double>(count) / kPi, 1.0, 2.0 / std::sqrt(count));
     }
@@ -28,7 +31,7 @@ TEST(DiscLattice, IsEven) {
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
   for (int64_t i = 0; i < lattice.size(); ++i) moment += lattice.point(i) * lattice.point(i).transpose();
   moment *= lattice.cell_area() / kPi;
-  EXPECT_LT((moment - 0.25 * Eigen::Matrix2d::Identity()).norm(), 3e-4);
+  EXPECT_LT((moment - 0.25 * Eigen::Matrix2d::Identity()).norm(), kMoments);
 }
 
 TEST(DiscLattice, NeighboursInOrderAreNeighbours) {

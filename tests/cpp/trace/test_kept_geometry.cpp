@@ -16,6 +16,8 @@ namespace {
 
 using namespace testing;
 
+constexpr double kRounding = 1e-12;  // m
+
 std::shared_ptr<const Motion> moving_at(const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
   return std::make_shared<LinearMotion>(velocity, angular_velocity);
 }
@@ -152,7 +154,7 @@ TEST(KeptGeometry, FollowsWhatMoves) {
     kept.update(scene, Pose(scene, time), Vec3::Zero());
     RayHit hit;
     ASSERT_EQ(kept.intersect(Vec3::Zero(), Vec3::UnitX(), hit), EmbreeScene::Verdict::kHit);
-    EXPECT_NEAR(hit.distance, 5.0 + 2.0 * time, 1e-12);
+    EXPECT_NEAR(hit.distance, 5.0 + 2.0 * time, kRounding);
     EXPECT_TRUE(kept.occluded(Vec3::Zero(), {6.0 + 2.0 * time, 0, 0}));
     EXPECT_FALSE(kept.occluded(Vec3::Zero(), {4.9 + 2.0 * time, 0, 0}));
   }

@@ -7,6 +7,8 @@
 namespace echopath {
 namespace {
 
+constexpr double kRounding = 1e-15;  // of unit vectors: a root and some products
+
 Stratum cone(const Vec3& axis, double half_angle, double density) {
   Stratum stratum;
   stratum.axis = axis.normalized();
@@ -64,11 +66,11 @@ TEST(LaunchCones, ProjectionKeepsAreas) {
     const ConeFrame frame(stratum);
     for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
       const Vec3 direction = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.6, -0.8));
-      EXPECT_NEAR(direction.norm(), 1.0, 1e-15);
+      EXPECT_NEAR(direction.norm(), 1.0, kRounding);
       // A quarter of a turn about the axis stays one.
       const Vec3 turned = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.8, 0.6));
-      EXPECT_LT((turned - stratum.axis.cross(direction) - stratum.axis.dot(direction) * stratum.axis).norm(), 1e-14);
-      EXPECT_NEAR(0.5 * (direction - stratum.axis).squaredNorm(), share * stratum.versine, 1e-14);
+      EXPECT_LT((turned - stratum.axis.cross(direction) - stratum.axis.dot(direction) * stratum.axis).norm(), kRounding);
+      EXPECT_NEAR(0.5 * (direction - stratum.axis).squaredNorm(), share * stratum.versine, kRounding);
     }
   }
 }

@@ -16,6 +16,9 @@ namespace {
 
 using namespace testing;
 
+constexpr double kRounding = 1e-12;     // m and unit vectors
+constexpr double kSinglePosition = 1e-4; // m: single precision of a ray over some tens of metres
+
 Scene mixed_scene(const Vec3& offset) {
   Scene scene;
   Surface ball = ellipsoid(offset + Vec3(6, 0.5, 0.2), {0.4, 0.3, 0.5}, 3);
@@ -113,8 +116,8 @@ TEST(Trace, HitsLieOnTheirTriangles) {
     if (geometry.intersect(Vec3::Zero(), direction, hit) != EmbreeScene::Verdict::kHit) continue;
     ++num_hits;
     const auto [a, b, c] = geometry.corners(hit.hit.mesh_id, hit.hit.triangle_id);
-    EXPECT_LT(std::abs(hit.normal.dot(hit.position - a)), 1e-12);
-    EXPECT_LT((hit.position - hit.distance * direction).norm(), 1e-4);
+    EXPECT_LT(std::abs(hit.normal.dot(hit.position - a)), kRounding);
+    EXPECT_LT((hit.position - hit.distance * direction).norm(), kSinglePosition);
     EXPECT_LE(hit.normal.dot(direction), 0.0);
   }
   EXPECT_GT(num_hits, 100);
@@ -148,7 +151,7 @@ TEST(Trace, SliversAreMetInDoublePrecision) {
     const Vec3 target(kDistance, 0.45 * std::sin(0.7 * i), 4.5 * std::sin(1.3 * i)), direction = target.normalized();
     RayHit hit;
     if (geometry.intersect(Vec3::Zero(), direction, hit) != EmbreeScene::Verdict::kHit) continue;
-    EXPECT_LT(std::abs(hit.position.x() - kDistance), 1e-12);
+    EXPECT_LT(std::abs(hit.position.x() - kDistance), kRounding);
     errors.push_back((hit.position - target).norm());
   }
   EXPECT_GT(errors.size(), 0.999 * num_rays);
@@ -209,7 +212,7 @@ TEST(Launch, DensityIsThatOfTheDirections) {
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
     const int stratum = plan.stratum_of(ray);
     const Vec3 direction = cones.direction(stratum, plan.point_of(stratum, ray));
-    EXPECT_NEAR(direction.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(direction.norm(), 1.0, kRounding);
     solid_angle += 1.0 / cones.density_of_ray(direction, stratum);
   }
   EXPECT_NEAR(solid_angle / (4 * kPi), 1.0, 1e-3);

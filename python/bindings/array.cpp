@@ -79,6 +79,14 @@ py::array_t<Number> rows_to_numpy(const std::vector<Row>& rows) {
   return array;
 }
 
+// The rows of a table [N, 3] as structs of three numbers.
+template <class Row, class T>
+std::vector<Row> as_rows(const py::array_t<T, py::array::c_style>& table) {
+  std::vector<Row> rows(static_cast<size_t>(table.shape(0)));
+  if (!rows.empty()) std::memcpy(rows.data()->data(), table.data(), rows.size() * sizeof(Row));
+  return rows;
+}
+
 }  // namespace
 
 namespace detail {
@@ -114,10 +122,7 @@ Vec3 as_vec3(py::handle value, std::string_view argument) {
 }
 
 std::vector<Vec3> as_points(py::handle value, std::string_view argument) {
-  const auto array = checked_array<double>(value, argument, "[N, 3]");
-  std::vector<Vec3> points(static_cast<size_t>(array.shape(0)));
-  if (!points.empty()) std::memcpy(points.data()->data(), array.data(), points.size() * sizeof(Vec3));
-  return points;
+  return as_rows<Vec3>(checked_array<double>(value, argument, "[N, 3]"));
 }
 
 std::vector<std::vector<Vec3>> as_frames(py::handle value, std::string_view argument) {
@@ -130,10 +135,7 @@ std::vector<std::vector<Vec3>> as_frames(py::handle value, std::string_view argu
 }
 
 std::vector<IndexTriple> as_triangles(py::handle value, std::string_view argument) {
-  const auto array = checked_array<uint32_t>(value, argument, "[F, 3]");
-  std::vector<IndexTriple> triangles(static_cast<size_t>(array.shape(0)));
-  if (!triangles.empty()) std::memcpy(triangles.data()->data(), array.data(), triangles.size() * sizeof(IndexTriple));
-  return triangles;
+  return as_rows<IndexTriple>(checked_array<uint32_t>(value, argument, "[F, 3]"));
 }
 
 Transform as_transform(py::handle value, std::string_view argument) {

@@ -11,7 +11,8 @@ ADDITIVITY = 1e-12
 INTERPOLATION_ERROR = 1e-4      # of amplitudes, the tolerance of the replay; phases are to 1e-5 rad
 PLACE = 1e-3                   # m, deg: published with as many digits
 PENDULUM = 0.01                # relative, of published figures
-RANGE_ERROR, SPEED_ERROR = 0.15, 0.1  # m, m/s: from the middle of the nearest cells, of 0.15 m and 0.25 m/s, and a body's depth
+# m, m/s: from the middle of the nearest cells, of 0.15 m and 0.25 m/s, and a body's depth
+RANGE_ERROR, SPEED_ERROR = 0.15, 0.1
 SIGNAL_PHASE = 1e-5            # rad: the phase tolerance of the replay
 ROUNDING = 1e-12               # m, of lengths of some metres
 

@@ -5,23 +5,12 @@ import pytest
 import echopath as ep
 from echopath import _core
 from echopath.labels import objects, powers
-from support.labelled import TARGETS, make_radar, trace_plates_and_wall
+from support.labelled import TARGETS, make_radar
 
 # Main lobe of a Blackman-Harris window is 4 cells to each side; an extended body adds some.
 LOBE = 6.0
 CHUNKED = 1e-5   # relative, of the strongest cell: rms tolerance of the signals 1e-7 of the sum of all amplitudes
 ROUNDING = 1e-9  # relative: sums in another order
-
-
-@pytest.fixture(scope="module")
-def plates_and_wall():
-    return trace_plates_and_wall()
-
-
-@pytest.fixture(scope="module")
-def labels(plates_and_wall):
-    paths, parts, _ = plates_and_wall
-    return ep.annotate(paths, parts, window="blackman_harris", zero_pad=2, dynamic_range_db=80.0)
 
 
 def cells_from(labels, radar, distance, velocity):

@@ -7,20 +7,9 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from support.labelled import make_radar, trace_plates_and_wall
+from support.labelled import make_radar
 
 ROUNDING = 1e-9  # relative: sums in another order
-
-
-@pytest.fixture(scope="module")
-def plates_and_wall():
-    return trace_plates_and_wall()
-
-
-@pytest.fixture(scope="module")
-def labels(plates_and_wall):
-    paths, parts, _ = plates_and_wall
-    return ep.annotate(paths, parts, window="blackman_harris", zero_pad=2, dynamic_range_db=80.0)
 
 
 def test_simulate_carries_the_labels_of_its_parts(plates_and_wall):

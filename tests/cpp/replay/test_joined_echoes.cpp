@@ -39,7 +39,8 @@ std::vector<int64_t> all_of(const Paths& paths) {
   return indices;
 }
 
-std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices, const std::vector<uint32_t>* label = nullptr,
+std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices,
+                            const std::vector<uint32_t>* label = nullptr,
                             SpecularPoints specular = SpecularPoints::kMaterial) {
   const Localiser localise(paths, hit_patches(paths));
   std::vector<const std::vector<uint32_t>*> labels;

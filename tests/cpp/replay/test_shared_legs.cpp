@@ -148,7 +148,8 @@ TEST(SharedLegs, PathsOfOnePointAreThoseEvaluatedOneByOne) {
   ASSERT_TRUE(can_evaluate_directly(radar));
   for (const bool has_mirrors : {true, false}) {
     Paths paths = record(radar, has_mirrors);
-    for (const Footprint footprint : {Footprint::kSecondOrder, Footprint::kNone, Footprint::kFirstOrder, Footprint::kEdges}) {
+    for (const Footprint footprint :
+         {Footprint::kSecondOrder, Footprint::kNone, Footprint::kFirstOrder, Footprint::kEdges}) {
       paths.frame.footprint = footprint;
       expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02), kGrazingFilterRounding);
     }

@@ -157,7 +157,9 @@ TEST(Synthesizer, BlocksAtRestAtOnceEqualThoseOneByOne) {
 TEST(Synthesizer, MemoryOfOthersLeavesNoTrace) {
   const ChirpSequence w = short_frame();
   const testing::MovingPoints few(100, 6, 1.0, 30.0), many(900, 7, 10.0, 70.0);
-  const auto synthesized = [&](const testing::MovingPoints& points) { return testing::synthesize(w, testing::exact_echoes(w, points), {}); };
+  const auto synthesized = [&](const testing::MovingPoints& points) {
+    return testing::synthesize(w, testing::exact_echoes(w, points), {});
+  };
   const auto first = synthesized(few);
   synthesized(many);
   EXPECT_EQ(synthesized(few), first);

@@ -30,6 +30,11 @@ struct LaneMath {
   static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
   static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
   static ECHOPATH_INLINE bool any(Mask x) {
+#if ECHOPATH_LANES == 8
+    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(x)) != 0;
+#elif ECHOPATH_LANES == 4
+    return _mm256_movemask_pd(reinterpret_cast<__m256d>(x)) != 0;
+#endif
     int64_t found = 0;
     for (int lane = 0; lane < kLanes; ++lane) found |= x[lane];
     return found != 0;
@@ -40,19 +45,13 @@ struct LaneMath {
     constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
     const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
     const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
-    Vec sum = rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0;  // 1/13!, 1/12!
-    sum = sum * rest + 1.0 / 39916800.0;
-    sum = sum * rest + 1.0 / 3628800.0;
-    sum = sum * rest + 1.0 / 362880.0;
-    sum = sum * rest + 1.0 / 40320.0;
-    sum = sum * rest + 1.0 / 5040.0;
-    sum = sum * rest + 1.0 / 720.0;
-    sum = sum * rest + 1.0 / 120.0;
-    sum = sum * rest + 1.0 / 24.0;
-    sum = sum * rest + 1.0 / 6.0;
-    sum = sum * rest + 0.5;
-    sum = sum * rest + 1.0;
-    sum = sum * rest + 1.0;
+    // 1/n! for n to 13, in pairs, so that most terms do not wait for others; what is large comes last.
+    const Vec square = rest * rest, fourth = square * square;
+    const Vec high = (rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0) * fourth +
+                     ((rest * (1.0 / 39916800.0) + 1.0 / 3628800.0) * square + (rest * (1.0 / 362880.0) + 1.0 / 40320.0));
+    const Vec middle = (rest * (1.0 / 5040.0) + 1.0 / 720.0) * square + (rest * (1.0 / 120.0) + 1.0 / 24.0);
+    const Vec tail = (high * fourth + middle) * square + (rest * (1.0 / 6.0) + 0.5);
+    const Vec sum = (tail * square + rest) + 1.0;
     const Vec power = from_bits(bits(sum) + (bits(shifted) << 52));
     return x < kMostNegativeExponent ? Vec{} : power;
   }

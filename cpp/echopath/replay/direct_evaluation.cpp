@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/simd.h"
 #include "echopath/replay/diffuse_chain.h"
 
 namespace echopath {
@@ -47,18 +48,21 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
   set_antennas(level);
   const size_t num_nodes = level.instants.size();
   out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
-  legs_.resize((antennas_[0].size() + antennas_[1].size()) * DirectToEvaluate::kNumLegRows * kSlots);
-  work_ = {&slots_, false, nullptr, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
+  const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
+  legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
+  work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
            channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
            {radio.wavenumber, radio.spread, radio.footprint}, legs_.data(), out_.data(), turned_};
-  const DirectKernels& kernels = direct_kernels();
+  const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
     count = 1;
     while (count < kSlots && first + count < sorted_.size() && sorted_[first + count]->hit->mesh_id == mesh_id) ++count;
     const Points points(sorted_.data() + first, count);
-    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) set_mesh(mesh_id, localise);
-    work_.mesh = level.poses.meshes.row(mesh_id, 0);
+    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
+      set_mesh(mesh_id, localise);
+      see_antennas(mesh_id, level);
+    }
     set_slots(points, localise, radio);
     kernels.prepare(trace_, slots_);
     work_.has_coherent &= wanted.with_amplitudes;
@@ -86,11 +90,23 @@ void DirectEvaluation::sort_by_mesh(const ChainPlan& plan) {
 
 void DirectEvaluation::set_antennas(const LevelView& level) {
   for (const bool of_receivers : {false, true}) {
-    std::vector<DirectAntenna>& antennas = antennas_[of_receivers];
-    antennas.clear();
-    for (const PosedAntenna& posed : antennas_of(level.instants.front(), of_receivers)) {
-      antennas.push_back({level.poses.antennas[of_receivers].row(antennas.size(), 0), exponent_of(*posed.pattern),
-                          std::sqrt(posed.pattern->peak_gain)});
+    const std::vector<PosedAntenna>& posed = antennas_of(level.instants.front(), of_receivers);
+    seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, level.instants.size());
+    antennas_[of_receivers].clear();
+    for (const PosedAntenna& one : posed) {
+      const double* rows = seen_[of_receivers].row(antennas_[of_receivers].size(), 0);
+      antennas_[of_receivers].push_back({rows, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
+    }
+  }
+}
+
+void DirectEvaluation::see_antennas(uint32_t mesh_id, const LevelView& level) {
+  for (const bool of_receivers : {false, true}) {
+    NodeRows& seen = seen_[of_receivers];
+    for (size_t antenna = 0; antenna < antennas_[of_receivers].size(); ++antenna) {
+      const double* const in_world = level.poses.antennas[of_receivers].row(antenna, 0);
+      const AntennaToSee from{level.poses.meshes.row(mesh_id, 0), in_world, seen.row(antenna, 0)};
+      direct_kernels(seen.stride()).see(trace_, from, seen.stride());
     }
   }
 }
@@ -134,6 +150,60 @@ std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot
 
 bool has_path(const ChainPlan::Direct& point, size_t kind) { return point.path[kind] != ChainPlan::Direct::kNoPath; }
 
+// Nodes of eight points, each with two paths, that follow each other.
+struct PairNodes {
+  const double* values;  // [node, DirectToEvaluate::Row, slot]
+  size_t count, stride;
+  double scale;
+  double *length, *amplitude;  // of the first path at the first node
+};
+
+// Values of pairs side by side.
+ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
+  const double* from = nodes->values;
+  double* length = nodes->length;
+  double* amplitude = nodes->amplitude;
+  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+    for (size_t slot = 0; slot < kSlots; ++slot) {
+      length[2 * slot] = length[2 * slot + 1] = nodes->scale * from[slot];
+      for (size_t row = 0; row < 4; ++row) amplitude[4 * slot + row] = from[(DirectToEvaluate::kRe + row) * kSlots + slot];
+    }
+  }
+}
+
+// Sums of pairs are added to their echoes.
+ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
+  const double* from = nodes->values;
+  double* length = nodes->length;
+  double* amplitude = nodes->amplitude;
+  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+    for (size_t slot = 0; slot < kSlots; ++slot) {
+      length[slot] = nodes->scale * from[slot];
+      for (size_t part = 0; part < 2; ++part) {
+        const double* kinds = from + (DirectToEvaluate::kRe + part) * kSlots + slot;
+        amplitude[2 * slot + part] += kinds[0] + kinds[2 * kSlots];
+      }
+    }
+  }
+}
+
+// All points have both paths, whose echoes follow each other at these steps: from kind to kind, from point to point.
+bool are_neighbours(std::span<const ChainPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
+  if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
+  const size_t first = to.echo(points[0]->place[0]);
+  for (size_t slot = 0; slot < kSlots; ++slot) {
+    const ChainPlan::Direct& point = *points[slot];
+    if (!has_path(point, 0) || !has_path(point, 1)) return false;
+    if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds) return false;
+  }
+  return true;
+}
+
+PairNodes pair_nodes(const ChainPlan::Direct& first, const ChannelNodes& to, const double* values, size_t num_nodes) {
+  const size_t echo = to.echo(first.place[0]);
+  return {values, num_nodes, to.stride, to.scale, to.length + echo, reinterpret_cast<double*>(to.amplitude + echo)};
+}
+
 // Both its paths go to one echo, or there is only one.
 bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
   return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
@@ -143,6 +213,10 @@ bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
 
 void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
   if (to.echo_of) return put_joined(points, to, values);
+  if (are_neighbours(points, to, 1, 2)) {
+    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
+    return run_simd<put_pairs>(&nodes);
+  }
   for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
     for (size_t slot = 0; slot < points.size(); ++slot) {
       for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
@@ -154,6 +228,10 @@ void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* 
 
 // A path that is not there has amplitude 0.
 void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
+  if (are_neighbours(points, to, 0, 1)) {
+    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
+    return run_simd<add_pairs>(&nodes);
+  }
   for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
     for (size_t slot = 0; slot < points.size(); ++slot) {
       const ChainPlan::Direct& point = *points[slot];

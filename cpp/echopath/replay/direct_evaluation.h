@@ -1,5 +1,5 @@
 #pragma once
-// Paths of one point each at all nodes, eight points of a mesh at a time: nothing is shared between them but antennas and meshes.
+// Paths of one point each at all nodes, eight points of a mesh at a time: they share nothing but the antennas as seen from there.
 #include <vector>
 
 #include "echopath/replay/direct_kernels.h"
@@ -23,6 +23,7 @@ class DirectEvaluation {
   using Points = std::span<const ChainPlan::Direct* const>;
   void sort_by_mesh(const ChainPlan& plan);
   void set_antennas(const LevelView& level);
+  void see_antennas(uint32_t mesh_id, const LevelView& level);
   void set_mesh(uint32_t mesh_id, const Localiser& localise);
   void set_slots(Points points, const Localiser& localise, const RadioConstants& radio);
   void put(Points points, const ChannelNodes& to, const double* values) const;
@@ -31,7 +32,8 @@ class DirectEvaluation {
 
   std::vector<const ChainPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
-  std::vector<DirectAntenna> antennas_[2];
+  std::vector<DirectAntenna> antennas_[2];        // of transmitters, of receivers
+  NodeRows seen_[2];                              // [antenna] of these, as they are seen from the mesh in hand
   DirectTrace trace_;
   DirectSlots slots_;
   DirectToEvaluate work_;

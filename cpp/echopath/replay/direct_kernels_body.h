@@ -6,6 +6,25 @@ namespace {
 
 using Rows3 = const DirectSlots::Row*;
 
+// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kLeastSquare as if
+// it were that. Roots and divisions of eight lanes take the place of twenty multiplications.
+struct Roots {
+  Vec root, inverse;
+};
+constexpr double kLeastSquare = 1e-60;
+ECHOPATH_INLINE Roots roots_of(Vec square) {
+  const Vec x = LaneMath::larger(square, all(kLeastSquare));
+#if ECHOPATH_LANES == 8
+  Vec y = _mm512_maskz_rsqrt14_pd(0xFF, x);
+  for (int step = 0; step < 2; ++step) y = y + 0.5 * y * exact_multiply_add(-x * y, y, all(1.0));
+  const Vec root = x * y;
+  return {root + 0.5 * y * exact_multiply_add(-root, root, x), y};
+#else
+  const Vec root = LaneMath::root(x);
+  return {root, 1.0 / root};
+#endif
+}
+
 // A launch cell on a flat triangle.
 struct FlatCell {
   static constexpr bool is_curved = false;
@@ -21,12 +40,16 @@ ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const Vecto
   store(rows[1] + slot, v.y);
   store(rows[2] + slot, v.z);
 }
-ECHOPATH_INLINE Vector<Vec> operator+(const Vector<Vec>& a, const Vector<Vec>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+ECHOPATH_INLINE Vector<Vec> operator+(const Vector<Vec>& a, const Vector<Vec>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 ECHOPATH_INLINE Vector<Vec> cross(const Vector<Vec>& a, const Vector<Vec>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 ECHOPATH_INLINE Vector<Vec> times(const double* matrix, const Vector<Vec>& v) {
-  const auto along = [&](int axis) { return matrix[3 * axis] * v.x + matrix[3 * axis + 1] * v.y + matrix[3 * axis + 2] * v.z; };
+  const auto along = [&](int axis) {
+    return matrix[3 * axis] * v.x + matrix[3 * axis + 1] * v.y + matrix[3 * axis + 2] * v.z;
+  };
   return {along(0), along(1), along(2)};
 }
 ECHOPATH_INLINE Vector<Vec> choose(Mask first, const Vector<Vec>& a, const Vector<Vec>& b) {
@@ -63,9 +86,9 @@ void prepare(const DirectTrace& trace, DirectSlots& slots) {
     const Vector<Vec> second = side * cross(normal, along), none{};
     const Mask has_cell = is_finite(first) & is_finite(second);
     const Vector<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
-    set_vector(slots.point, slot, point);
-    set_vector(slots.normal, slot, times(trace.mesh_from_trace, normal));
-    for (int a = 0; a < 2; ++a) set_vector(slots.tangent[a], slot, times(trace.mesh_from_trace, tangent[a]));
+    set_vector(slots.point, slot, at);
+    set_vector(slots.normal, slot, normal);
+    for (int a = 0; a < 2; ++a) set_vector(slots.tangent[a], slot, tangent[a]);
     store(slots.product[0] + slot, dot(tangent[0], tangent[0]));
     store(slots.product[1] + slot, dot(tangent[0], tangent[1]));
     store(slots.product[2] + slot, dot(tangent[1], tangent[1]));
@@ -73,41 +96,68 @@ void prepare(const DirectTrace& trace, DirectSlots& slots) {
   }
 }
 
-struct PosedLanes {
+// v times the matrix.
+template <class Real>
+ECHOPATH_INLINE Vector<Real> times_transposed(const double* matrix, const Vector<Real>& v) {
+  const auto along = [&](int axis) { return matrix[axis] * v.x + matrix[3 + axis] * v.y + matrix[6 + axis] * v.z; };
+  return {along(0), along(1), along(2)};
+}
+
+// The motion since the trace is a rotation, linear * mesh_from_trace, and a shift: what undoes it is the transposed matrix.
+template <class Math>
+void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto turned_back = [&](const auto& v) {
+      const auto along = [&](int axis) {
+        const auto entry = [&](int row) { return at.value(antenna.mesh, PointToPose::kLinear + 3 * row + axis); };
+        return entry(0) * v.x + entry(1) * v.y + entry(2) * v.z;
+      };
+      return times_transposed(trace.mesh_from_trace, Vector<typename Math::Real>{along(0), along(1), along(2)});
+    };
+    const auto moved = at.vector(antenna.mesh, PointToPose::kTranslation);
+    const auto position = turned_back(at.vector(antenna.antenna, LegToMeasure::kImagePosition) - moved);
+    const double* origin = trace.translation;
+    at.set(antenna.out, LegToMeasure::kImagePosition,
+           {position.x + origin[0], position.y + origin[1], position.z + origin[2]});
+    at.set(antenna.out, LegToMeasure::kBoresight, turned_back(at.vector(antenna.antenna, LegToMeasure::kBoresight)));
+  }
+}
+
+struct PointLanes {
   Vector<Vec> point, normal, tangent[2];
 };
 
-ECHOPATH_INLINE PosedLanes posed(const DirectToEvaluate& paths, const double* matrix, const double* moved, size_t slot) {
-  PosedLanes out;
-  const Vector<Vec> turned = times(matrix, vector_at(paths.slots->point, slot));
-  out.point = {turned.x + moved[0], turned.y + moved[1], turned.z + moved[2]};
-  out.normal = times(matrix, vector_at(paths.slots->normal, slot));
-  for (int a = 0; paths.has_coherent && a < 2; ++a) out.tangent[a] = times(matrix, vector_at(paths.slots->tangent[a], slot));
-  return out;
+ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
+  return {vector_at(slots.point, slot), vector_at(slots.normal, slot),
+          {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
 ECHOPATH_INLINE Vec root_gain_of(const DirectAntenna& antenna, Vec cosine) {
   Vec power = all(antenna.root_peak);
-  if (antenna.exponent == 0) return power;
   for (int i = 0; i < antenna.exponent / 2; ++i) power = power * cosine;
   if (antenna.exponent % 2) power = power * LaneMath::root(LaneMath::magnitude(cosine));
   return cosine > 0.0 ? power : Vec{};
 }
 
 ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
-                                 const PosedLanes& at, double* leg) {
+                                 const PointLanes& at, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
   const Vector<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
                          at.point.z - value(LegToMeasure::kImagePosition + 2)};
-  const Vec length = LaneMath::root(dot(line, line)), inverse = 1.0 / length;
-  const Vec cosine = -inverse * dot(at.normal, line);
-  const Vec boresight = inverse * (value(LegToMeasure::kBoresight) * line.x + value(LegToMeasure::kBoresight + 1) * line.y +
-                                   value(LegToMeasure::kBoresight + 2) * line.z);
-  const Vec gain = root_gain_of(antenna, boresight);
+  const Roots distance = roots_of(dot(line, line));
+  const Vec inverse = distance.inverse, cosine = -inverse * dot(at.normal, line);
+  Vec gain = all(antenna.root_peak);
+  if (antenna.exponent != 0) {
+    const Vec along = value(LegToMeasure::kBoresight) * line.x + value(LegToMeasure::kBoresight + 1) * line.y +
+                      value(LegToMeasure::kBoresight + 2) * line.z;
+    gain = root_gain_of(antenna, inverse * along);
+  }
   const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * DirectSlots::kSlots, x); };
-  set(DirectToEvaluate::kLegLength, length);
+  set(DirectToEvaluate::kLegLength, distance.root);
   set(DirectToEvaluate::kInverse, inverse);
-  set(DirectToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, cosine, length));
+  const Vec factor = LaneMath::with_sign_of(gain * roots_of(LaneMath::magnitude(cosine)).root * inverse, cosine);
+  set(DirectToEvaluate::kLegFactor, distance.root < kNearAntenna ? Vec{} : factor);  // diffuse_leg
   set(DirectToEvaluate::kGain, gain);
   set(DirectToEvaluate::kCosine, cosine);
   if (!paths.has_coherent) return;
@@ -169,50 +219,63 @@ ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes&
   set(D::kIm, re * factor.im + im * factor.re);
 }
 
-ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, int end, size_t antenna, size_t slot) {
-  const size_t before = end == 0 ? antenna : paths.num_antennas[0] + antenna;
-  return paths.legs + before * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
+ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
+  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 ? 0 : paths.num_antennas[0];
+  const size_t leg = node % DirectToEvaluate::kNodesTogether * num_legs + of_end + antenna;
+  return paths.legs + leg * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
 }
 
 // Sides that the points show to the first antennas: at the first node, and whether others are shown at the last.
 ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_t slot, Mask* first) {
   Mask turned = {};
   for (int end = 0; end < 2; ++end) {
-    const Mask side = bits(LegLanes{leg_of(paths, end, 0, slot)}(DirectToEvaluate::kCosine)) < 0;
+    const Mask side = bits(LegLanes{leg_of(paths, node, end, 0, slot)}(DirectToEvaluate::kCosine)) < 0;
     if (node == 0) first[end] = side;
     turned |= side ^ first[end];
   }
   store(paths.turned + slot, turned ? all(1.0) : Vec{});
 }
 
-void evaluate(const DirectToEvaluate& paths) {
+ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, size_t slot) {
+  const PointLanes at = points_at(*paths.slots, slot);
+  for (int end = 0; end < 2; ++end) {
+    for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
+      measure_leg(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
+    }
+  }
+}
+
+ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, size_t slot) {
   constexpr size_t kOfNode = DirectToEvaluate::kNumRows * DirectSlots::kSlots;
-  Mask sides[DirectSlots::kSlots / kLanes][2] = {};
-  for (size_t node = 0; node < paths.num_nodes; ++node) {
-    double matrix[9], moved[3];
-    for (size_t i = 0; i < 9; ++i) matrix[i] = paths.mesh[i * paths.stride + node];
-    for (size_t i = 0; i < 3; ++i) moved[i] = paths.mesh[(9 + i) * paths.stride + node];
-    for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
-      const PosedLanes at = posed(paths, matrix, moved, slot);
-      for (int end = 0; end < 2; ++end) {
-        for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
-          measure_leg(paths, paths.antennas[end][a], node, at, leg_of(paths, end, a, slot));
-        }
-      }
-      for (size_t i = 0; i < paths.num_channels; ++i) {
-        const size_t channel = paths.first_channel + i, num_receivers = paths.num_antennas[1];
-        const LegLanes in{leg_of(paths, 0, channel / num_receivers, slot)};
-        const LegLanes out{leg_of(paths, 1, channel % num_receivers, slot)};
-        combine_legs(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
-      }
-      if (node == 0 || node + 1 == paths.num_nodes) see_sides(paths, node, slot, sides[slot / kLanes]);
+  const size_t num_receivers = paths.num_antennas[1];
+  for (size_t i = 0; i < paths.num_channels; ++i) {
+    const size_t channel = paths.first_channel + i;
+    const LegLanes in{leg_of(paths, node, 0, channel / num_receivers, slot)};
+    const LegLanes out{leg_of(paths, node, 1, channel % num_receivers, slot)};
+    combine_legs(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
+  }
+}
+
+// First the legs of some nodes, then what they make: the processor has several nodes of either in hand while each waits for
+// its own results.
+void evaluate(const DirectToEvaluate& paths) {
+  constexpr size_t kTogether = DirectToEvaluate::kNodesTogether;
+  Mask sides[2] = {};
+  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+    for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
+      const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
+      for (size_t node = first; node < end; ++node) measure_legs(paths, node, slot);
+      if (first == 0) see_sides(paths, 0, slot, sides);
+      if (end == paths.num_nodes) see_sides(paths, end - 1, slot, sides);
+      for (size_t node = first; node < end; ++node) combine_node(paths, node, slot);
     }
   }
 }
 
 }  // namespace
 
-extern const DirectKernels kDirectKernels;
-const DirectKernels kDirectKernels = {prepare, evaluate};
+extern const DirectKernels kDirectKernels, kDirectKernelsOfOne;
+const DirectKernels kDirectKernels = {see<LaneMath>, prepare, evaluate};
+const DirectKernels kDirectKernelsOfOne = {see<OneMath>, prepare, evaluate};
 
 }  // namespace echopath::ECHOPATH_KERNELS

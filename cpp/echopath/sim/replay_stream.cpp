@@ -23,7 +23,7 @@ constexpr int64_t kLargestBlock = 1000;
 // as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
 constexpr int64_t kValuesInFlight = 150000;  // no power of two, likewise
-constexpr int64_t kLeastBlock = 32;
+constexpr int64_t kLeastBlock = 64;  // as many vectors of echoes, once they are joined, as fill the registers
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);

@@ -1,19 +1,36 @@
 #include "echopath/label/automaton.h"
 
 #include <algorithm>
+#include <cstring>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/simd.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
 namespace {
 
 constexpr int kMaxPositions = 8192;         // states before determinisation; bounds the time to compile
-constexpr int64_t kPathsPerTask = 1 << 16;  // about a millisecond of work
+constexpr int64_t kPathsPerTask = 1 << 14;  // 0.2 ms of work at most
+
+uint64_t mesh_bit(size_t mesh_id) { return uint64_t{1} << (mesh_id % 64); }
+
+// Calls body(begin, end) for ranges of all paths, on all threads.
+void for_paths(const Paths& paths, Job* job, const std::function<void(size_t begin, size_t end)>& body) {
+  parallel_for((paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask, [&](int64_t task) {
+    const int64_t end = std::min((task + 1) * kPathsPerTask, paths.num_paths());
+    body(static_cast<size_t>(task * kPathsPerTask), static_cast<size_t>(end));
+  }, job);
+}
+
+ECHOPATH_INLINE void keep_touching(const uint64_t* bits, uint64_t needed, size_t count, uint8_t* candidates) {
+  for (size_t i = 0; i < count; ++i) candidates[i] &= static_cast<uint8_t>((bits[i] & needed) != 0);
+}
 
 [[noreturn]] void throw_too_large(const std::string& text) {
   throw std::invalid_argument("path expression: must compile to at most " + std::to_string(kMaxAutomatonStates) +
@@ -236,7 +253,60 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
     table_.push_back(static_cast<uint32_t>(state * stride));
     table_.push_back(dfa.accepts(state) ? 1 : 0);
   }
+  find_needed_bits();
 }
+
+// By the paths from the start, in places of rows.
+bool Automaton::takes_something_without(uint32_t mesh_class) const {
+  std::vector<uint8_t> was_seen(table_.size());
+  std::vector<uint32_t> pending = {0};
+  while (!pending.empty()) {
+    const uint32_t row = pending.back();
+    pending.pop_back();
+    if (std::exchange(was_seen[row], uint8_t{1}) != 0) continue;
+    if (table_[row + accept_column_] != 0) return true;
+    for (uint32_t symbol = 0; symbol + 1 < accept_column_; ++symbol) {
+      if (symbol / 2 != mesh_class) pending.push_back(table_[row + symbol]);
+    }
+  }
+  return false;
+}
+
+void Automaton::find_needed_bits() {
+  std::vector<uint64_t> of_class(static_cast<size_t>(num_classes_));
+  for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / 2] |= mesh_bit(mesh);
+  for (uint32_t mesh_class = 0; mesh_class < of_class.size(); ++mesh_class) {
+    if (!takes_something_without(mesh_class)) needed_bits_.push_back(of_class[mesh_class]);
+  }
+}
+
+std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
+  std::vector<uint64_t> bits(static_cast<size_t>(paths.num_paths()));
+  for_paths(paths, job, [&](size_t begin, size_t end) {
+    for (size_t path = begin; path < end; ++path) {
+      const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
+      for (int k = 0; k < paths.num_bounces[path]; ++k) bits[path] |= mesh_bit(hits[k].mesh_id);
+    }
+  });
+  return bits;
+}
+
+
+namespace {
+
+constexpr size_t kWord = sizeof(uint64_t);
+
+// The first path from `path` on whose word of candidates is not all zeros; most paths are often none.
+size_t next_candidate(const std::vector<uint8_t>& candidates, size_t path, size_t end) {
+  for (; path + kWord <= end; path += kWord) {
+    uint64_t word;
+    std::memcpy(&word, candidates.data() + path, kWord);
+    if (word != 0) break;
+  }
+  return path;
+}
+
+}  // namespace
 
 std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
   std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()), 1);
@@ -244,20 +314,23 @@ std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job
   return taken;
 }
 
-void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job) {
+void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job,
+            const std::vector<uint64_t>& bits) {
   const Hit* hits = paths.hits ? paths.hits->data() : nullptr;
-  const int64_t num_tasks = (paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask;
-  parallel_for(num_tasks, [&](int64_t task) {
-    const auto end = static_cast<size_t>(std::min((task + 1) * kPathsPerTask, paths.num_paths()));
-    for (auto path = static_cast<size_t>(task * kPathsPerTask); path < end; ++path) {
-      if (!candidates[path]) continue;
+  for_paths(paths, job, [&](size_t begin, size_t end) {
+    for (const uint64_t needed : automaton.needed_bits()) {
+      if (!bits.empty()) run_simd<keep_touching>(bits.data() + begin, needed, end - begin, candidates.data() + begin);
+    }
+    for (size_t path = begin; path < end; ++path) {
+      if (path % kWord == 0) path = next_candidate(candidates, path, end);
+      if (path == end || !candidates[path]) continue;
       const int64_t first = paths.offsets[path];
       const int num_hits = paths.num_bounces[path];
       candidates[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()
                              ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
                              : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
     }
-  }, job);
+  });
 }
 
 }  // namespace echopath

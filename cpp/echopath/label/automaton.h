@@ -20,6 +20,8 @@ class Automaton {
   // when more than kMaxAutomatonStates states are needed.
   Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names);
 
+  // Every path that is taken has one of the bits (mesh_bits) of each of these: meshes without which the expression takes nothing.
+  const std::vector<uint64_t>& needed_bits() const { return needed_bits_; }
   int num_states() const { return num_states_; }
   int num_classes() const { return num_classes_; }
 
@@ -55,17 +57,26 @@ class Automaton {
   }
 
  private:
+  bool takes_something_without(uint32_t mesh_class) const;
+  void find_needed_bits();
+
   std::vector<uint32_t> symbols_;  // [1 + M] the symbol that changes nothing, then twice the class of each mesh
   // [num_states, num_symbols + 2]: where the row of the next state starts, by symbol (the one that changes nothing is
   // the last); then 1 if the state takes the path, else 0. State 0 is the start.
   std::vector<uint32_t> table_;
+  std::vector<uint64_t> needed_bits_;
   uint32_t accept_column_ = 0;
   int num_states_ = 0, num_classes_ = 0;
 };
 
+// [P] bits of the meshes that each path has hits on, bit k of meshes k, k + 64, ... Costs about as much as a `narrow`.
+std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job = nullptr);
+
 // [P] 1 where the automaton takes the path, else 0. Runs on all threads; raises Cancelled when the job is.
 std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job = nullptr);
-// The same among the paths that are 1 in `candidates` [P]: clears those that the automaton does not take.
-void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job = nullptr);
+// The same among the paths that are 1 in `candidates` [P]: clears those that the automaton does not take. With their mesh_bits, only
+// the hits of paths that touch what they must are read.
+void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job = nullptr,
+            const std::vector<uint64_t>& bits = {});
 
 }  // namespace echopath

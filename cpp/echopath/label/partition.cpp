@@ -5,12 +5,22 @@
 #include <set>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/simd.h"
 
 namespace echopath {
 namespace {
 
 constexpr uint32_t kMaxGroups = 1 << 16;  // each one costs a whole cube in synthesis
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+
+constexpr size_t kManyParts = 4;
+
+ECHOPATH_INLINE void assign(const uint8_t* taken, uint32_t part, size_t count, uint8_t* __restrict left, uint32_t* __restrict group) {
+  for (size_t path = 0; path < count; ++path) {
+    left[path] ^= taken[path];
+    group[path] = taken[path] ? part : group[path];
+  }
+}
 
 // Refines the combined groups by one more partition; new groups are numbered by (old group, part).
 void refine(CombinedPartition& combined, const Partition& partition) {
@@ -55,15 +65,12 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
   partition.names.push_back("other");
   const auto other = static_cast<uint32_t>(parts.size());
   partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
-  PathPowers with_power(paths);
+  PathTraits traits(paths, parts.size() >= kManyParts);
   std::vector<uint8_t> left(partition.group.size(), 1);  // to no part yet
   for (uint32_t part = 0; part < other; ++part) {
     std::vector<uint8_t> taken = left;
-    parts[part].selection.narrow(with_power, taken, job);
-    for (size_t path = 0; path < taken.size(); ++path) {
-      left[path] ^= taken[path];
-      partition.group[path] = taken[path] ? part : partition.group[path];
-    }
+    parts[part].selection.narrow(traits, taken, job);
+    run_simd<assign>(taken.data(), part, taken.size(), left.data(), partition.group.data());
   }
   return partition;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/simd.h"
 #include "echopath/label/automaton.h"
 #include "echopath/label/selection_text.h"
 #include "echopath/replay/path_power.h"
@@ -91,14 +92,21 @@ void narrow_by(const std::vector<Value>& values, Bits& candidates, Holds holds) 
   for (size_t path = 0; path < candidates.size(); ++path) candidates[path] &= static_cast<uint8_t>(holds(values[path]));
 }
 
-void narrow_by_expression(const Paths& paths, const PathExpression& expression, Bits& candidates, Job* job) {
-  require(paths.scene != nullptr, "paths", "must carry a scene to match mesh names", "none");
-  narrow(Automaton(expression, paths.scene->mesh_names()), paths, candidates, job);
+void narrow_by_expression(PathTraits& paths, const PathExpression& expression, Bits& candidates, Job* job) {
+  const Paths& record = paths.paths();
+  require(record.scene != nullptr, "paths", "must carry a scene to match mesh names", "none");
+  narrow(Automaton(expression, record.scene->mesh_names()), record, candidates, job, paths.mesh_bits(job));
+}
+
+// Counts in [min, min + range].
+ECHOPATH_INLINE void keep_counts(const uint8_t* counts, uint8_t min, uint8_t range, size_t size, uint8_t* candidates) {
+  for (size_t i = 0; i < size; ++i) candidates[i] &= static_cast<uint8_t>(static_cast<uint8_t>(counts[i] - min) <= range);
 }
 
 void narrow_by_num_bounces(const Paths& paths, int min, int max, Bits& candidates) {
   const int last = max == kNoLimit ? kMaxRepeatCount : max;
-  narrow_by(paths.num_bounces, candidates, [=](int count) { return count >= min && count <= last; });
+  run_simd<keep_counts>(paths.num_bounces.data(), static_cast<uint8_t>(min), static_cast<uint8_t>(last - min), candidates.size(),
+                        candidates.data());
 }
 
 void narrow_by_power(const std::vector<double>& power, Selection::Comparison comparison, double watts, Bits& candidates) {
@@ -135,24 +143,29 @@ std::string num_bounces_text(int min, int max) {
 
 }  // namespace
 
-const std::vector<double>& PathPowers::power(Job* job) {
+const std::vector<double>& PathTraits::power(Job* job) {
   if (!power_) power_ = path_power(paths_, job);
   return *power_;
 }
 
+const std::vector<uint64_t>& PathTraits::mesh_bits(Job* job) {
+  if (!mesh_bits_) mesh_bits_ = for_many_ ? echopath::mesh_bits(paths_, job) : std::vector<uint64_t>();
+  return *mesh_bits_;
+}
+
 std::vector<uint8_t> Selection::matches(const Paths& paths, Job* job) const {
-  PathPowers with_power(paths);
+  PathTraits traits(paths);
   Bits taken(static_cast<size_t>(paths.num_paths()), 1);
-  narrow(with_power, taken, job);
+  narrow(traits, taken, job);
   return taken;
 }
 
-void Selection::narrow(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const {
+void Selection::narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const {
   const Term& term = *term_;
   if (job) job->throw_if_cancelled();
   switch (term.kind) {
     case Term::Kind::kExpression:
-      return narrow_by_expression(paths.paths(), term.expression, candidates, job);
+      return narrow_by_expression(paths, term.expression, candidates, job);
     case Term::Kind::kNumBounces:
       return narrow_by_num_bounces(paths.paths(), term.min, term.max, candidates);
     case Term::Kind::kPower:
@@ -162,7 +175,7 @@ void Selection::narrow(PathPowers& paths, std::vector<uint8_t>& candidates, Job*
   }
 }
 
-void Selection::narrow_by_children(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const {
+void Selection::narrow_by_children(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const {
   if (term_->kind == Term::Kind::kAnd) {  // what is quick to tell spares expressions the rest
     const auto is_quick = [](const Selection& child) { return child.term_->kind == Term::Kind::kNumBounces; };
     for (const bool quick : {true, false}) {

@@ -14,17 +14,21 @@
 
 namespace echopath {
 
-// Paths and the power of each, computed when it is first asked for.
-class PathPowers {
+// Paths and what several selections of them need, computed when it is first asked for.
+class PathTraits {
  public:
-  explicit PathPowers(const Paths& paths) : paths_(paths) {}  // which must outlive this
+  // paths must outlive this. for_many: so many selections are to come that they are worth the mesh bits.
+  explicit PathTraits(const Paths& paths, bool for_many = false) : paths_(paths), for_many_(for_many) {}
 
   const Paths& paths() const { return paths_; }
-  const std::vector<double>& power(Job* job);  // [P] W
+  const std::vector<double>& power(Job* job);         // [P] W
+  const std::vector<uint64_t>& mesh_bits(Job* job);   // label/automaton.h; empty unless for_many
 
  private:
   const Paths& paths_;
+  bool for_many_;
   std::optional<std::vector<double>> power_;
+  std::optional<std::vector<uint64_t>> mesh_bits_;
 };
 
 // An immutable value, cheap to copy. Knows names only: it serves any scene that has the meshes it names.
@@ -57,8 +61,8 @@ class Selection {
   // Cancelled when the job is.
   std::vector<uint8_t> matches(const Paths& paths, Job* job = nullptr) const;
   // The same among the paths that are 1 in `candidates` [P]: clears those that are not selected. What several selections of
-  // the same paths share, their power, is computed once.
-  void narrow(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job = nullptr) const;
+  // the same paths share is computed once.
+  void narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job = nullptr) const;
   // Raises invalid_argument when a glob takes none of these meshes (full names), as `matches` would.
   void check_globs(const std::vector<std::string>& mesh_names) const;
   // As written; combined ones as (T . R) & ~(T .* 'wall' .* R).
@@ -66,7 +70,7 @@ class Selection {
 
  private:
   struct Term;
-  void narrow_by_children(PathPowers& paths, std::vector<uint8_t>& candidates, Job* job) const;
+  void narrow_by_children(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const;
   explicit Selection(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
   std::shared_ptr<const Term> term_;
 };

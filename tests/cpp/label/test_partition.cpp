@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <complex>
 #include <set>
 #include <stdexcept>
@@ -43,6 +44,46 @@ TEST(Partition, IsDisjointAndComplete) {
     seen.insert(partition.group.begin(), partition.group.end());
   }
   EXPECT_EQ(seen.size(), partition.names.size());
+}
+
+// Many parts look at the bits of meshes first.
+TEST(Partition, ManyPartsTakeWhatEachWouldAlone) {
+  const Paths paths = some_paths();
+  const std::vector<NamedSelection> parts{{"one on a wall", "T 'street/wall*' R"}, {"both walls", "T .* 'street/wall_left' .* 'street/wall_right' .* R"},
+                                          {"a wall or an arm", "T ['street/wall_left' 'pedestrian/arms'] S'street/floor'* R"},
+                                          {"no floor", "T [^ 'street/floor']{2} R"}, {"rough", "T D .* R"},
+                                          {"neither", ~Selection::touches("pedestrian") & Selection::num_bounces(2, 3)},
+                                          {"torso or long", Selection::touches("pedestrian/torso") | Selection::num_bounces(4)}};
+  const Partition partition = make_partition(paths, parts);
+  std::vector<uint32_t> first(paths.offsets.size(), static_cast<uint32_t>(parts.size()));
+  for (auto part = static_cast<uint32_t>(parts.size()); part-- > 0;) {
+    const std::vector<uint8_t> taken = parts[part].selection.matches(paths);
+    for (size_t path = 0; path < taken.size(); ++path) first[path] = taken[path] ? part : first[path];
+  }
+  EXPECT_EQ(partition.group, first);
+  EXPECT_EQ(std::set<uint32_t>(first.begin(), first.end()).size(), parts.size() + 1);
+}
+
+// More meshes than bits: some share one.
+TEST(Partition, MeshesThatShareABitAreToldApart) {
+  constexpr uint32_t kMeshes = 130;
+  const auto name_of = [](uint32_t mesh) { return std::string("m").append(std::to_string(mesh)); };
+  auto scene = std::make_shared<Scene>();
+  for (uint32_t mesh = 0; mesh < kMeshes; ++mesh) add_node(*scene, name_of(mesh), -1, true);
+  std::vector<HandMadePath> hand_made;
+  for (uint32_t i = 0; i < 3000; ++i) hand_made.push_back({{i % kMeshes, false}, {(i * 7 + i / kMeshes) % kMeshes, true}});
+  Paths paths = make_paths(hand_made);
+  paths.scene = scene;
+  const std::vector<uint32_t> order{64, 0, 128, 1, 65, 129, 63, 127};
+  std::vector<NamedSelection> parts;
+  for (const uint32_t mesh : order) parts.push_back({name_of(mesh), Selection::touches(name_of(mesh))});
+  const Partition partition = make_partition(paths, parts);
+  for (size_t path = 0; path < hand_made.size(); ++path) {
+    const auto touched = std::find_if(order.begin(), order.end(), [&](uint32_t mesh) {
+      return hand_made[path][0].mesh_id == mesh || hand_made[path][1].mesh_id == mesh;
+    });
+    ASSERT_EQ(partition.group[path], static_cast<uint32_t>(touched - order.begin())) << path;
+  }
 }
 
 TEST(Partition, WithoutPartsAllIsOther) {

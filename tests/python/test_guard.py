@@ -80,6 +80,19 @@ def test_every_way_to_a_signal_agrees(paths, settings):
     assert all(check.agrees for check in ep.check_signal(cube, probe, tolerance=settings.get("tolerance", 1e-7)))
 
 
+@pytest.mark.parametrize("samples", [1, 2, 5, 8, 9, 33])
+def test_probed_samples_are_as_many_as_there_are_and_evenly_spaced(paths, samples):
+    radar = make_radar(samples=samples, bandwidth=1e9 * samples / 32)  # no echo beyond the anti-alias filter
+    for seed in range(4):
+        probe = ep.SignalProbe(seed=seed)
+        ep.synthesize(paths, radar, probe=probe)
+        drawn = probe.sample[0, :min(samples, 8)]
+        assert drawn.min() >= 0 and drawn.max() < samples and len(np.unique(np.diff(drawn))) <= 1
+        assert len(np.unique(drawn)) == len(drawn) and set(probe.sample[0]) == set(drawn)
+        sums = probe.value / probe.amplitude_sum[:, None]
+        assert np.abs(sums - slow_samples(paths, probe, radar)).max() < EXACT
+
+
 def test_arrays_of_real_samples_agree(paths):
     radar = make_radar(antennas=3, real=True)
     for seed in range(4):

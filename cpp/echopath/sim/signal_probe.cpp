@@ -34,16 +34,49 @@ struct SampleRow {
   SampleSums re{}, im{};
 };
 
-// Adds each carrier to its row.
-ECHOPATH_INLINE void add_tones(const Carriers* carriers, const double* sample, SampleRow* rows) {
-  for (int p = 0; p < carriers->count; ++p) {
-    const double frequency = carriers->frequency[p], a = carriers->re[p], b = carriers->im[p];
-    SampleRow& row = rows[carriers->group[p]];
+// Carriers side by side.
+constexpr int kMostLanes = 8;
+template <int kLanes>
+struct LanesOf;
+template <>
+struct LanesOf<4> {
+  typedef double Vector __attribute__((vector_size(32)));
+  typedef double Unaligned __attribute__((vector_size(32), aligned(8), may_alias));
+};
+template <>
+struct LanesOf<8> {
+  typedef double Vector __attribute__((vector_size(64)));
+  typedef double Unaligned __attribute__((vector_size(64), aligned(8), may_alias));
+};
+
+// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced: one phasor for the
+// first and one for the step between them.
+template <int kLanes>
+ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
+                               double* sums) {
+  using Lanes = typename LanesOf<kLanes>::Vector;
+  using Unaligned = typename LanesOf<kLanes>::Unaligned;
+  const auto at = [](const double* from) -> Lanes { return *reinterpret_cast<const Unaligned*>(from); };
+  Lanes sum_re[kSamples], sum_im[kSamples];
+  for (int s = 0; s < kSamples; ++s) {
+    sum_re[s] = at(sums + s * kLanes);
+    sum_im[s] = at(sums + (kSamples + s) * kLanes);
+  }
+  for (int p = 0; p < count; p += kLanes) {
+    const Lanes f = at(frequency + p), a = at(re + p), b = at(im + p);
+    const auto start = phasor_of_cycles(f * first), turn = phasor_of_cycles(f * step);
+    Lanes c = a * start.re - b * start.im, d = a * start.im + b * start.re;
     for (int s = 0; s < kSamples; ++s) {
-      const Phasor phasor = phasor_of_cycles(frequency * sample[s]);
-      row.re[s] += a * phasor.re - b * phasor.im;
-      row.im[s] += a * phasor.im + b * phasor.re;
+      sum_re[s] += c;
+      sum_im[s] += d;
+      const Lanes next = c * turn.re - d * turn.im;
+      d = c * turn.im + d * turn.re;
+      c = next;
     }
+  }
+  for (int s = 0; s < kSamples; ++s) {
+    *reinterpret_cast<Unaligned*>(sums + s * kLanes) = sum_re[s];
+    *reinterpret_cast<Unaligned*>(sums + (kSamples + s) * kLanes) = sum_im[s];
   }
 }
 
@@ -61,11 +94,11 @@ struct PowerSums {
 
 // Powers of echoes, as many as fill whole lanes: those behind the last are 0.
 ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
+  for (int p = 0; p < count; ++p) power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
   PowerSums sums;
   for (int p = 0; p < count; p += PowerSums::kLanes) {
     for (int lane = 0; lane < PowerSums::kLanes; ++lane) {
-      const double re = amplitude[2 * (p + lane)], im = amplitude[2 * (p + lane) + 1], here = re * re + im * im;
-      power[p + lane] = here;
+      const double here = power[p + lane];
       sums.power[lane] += here;
       sums.root[lane] += std::sqrt(here);
       sums.largest[lane] = std::max(sums.largest[lane], here);
@@ -141,6 +174,59 @@ class PassProbe::Strongest {
   std::array<std::pair<double, int64_t>, kStrongest> best_{};
 };
 
+// Carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
+struct PassProbe::Tones {
+  explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
+    for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMostLanes);
+  }
+  static constexpr size_t kSums = 2 * kSamples * kMostLanes;
+  std::vector<double> frequency, re, im;
+  std::vector<int> first, count;  // [row]
+  std::vector<double> sums;       // [row, kSums]
+
+  void sort(const Carriers& carriers) {
+    std::fill(count.begin(), count.end(), 0);
+    for (int p = 0; p < carriers.count; ++p) ++count[carriers.group[p]];
+    for (size_t row = 0; row < count.size(); ++row) {
+      first[row + 1] = first[row] + (count[row] + kMostLanes - 1) / kMostLanes * kMostLanes;
+      for (std::vector<double>* values : {&frequency, &re, &im}) {
+        std::fill(values->begin() + first[row] + count[row], values->begin() + first[row + 1], 0.0);
+      }
+      count[row] = first[row];
+    }
+    for (int p = 0; p < carriers.count; ++p) {
+      const auto to = static_cast<size_t>(count[carriers.group[p]]++);
+      frequency[to] = carriers.frequency[p];
+      re[to] = carriers.re[p];
+      im[to] = carriers.im[p];
+    }
+  }
+
+  void add(const Carriers& carriers, double first_sample, double step) {
+    sort(carriers);
+    const bool is_wide = instruction_set() == InstructionSet::kAvx512;
+    for (size_t row = 0; row < count.size(); ++row) {
+      const auto at = static_cast<size_t>(first[row]);
+      const int num_tones = first[row + 1] - first[row];
+      double* const to = sums.data() + row * kSums;
+      if (num_tones == 0) continue;
+      if (is_wide) run_simd<add_tones<8>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
+      else run_simd<add_tones<4>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
+    }
+  }
+
+  void give(std::vector<SampleRow>& rows) const {
+    const size_t lanes = instruction_set() == InstructionSet::kAvx512 ? 8 : 4;
+    for (size_t row = 0; row < rows.size(); ++row) {
+      const double* from = sums.data() + row * kSums;
+      for (size_t s = 0; s < kSamples; ++s, from += lanes) {
+        rows[row].re[s] = std::accumulate(from, from + lanes, rows[row].re[s]);
+        rows[row].im[s] = std::accumulate(from + kSamples * lanes, from + (kSamples + 1) * lanes, rows[row].im[s]);
+      }
+    }
+  }
+};
+
 // Of one block.
 struct PassProbe::Seen {
   explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
@@ -155,7 +241,8 @@ struct PassProbe::Seen {
 struct PassProbe::Aim {
   explicit Aim(size_t num_shares) : seen(num_shares) {}
   int channel = 0, chirp = 0;
-  SampleSums sample{};
+  int num_samples = 0;  // that differ; the others repeat them
+  SampleSums sample{};  // evenly spaced, from the first of the chirp
   Seen seen;
   std::array<std::optional<Seen>, ReplayStream::kBlocksInFlight> of_block;
 };
@@ -170,10 +257,17 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
     Aim& aim = aims_.emplace_back(num_shares());
     aim.channel = draw(seed_, index, 0, replayer.num_channels());
     aim.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
-    for (int s = 0; s < kSamples; ++s) {
-      aim.sample[static_cast<size_t>(s)] = draw(seed_, index, 2 + s, radar.waveform.num_samples);
-    }
+    draw_samples(seed_, index, radar.waveform.num_samples, aim);
   }
+}
+
+// Steps of half the longest to the longest: samples far apart see what neighbours would see together.
+void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim) {
+  aim.num_samples = std::min(kSamples, num_samples);
+  const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
+  const int step = shortest + draw(seed, index, 2, longest - shortest + 1);
+  const int first = draw(seed, index, 3, num_samples - (aim.num_samples - 1) * step);
+  for (int s = 0; s < kSamples; ++s) aim.sample[static_cast<size_t>(s)] = first + s * step;
 }
 
 PassProbe::~PassProbe() = default;
@@ -219,6 +313,7 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
   alignas(64) double power[kCapacity];
   uint32_t row[kCapacity];
   Strongest strongest;
+  Tones tones(seen.rows.size());
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
     evaluate_states(block, aim.chirp, begin, count, states);
@@ -227,8 +322,9 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
     seen.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), seen.power_sum);
     strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);
     sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, seen);
-    add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, seen);
+    add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, tones, seen);
   }
+  tones.give(seen.rows);
   if (!block.sampling.is_static()) draw_echoes(aim, block, paths, strongest, seen);
 }
 
@@ -249,7 +345,7 @@ void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, 
 }
 
 void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
-                            std::span<const uint32_t> row, Seen& seen) const {
+                            std::span<const uint32_t> row, Tones& tones, Seen& seen) const {
   const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
     for (int i = 0; i < count; ++i) {
@@ -262,7 +358,7 @@ void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, 
   carriers.count = count;
   carriers.group = row.data();
   signal_kernels().modulate(model_, states, count, carriers);
-  run_simd<add_tones>(&carriers, aim.sample.data(), seen.rows.data());
+  tones.add(carriers, aim.sample[0], aim.sample[1] - aim.sample[0]);
 }
 
 void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
@@ -299,11 +395,12 @@ void PassProbe::sum_up(const Aim& aim, ProbedChirp& chirp) const {
   chirp.strongest = seen.strongest;
   chirp.shares.resize(num_shares());
   for (size_t s = 0; s < kSamples; ++s) {
-    chirp.sample[s] = static_cast<int>(aim.sample[s]);
-    for (const SampleRow& row : seen.rows) chirp.value[s] += std::complex<double>(row.re[s], row.im[s]);
+    const size_t from = s % static_cast<size_t>(aim.num_samples);
+    chirp.sample[s] = static_cast<int>(aim.sample[from]);
+    for (const SampleRow& row : seen.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
     if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
     for (size_t share = 0; share < num_shares(); ++share) {
-      chirp.shares[share].field[s] = {seen.rows[share].re[s], seen.rows[share].im[s]};
+      chirp.shares[share].field[s] = {seen.rows[share].re[from], seen.rows[share].im[from]};
     }
   }
   for (size_t share = 0; share < num_shares(); ++share) {

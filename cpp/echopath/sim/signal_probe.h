@@ -65,11 +65,13 @@ class PassProbe : public PathWatcher {
   struct Aim;
   struct Seen;
   class Strongest;
+  struct Tones;
   void look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const;
+  static void draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim);
   size_t num_shares() const;
   void sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const;
   void add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
-                   std::span<const uint32_t> row, Seen& seen) const;
+                   std::span<const uint32_t> row, Tones& tones, Seen& seen) const;
   void sum_up(const Aim& aim, ProbedChirp& chirp) const;
   void draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
                    Seen& seen) const;

@@ -23,7 +23,7 @@ class Direct : public ToneMethod {
 
   void add(const Carriers& carriers, Rows rows) const override {
     for (int p = 0; p < carriers.count; ++p) {
-      double* row = rows.first + carriers.group[p] * rows.stride;
+      double* row = rows.of_group[carriers.group[p]] + rows.first;
       run_simd<add_tone>(carriers.frequency[p], carriers.re[p], carriers.im[p], num_samples_, row, row + row_length());
     }
   }

@@ -7,11 +7,11 @@
 
 namespace echopath {
 
-// The rows of all groups at one chirp and channel: real parts of group g at first + g * stride, imaginary parts
-// `stride / 2` doubles later. Zero before the first echo.
+// The rows of all groups at one chirp and channel: real parts of group g from of_group[g] + first on, imaginary parts a row length
+// later. Zero before the first echo; groups without echoes need have none.
 struct Rows {
-  double* first;
-  int64_t stride;
+  double* const* of_group;
+  int64_t first;
 };
 
 // The kernel of a NUFFT and the grid it is spread on.

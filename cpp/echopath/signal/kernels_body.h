@@ -56,11 +56,10 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
 
 void modulate(const CarrierModel& model, const EchoStates& states, int count, Carriers& out) {
   for (int p = 0; p < count; p += kLanes) {
-    Vec re, im;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      re[lane] = states.amplitude[2 * (p + lane)];
-      im[lane] = states.amplitude[2 * (p + lane) + 1];
-    }
+    Mask even;
+    for (int lane = 0; lane < kLanes; ++lane) even[lane] = 2 * lane;
+    const Vec first = load(states.amplitude + 2 * p), second = load(states.amplitude + 2 * p + kLanes);
+    const Vec re = __builtin_shuffle(first, second, even), im = __builtin_shuffle(first, second, even + 1);
     const States<1> here{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}};
     const Tones<1> tones = tones_of<PhasorError::kRounding>(model, here);
     store(out.frequency + p, tones.frequency.of[0]);
@@ -322,7 +321,7 @@ void spread_tile(const Spreading& spreading, const Places& places, int count, do
 template <int kWidth>
 void spread_any(const Spreading& spreading, const Places& places, int count, const uint32_t* group, Rows rows) {
   const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
-  for (int p = 0; p < count; ++p) spreader.add_echo(places, p, rows.first + group[p] * rows.stride);
+  for (int p = 0; p < count; ++p) spreader.add_echo(places, p, rows.of_group[group[p]] + rows.first);
 }
 
 // By width from the least.

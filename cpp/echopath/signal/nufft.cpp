@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "echopath/base/simd.h"
 #include "echopath/fft/fft.h"
 #include "echopath/signal/method.h"
 #include "echopath/signal/nufft_kernel.h"
@@ -25,6 +26,28 @@ int grid_size_for(int num_samples, int width) {
 
 int64_t row_length_for(int grid_size, int width) {
   return (int64_t{grid_size} + width + NufftKernel::padded(width) + 7) / 8 * 8;
+}
+
+ECHOPATH_INLINE void interleave(const double* re, const double* im, int64_t count, double* __restrict out) {
+  for (int64_t i = 0; i < count; ++i) {
+    out[2 * i] = re[i];
+    out[2 * i + 1] = im[i];
+  }
+}
+
+// values, out: complex
+ECHOPATH_INLINE void scale(const double* values, const double* factor, int64_t count, double* __restrict out) {
+  for (int64_t i = 0; i < count; ++i) {
+    out[2 * i] = values[2 * i] * factor[i];
+    out[2 * i + 1] = values[2 * i + 1] * factor[i];
+  }
+}
+
+// Of this thread, until it asks again.
+FftBuffer& scratch(int size) {
+  thread_local FftBuffer buffer(size);
+  if (buffer.size() != size) buffer = FftBuffer(size);
+  return buffer;
 }
 
 class Nufft : public SpreadMethod {
@@ -52,19 +75,20 @@ class Nufft : public SpreadMethod {
   }
 
   void samples(const double* row, std::complex<double>* out) const override {
-    FftBuffer grid(grid_size_);
+    FftBuffer& grid = scratch(grid_size_);
     // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide.
     const int64_t before = kernel_.width - 1, end = before + grid_size_;
     const double* imaginary = row + row_length();
-    for (int64_t i = before; i < end; ++i) grid[i - before] = {row[i], imaginary[i]};
+    run_simd<interleave>(row + before, imaginary + before, grid_size_, reinterpret_cast<double*>(grid.data()));
     for (int64_t i = 0; i < before; ++i) grid[grid_size_ - before + i] += std::complex<double>(row[i], imaginary[i]);
     for (int64_t i = end; i < row_length(); ++i) grid[i - end] += std::complex<double>(row[i], imaginary[i]);
     fft_.transform(grid);
-    const int num_samples = static_cast<int>(correction_.size());
-    for (int n = 0; n < num_samples; ++n) {
-      const int bin = n - reference_sample();
-      out[n] = grid[bin < 0 ? bin + grid_size_ : bin] * correction_[n];
-    }
+    // Sample n is bin n - reference_sample(), modulo the grid.
+    const int64_t num_below = reference_sample(), num_samples = static_cast<int64_t>(correction_.size());
+    const auto* bins = reinterpret_cast<const double*>(grid.data());
+    auto* samples = reinterpret_cast<double*>(out);
+    run_simd<scale>(bins + 2 * (grid_size_ - num_below), correction_.data(), num_below, samples);
+    run_simd<scale>(bins, correction_.data() + num_below, num_samples - num_below, samples + 2 * num_below);
   }
 
  private:

@@ -66,7 +66,7 @@ void visit_echoes(const CarrierModel& model, const Echoes& echoes, int chirp, in
 
 void PerSample::add(const Echoes& echoes, int chirp, int64_t begin, int count, int64_t row_length, Rows rows) const {
   visit_echoes(model_, echoes, chirp, begin, count, [&](const Bent& echo, size_t index) {
-    double* row = rows.first + (echoes.group.empty() ? 0 : echoes.group[index]) * rows.stride;
+    double* row = rows.of_group[echoes.group.empty() ? 0 : echoes.group[index]] + rows.first;
     run_simd<add_bent>(model_, echo, num_samples_, row, row + row_length);
   });
 }

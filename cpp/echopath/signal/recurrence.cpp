@@ -78,7 +78,7 @@ class Recurrence : public ToneMethod {
       int count = 1;
       const uint32_t group = carriers.group[first];
       while (count < kTones && first + count < carriers.count && carriers.group[first + count] == group) ++count;
-      run_simd<add_tones>(&carriers, first, count, row_length(), rows.first + group * rows.stride);
+      run_simd<add_tones>(&carriers, first, count, row_length(), rows.of_group[group] + rows.first);
       first += count;
     }
   }

@@ -1,6 +1,5 @@
 #include "echopath/signal/synthesis_memory.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "echopath/base/kept_memory.h"
@@ -21,28 +20,29 @@ std::unique_ptr<SynthesisMemory> SynthesisMemory::take() { return kept().take();
 void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) { kept().leave(std::move(memory)); }
 
 // The smallest that will do.
-std::vector<double> SynthesisMemory::take_rows(size_t count) {
-  const auto by_room = [](const std::vector<double>& a, const std::vector<double>& b) { return a.capacity() < b.capacity(); };
-  std::sort(rows_.begin(), rows_.end(), by_room);
-  const auto found = std::find_if(rows_.begin(), rows_.end(), [&](const auto& rows) { return rows.capacity() >= count; });
-  std::vector<double> taken;
-  if (found == rows_.end()) {
-    resize_large(taken, count);
+RowMemory SynthesisMemory::take_rows(size_t count) {
+  auto best = rows_.end();
+  for (auto rows = rows_.begin(); rows != rows_.end(); ++rows) {
+    if (rows->room >= count && (best == rows_.end() || rows->room < best->room)) best = rows;
+  }
+  RowMemory taken;
+  if (best != rows_.end()) {
+    taken = std::exchange(*best, std::move(rows_.back()));
+    rows_.pop_back();
     return taken;
   }
-  taken = std::move(*found);
-  rows_.erase(found);
-  taken.assign(count, 0.0);
+  taken = {std::make_unique_for_overwrite<double[]>(count), count};
+  prefer_large_pages(taken.values.get(), count * sizeof(double));
   return taken;
 }
 
-void SynthesisMemory::give(std::vector<double> rows) {
-  if (rows.capacity() > 0) rows_.push_back(std::move(rows));
+void SynthesisMemory::give(RowMemory rows) {
+  if (rows.values) rows_.push_back(std::move(rows));
 }
 
 size_t SynthesisMemory::num_bytes() const {
   size_t values = 0;
-  for (const std::vector<double>& rows : rows_) values += rows.capacity();
+  for (const RowMemory& rows : rows_) values += rows.room;
   return values * sizeof(double) + tiles.num_bytes();
 }
 

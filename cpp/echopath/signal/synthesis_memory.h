@@ -7,6 +7,11 @@
 
 namespace echopath {
 
+struct RowMemory {
+  std::unique_ptr<double[]> values;
+  size_t room = 0;
+};
+
 class SynthesisMemory {
  public:
   // What another left, or new; see KeptMemory.
@@ -14,13 +19,13 @@ class SynthesisMemory {
   static void leave(std::unique_ptr<SynthesisMemory> memory);
 
   EchoTiles tiles;
-  // Zeros [count].
-  std::vector<double> take_rows(size_t count);
-  void give(std::vector<double> rows);
+  // Room for `count` values, which are not set.
+  RowMemory take_rows(size_t count);
+  void give(RowMemory rows);
   size_t num_bytes() const;
 
  private:
-  std::vector<std::vector<double>> rows_;  // not in use
+  std::vector<RowMemory> rows_;  // not in use
 };
 
 }  // namespace echopath

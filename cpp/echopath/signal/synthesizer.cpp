@@ -122,12 +122,17 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
     sample_rows_ = make_direct(waveform.num_samples);
     per_sample_ = std::make_unique<PerSample>(waveform, *model_);
   }
-  channels_.resize(num_channels);
+  const auto groups = static_cast<size_t>(num_groups);
+  for (int channel = 0; channel < num_channels; ++channel) {
+    channels_.push_back({std::vector<RowMemory>(groups), std::vector<std::vector<double>>(groups)});
+  }
 }
 
 Synthesizer::~Synthesizer() {
   if (!memory_) return;  // moved from
-  for (ChannelRows& rows : channels_) memory_->give(std::move(rows.moving));
+  for (ChannelRows& channel : channels_) {
+    for (RowMemory& rows : channel.moving) memory_->give(std::move(rows));
+  }
   SynthesisMemory::leave(std::move(memory_));
 }
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
@@ -175,28 +180,57 @@ void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
   }
 }
 
+namespace {
+
+// [num_groups], 1 for those that have echoes.
+std::vector<uint8_t> groups_of(std::span<const Echoes> blocks, int num_groups) {
+  std::vector<uint8_t> has_echoes(static_cast<size_t>(num_groups));
+  for (const Echoes& block : blocks) {
+    if (block.group.empty() && block.num_echoes > 0) has_echoes[0] = 1;
+    for (const uint32_t group : block.group) has_echoes[group] = 1;
+  }
+  return has_echoes;
+}
+
+std::vector<uint8_t> groups_of(const EchoTiles& tiles, int num_groups) {
+  std::vector<uint8_t> has_echoes(static_cast<size_t>(num_groups));
+  for (const EchoTiles::Tile& tile : tiles.tiles()) has_echoes[tile.group] = 1;
+  return has_echoes;
+}
+
+}  // namespace
+
 // In a number of parts that does not depend on the threads, with rows of their own, added in their order.
 void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const {
   int64_t total = 0;
   for (const Echoes& block : blocks) total += block.num_echoes;
-  if (total == 0) return;
-  const size_t size = static_cast<size_t>(row_size(false)) * num_groups_;
-  rows.still.resize(size);
+  const auto size = static_cast<size_t>(row_size(false)), num_groups = static_cast<size_t>(num_groups_);
+  const std::vector<uint8_t> has_echoes = groups_of(blocks, num_groups_);
+  RowsOfGroups whole(num_groups);
+  for (size_t group = 0; group < num_groups; ++group) {
+    if (!has_echoes[group]) continue;
+    rows.still[group].resize(size);
+    whole[group] = rows.still[group].data();
+  }
   const int64_t num_parts = std::min(total / (kEchoesOfPart * num_groups_), kStillParts);
-  if (num_parts <= 1) return add_still_part(blocks, {0, total}, rows.still.data(), job);
+  if (num_parts <= 1) return add_still_part(blocks, {0, total}, whole, job);
   std::vector<std::vector<double>> parts(static_cast<size_t>(num_parts));
   parallel_for(num_parts, [&](int64_t i) {
     std::vector<double>& part = parts[static_cast<size_t>(i)];
-    part.resize(size);
-    add_still_part(blocks, {i * total / num_parts, (i + 1) * total / num_parts}, part.data(), job);
+    part.resize(size * num_groups);
+    RowsOfGroups of_part(num_groups);
+    for (size_t group = 0; group < num_groups; ++group) of_part[group] = part.data() + group * size;
+    add_still_part(blocks, {i * total / num_parts, (i + 1) * total / num_parts}, of_part, job);
   });
   for (const std::vector<double>& part : parts) {
-    for (size_t i = 0; i < size; ++i) rows.still[i] += part[i];
+    for (size_t group = 0; group < num_groups; ++group) {
+      for (size_t i = 0; whole[group] && i < size; ++i) whole[group][i] += part[group * size + i];
+    }
   }
 }
 
 // `part`: of the echoes of all blocks, one block after the other.
-void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, double* rows, Job* job) const {
+void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, const RowsOfGroups& rows, Job* job) const {
   int64_t first = 0;
   for (const Echoes& block : blocks) {
     const Range here{std::max<int64_t>(part.begin - first, 0), std::min(part.end - first, block.num_echoes)};
@@ -205,46 +239,55 @@ void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, dou
   }
 }
 
+// Each task clears its chirps of the rows of groups that are new.
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
-  const size_t chirp_size = static_cast<size_t>(row_size(true)) * num_groups_;
-  if (rows.moving.empty()) rows.moving = memory_->take_rows(chirp_size * waveform_.num_chirps);
-  if (spread_) memory_->tiles.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
+  EchoTiles& tiles = memory_->tiles;
+  if (spread_) tiles.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
+  const std::vector<uint8_t> has_echoes = spread_ ? groups_of(tiles, num_groups_) : groups_of(blocks, num_groups_);
+  const int64_t size = row_size(true);
+  RowsOfGroups all(has_echoes.size()), fresh;
+  for (size_t group = 0; group < all.size(); ++group) {
+    if (!has_echoes[group]) continue;
+    RowMemory& of_group = rows.moving[group];
+    const bool is_new = !of_group.values;
+    if (is_new) of_group = memory_->take_rows(static_cast<size_t>(size * waveform_.num_chirps));
+    all[group] = of_group.values.get();
+    if (is_new) fresh.push_back(all[group]);
+  }
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
-    double* const first_row = rows.moving.data() + chirp_size * first;
-    if (spread_) return add_tiles(blocks.front().sampling, first, count, first_row, job);
-    for (const Echoes& block : blocks) add_rows(block, {0, block.num_echoes}, {first, first + count}, first_row, job);
+    for (double* const values : fresh) std::fill_n(values + first * size, count * size, 0.0);
+    const Range chirps{first, first + count};
+    if (spread_) return add_tiles(blocks.front().sampling, chirps, all, job);
+    for (const Echoes& block : blocks) add_rows(block, {0, block.num_echoes}, chirps, all, job);
   });
 }
 
 // The delay of the last cell.
 double Synthesizer::longest_delay() const { return waveform_.sampling_rate / waveform_.slope(); }
 
-void Synthesizer::add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const {
+void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const Spreading spreading = spread_->spreading();
   const int64_t stride = row_size(true);
   for (const EchoTiles::Tile& tile : memory_->tiles.tiles()) {
     if (job) job->throw_if_cancelled();
-    for (int i = 0; i < num_chirps; i += kChirpGroup) {
-      const int chirp = first_chirp + i;
-      const size_t weights = static_cast<size_t>(chirp) * sampling.order;
-      const int count = std::min(kChirpGroup, num_chirps - i);
+    for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
+      const auto weights = static_cast<size_t>(chirp * sampling.order);
+      const int count = static_cast<int>(std::min<int64_t>(kChirpGroup, chirps.end - chirp));
       const TileAtChirps at{memory_->tiles.nodes(tile), tile.count, sampling.num_nodes, sampling.order, count,
-                            &sampling.first_node[chirp], &sampling.value[weights], &sampling.slope[weights]};
-      double* row = rows + (int64_t{i} * num_groups_ + tile.group) * stride;
-      signal_kernels().add_tile(*model_, spreading, at, row, stride * num_groups_);
+                            &sampling.first_node[static_cast<size_t>(chirp)], &sampling.value[weights], &sampling.slope[weights]};
+      signal_kernels().add_tile(*model_, spreading, at, rows[tile.group] + chirp * stride, stride);
     }
   }
 }
 
 // Every chirp takes all echoes in their order, in blocks that do not depend on the tasks: hence the same bits always.
-void Synthesizer::add_rows(const Echoes& block, Range echoes, Range chirps, double* rows, Job* job) const {
+void Synthesizer::add_rows(const Echoes& block, Range echoes, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const int64_t stride = row_size(!block.sampling.is_static());
   for (int64_t begin = echoes.begin; begin < echoes.end; begin += Carriers::kCapacity) {
     if (job) job->throw_if_cancelled();
     const int count = static_cast<int>(std::min<int64_t>(Carriers::kCapacity, echoes.end - begin));
     for (int64_t chirp = chirps.begin; chirp < chirps.end; ++chirp) {
-      const Rows at{rows + (chirp - chirps.begin) * num_groups_ * stride, stride};
-      add_some(block, static_cast<int>(chirp), begin, count, at);
+      add_some(block, static_cast<int>(chirp), begin, count, {rows.data(), chirp * stride});
     }
   }
 }
@@ -263,21 +306,28 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
   if (group < 0 || group >= num_groups_) {
     throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
   }
-  const int64_t num_samples = waveform_.num_samples, num_chirps = waveform_.num_chirps;
-  std::vector<std::complex<double>> out(channels_.size() * num_chirps * num_samples);
+  const size_t channel_size = static_cast<size_t>(waveform_.num_chirps) * static_cast<size_t>(waveform_.num_samples);
+  std::vector<std::complex<double>> out(channels_.size() * channel_size);
   for (size_t channel = 0; channel < channels_.size(); ++channel) {
-    const ChannelRows& rows = channels_[channel];
-    std::vector<std::complex<double>> still(num_samples);
-    if (!rows.still.empty()) write_row(rows.still.data() + group * row_size(false), false, still.data());
-    parallel_for(num_chirps, [&](int64_t chirp) {
-      if (job) job->throw_if_cancelled();
-      std::complex<double>* samples = out.data() + (channel * num_chirps + chirp) * num_samples;
-      const int64_t moving = (chirp * num_groups_ + group) * row_size(true);
-      if (!rows.moving.empty()) write_row(rows.moving.data() + moving, true, samples);
-      for (int64_t n = 0; n < num_samples; ++n) samples[n] += still[n];
-    });
+    write_channel(channels_[channel], static_cast<size_t>(group), out.data() + channel * channel_size, job);
   }
   return out;
+}
+
+// To zeros [chirp, sample].
+void Synthesizer::write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const {
+  const double* const moving = rows.moving[group].values.get();
+  const std::vector<double>& still = rows.still[group];
+  if (!moving && still.empty()) return;
+  const int64_t num_samples = waveform_.num_samples;
+  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples));
+  if (!still.empty()) write_row(still.data(), false, at_rest.data());
+  parallel_for(waveform_.num_chirps, [&](int64_t chirp) {
+    if (job) job->throw_if_cancelled();
+    std::complex<double>* samples = out + chirp * num_samples;
+    if (moving) write_row(moving + chirp * row_size(true), true, samples);
+    for (int64_t n = 0; n < num_samples; ++n) samples[n] += at_rest[static_cast<size_t>(n)];
+  });
 }
 
 void Synthesizer::write_row(const double* row, bool moving, std::complex<double>* out) const {

@@ -9,12 +9,12 @@
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/signal/echoes.h"
+#include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {
 
 class PerSample;
 class SpreadMethod;
-class SynthesisMemory;
 class ToneMethod;
 struct CarrierModel;
 struct Rows;
@@ -34,8 +34,8 @@ struct SynthesisOptions {
 // from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
 // bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
 // chirps.
-// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for channels with moving echoes, and
-// what `add` says.
+// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and what
+// `add` says; up to KeptMemory::kMost of it is kept for the next.
 class Synthesizer {
  public:
   // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
@@ -59,22 +59,24 @@ class Synthesizer {
 
  private:
   struct ChannelRows {
-    std::vector<double> moving;  // [chirp, group, re/im, row length]; empty until a moving echo comes
-    std::vector<double> still;   // [group, re/im, row length], added to every chirp; empty likewise
+    std::vector<RowMemory> moving;           // [group], each [chirp, re/im, row length]; none until a moving echo of it comes
+    std::vector<std::vector<double>> still;  // [group], each [re/im, row length], added to every chirp; empty likewise
   };
+  using RowsOfGroups = std::vector<double*>;  // [group], null where a group has none
   void validate(const Echoes& block) const;
   struct Range {
     int64_t begin, end;
   };
   void add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const;
-  void add_still_part(std::span<const Echoes> blocks, Range part, double* rows, Job* job) const;
+  void add_still_part(std::span<const Echoes> blocks, Range part, const RowsOfGroups& rows, Job* job) const;
   void add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job);
-  void add_tiles(const TimeSampling& sampling, int first_chirp, int num_chirps, double* rows, Job* job) const;
-  void add_rows(const Echoes& block, Range echoes, Range chirps, double* rows, Job* job) const;
+  void add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const;
+  void add_rows(const Echoes& block, Range echoes, Range chirps, const RowsOfGroups& rows, Job* job) const;
   void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
   int64_t row_size(bool moving) const;
   double longest_delay() const;
   void write_row(const double* row, bool moving, std::complex<double>* out) const;
+  void write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const;
 
   ChirpSequence waveform_;
   int num_groups_;

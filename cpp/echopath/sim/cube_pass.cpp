@@ -82,6 +82,12 @@ Cube CubePass::cube(size_t way, int group, Job* job) const {
           radar_.waveform.num_samples, synthesizers_[way].cube(group, job)};
 }
 
+size_t CubePass::cube_bytes() const {
+  const size_t channels = radar_.transmitters.size() * radar_.receivers.size();
+  const auto samples = static_cast<size_t>(radar_.waveform.num_chirps) * static_cast<size_t>(radar_.waveform.num_samples);
+  return channels * samples * sizeof(std::complex<double>);
+}
+
 std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
   const int count = num_keyframes(paths, radar, settings.keyframes, settings.replay.specular, job);
   return stretches_of(radar, paths.frame.start_time, count);

@@ -42,6 +42,7 @@ class CubePass {
   CubePass(const Paths& paths, const Radar& radar, const std::vector<PathGroups>& ways, CubeSettings settings, Job* job);
 
   Cube cube(size_t way, int group, Job* job) const;
+  size_t cube_bytes() const;
 
  private:
   const Radar& radar_;

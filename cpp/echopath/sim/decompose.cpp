@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "echopath/base/parallel.h"
+
 namespace echopath {
 namespace {
 
@@ -12,6 +14,8 @@ using Views = std::vector<std::vector<PartCube>>;
 // Combinations of parts that are worth their memory, since each path is then synthesised once for several views.
 constexpr size_t kFewGroups = 64;
 constexpr size_t kMostGroups = 1 << 16;
+// Cubes of combinations that are made at once, before they are added to their parts.
+constexpr size_t kGroupsAtOnce = 32, kCubesAtOnce = size_t{64} << 20;  // and bytes of them, if more than one
 
 // Views that are filled together.
 struct ViewSet {
@@ -56,16 +60,25 @@ std::vector<ViewSet> sort_paths(const Paths& paths, const std::vector<Grouping>&
   return sets;
 }
 
+void add_group(Cube cube, uint32_t group, const ViewSet& set, Views& out) {
+  for (size_t i = 0; i < set.views.size(); ++i) {
+    Cube& part = out[set.views[i]][set.combined.part_in(group, i)].cube;
+    if (!part.values.empty()) part.add(cube);
+    else if (i + 1 == set.views.size()) part = std::move(cube);
+    else part = cube;
+  }
+}
+
 // Adds up the groups of a set, in ascending order, to the parts of its views.
 void sum_groups(const CubePass& pass, size_t way, const ViewSet& set, Views& out, Job* job) {
-  for (uint32_t group = 0; group < set.combined.num_groups; ++group) {
-    Cube cube = pass.cube(way, static_cast<int>(group), job);
-    for (size_t i = 0; i < set.views.size(); ++i) {
-      Cube& part = out[set.views[i]][set.combined.part_in(group, i)].cube;
-      if (!part.values.empty()) part.add(cube);
-      else if (i + 1 == set.views.size()) part = std::move(cube);
-      else part = cube;
-    }
+  const uint32_t num_groups = set.combined.num_groups;
+  const auto at_once = static_cast<uint32_t>(std::clamp<size_t>(kCubesAtOnce / pass.cube_bytes(), 1, kGroupsAtOnce));
+  for (uint32_t first = 0; first < num_groups; first += at_once) {
+    std::vector<Cube> cubes(std::min(at_once, num_groups - first));
+    parallel_for(static_cast<int64_t>(cubes.size()), [&](int64_t i) {
+      cubes[static_cast<size_t>(i)] = pass.cube(way, static_cast<int>(first) + static_cast<int>(i), job);
+    });
+    for (uint32_t i = 0; i < cubes.size(); ++i) add_group(std::move(cubes[i]), first + i, set, out);
   }
 }
 

@@ -35,7 +35,8 @@ std::vector<Complex> tone_samples(const ToneMethod& method, int num_samples, dou
   carriers.re[0] = at_reference.real();
   carriers.im[0] = at_reference.imag();
   std::vector<double> row(2 * method.row_length());
-  method.add(carriers, {row.data(), 2 * method.row_length()});
+  double* const rows[] = {row.data()};
+  method.add(carriers, {rows, 0});
   std::vector<Complex> out(num_samples);
   method.samples(row.data(), out.data());
   return out;

@@ -95,6 +95,32 @@ TEST(Synthesizer, GroupsAddUpToTheWhole) {
   }
 }
 
+// Groups have rows from their first echo on, in memory that other groups used before.
+TEST(Synthesizer, GroupsThatComeLateHoldTheirOwnAndNothingElse) {
+  const ChirpSequence w = short_frame();
+  const testing::MovingPoints early(301, 5, 1.0, 70.0), late(202, 6, 1.0, 70.0);
+  Echoes first = testing::exact_echoes(w, early), moving = testing::exact_echoes(w, late);
+  Echoes still = testing::static_echoes(w.num_chirps, {moving.delay.begin(), moving.delay.begin() + 202}, late.amplitude);
+  for (const Method method : kMethods) {
+    const auto alone = [&](const std::vector<Echoes>& blocks) {
+      Synthesizer synthesizer(w, 1, 1, 503, {.method = method});
+      for (const Echoes& block : blocks) synthesizer.add(0, block);
+      return synthesizer.cube();
+    };
+    const auto of_first = alone({first}), of_both = alone({moving, still}), at_rest = alone({still});
+    Synthesizer parts(w, 1, 5, 503, {.method = method});
+    for (const auto& [echoes, group] : {std::pair{first, 1u}, {moving, 3u}, {still, 3u}, {still, 0u}}) {
+      Echoes block = echoes;
+      block.group.assign(static_cast<size_t>(block.num_echoes), group);
+      parts.add(0, block);
+    }
+    EXPECT_EQ(parts.cube(0), at_rest);
+    EXPECT_EQ(parts.cube(1), of_first);
+    EXPECT_EQ(parts.cube(3), of_both);
+    for (const int none : {2, 4}) EXPECT_EQ(parts.cube(none), std::vector<Complex>(of_first.size()));
+  }
+}
+
 // Chebyshev nodes: the interpolated echo is the polynomial itself, so it must equal exact evaluation at the chirps.
 TEST(Synthesizer, NodesWithWeightsAreInterpolatedPerChirp) {
   const ChirpSequence w = short_frame();

@@ -61,7 +61,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
     const Points points(sorted_.data() + first, count);
     if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
       set_mesh(mesh_id, localise);
-      see_antennas(mesh_id, level);
+      see_antennas(mesh_id, localise, level);
     }
     set_slots(points, localise, radio);
     kernels.prepare(trace_, slots_);
@@ -100,13 +100,16 @@ void DirectEvaluation::set_antennas(const LevelView& level) {
   }
 }
 
-void DirectEvaluation::see_antennas(uint32_t mesh_id, const LevelView& level) {
+// From what stands still they look as they are, whatever its scale does to the digits of its matrix.
+void DirectEvaluation::see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
+  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
   for (const bool of_receivers : {false, true}) {
     NodeRows& seen = seen_[of_receivers];
     for (size_t antenna = 0; antenna < antennas_[of_receivers].size(); ++antenna) {
       const double* const in_world = level.poses.antennas[of_receivers].row(antenna, 0);
-      const AntennaToSee from{level.poses.meshes.row(mesh_id, 0), in_world, seen.row(antenna, 0)};
-      direct_kernels(seen.stride()).see(trace_, from, seen.stride());
+      double* const out = seen.row(antenna, 0);
+      if (is_still) std::copy_n(in_world, LegToMeasure::kNumImageRows * seen.stride(), out);
+      else direct_kernels(seen.stride()).see(trace_, {level.poses.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
     }
   }
 }

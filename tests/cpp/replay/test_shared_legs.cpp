@@ -43,7 +43,8 @@ void add_body(Scene& scene, const std::string& name, const Vec3& centre, const T
   scene.add(node);
 }
 
-// Mirrors that scatter too, of which one drives away; bodies that turn, one of them smooth, one stretched along its way.
+// Mirrors that scatter too, of which one drives away; bodies that turn, one of them smooth, one stretched along its way, one
+// that stands, all but flat.
 Scene scene_of_all_kinds(bool has_mirrors = true) {
   Scene scene;
   add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, has_mirrors));
@@ -54,6 +55,7 @@ Scene scene_of_all_kinds(bool has_mirrors = true) {
   add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
   add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
   add_body(scene, "far", {9, -1, 0.3}, Transform(Eigen::Scaling(1.0, 2.0, 0.5)), turns);
+  add_body(scene, "plate", {7, -2, 0.2}, Transform(Eigen::Scaling(1.0, 3.0, 1e-6)), nullptr);
   return scene;
 }
 
@@ -187,6 +189,7 @@ TEST(SharedLegs, PathsOfOnePointStandApart) {
     EXPECT_GT(counts.of_mesh[3], 8);
     EXPECT_EQ(counts.of_mesh[4], 0);  // smooth
     EXPECT_EQ(counts.of_mesh[5], 0);  // stretched along its way
+    EXPECT_GT(counts.of_mesh[6], 3);
   }
   EXPECT_GT(direct_counts(paths).pairs, 100u);
 }

@@ -103,12 +103,14 @@ int num_threads() { return current_arena()->max_concurrency(); }
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job) {
   if (count <= 0) return;
-  run_steps(count, [&](int64_t i) {
+  const auto step = [&](int64_t i) {
     const FlushDenormals flush;
     if (job) job->throw_if_cancelled();
     body(i);
     if (job) job->advance(1);
-  });
+  };
+  if (count == 1) step(0);  // other threads sleep on
+  else run_steps(count, step);
 }
 
 void run_both(const std::function<void()>& first, const std::function<void()>& second) {

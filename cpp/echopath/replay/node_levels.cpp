@@ -163,11 +163,16 @@ int NodeLevels::first_level(int64_t path) const {
 
 void NodeLevels::first_levels(int64_t begin, std::span<uint8_t> levels) const {
   const int* const of_mesh = mesh_levels().data();
+  const int least = radar_.motion ? 1 : 0;
   for (size_t i = 0; i < levels.size(); ++i) {
     const int64_t path = begin + static_cast<int64_t>(i);
     const Hit* hits = paths_.hits_of(path);
-    int needed = radar_.motion ? 1 : 0;
-    for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) needed = std::max(needed, of_mesh[hits[k].mesh_id]);
+    const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
+    int needed = least;
+    // Most paths have one to four hits, and a branch on the number would be mispredicted: the last of them stands for those beyond.
+    for (int k = 0; k < num_hits; k += 4) {
+      for (int step = 0; step < 4; ++step) needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
+    }
     levels[i] = static_cast<uint8_t>(needed);
   }
 }

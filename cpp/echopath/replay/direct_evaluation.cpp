@@ -51,7 +51,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
   const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
   legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
-           channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
+           is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
            {radio.wavenumber, radio.spread, radio.footprint}, legs_.data(), out_.data(), turned_};
   const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
@@ -98,6 +98,17 @@ void DirectEvaluation::set_antennas(const LevelView& level) {
       antennas_[of_receivers].push_back({rows, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
     }
   }
+}
+
+bool DirectEvaluation::is_monostatic(const LevelView& level) const {
+  if (antennas_[0].size() != antennas_[1].size()) return false;
+  const NodeRows &transmitters = level.poses.antennas[0], &receivers = level.poses.antennas[1];
+  for (size_t i = 0; i < antennas_[0].size(); ++i) {
+    if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak) return false;
+    const double* rows = transmitters.row(i, 0);
+    if (!std::equal(rows, rows + LegToMeasure::kNumImageRows * transmitters.stride(), receivers.row(i, 0))) return false;
+  }
+  return true;
 }
 
 // From what stands still they look as they are, whatever its scale does to the digits of its matrix.

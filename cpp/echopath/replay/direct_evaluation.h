@@ -23,6 +23,7 @@ class DirectEvaluation {
   using Points = std::span<const ChainPlan::Direct* const>;
   void sort_by_mesh(const ChainPlan& plan);
   void set_antennas(const LevelView& level);
+  bool is_monostatic(const LevelView& level) const;
   void see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
   void set_mesh(uint32_t mesh_id, const Localiser& localise);
   void set_slots(Points points, const Localiser& localise, const RadioConstants& radio);

@@ -59,6 +59,7 @@ struct DirectToEvaluate {
   bool has_coherent;          // any; else its rows are 0
   const DirectAntenna* antennas[2];
   size_t num_antennas[2];
+  bool is_monostatic;         // both ends have the same antennas, hence the same legs
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
   size_t num_nodes, stride;
   CellFilter filter;

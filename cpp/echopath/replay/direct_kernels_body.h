@@ -220,7 +220,7 @@ ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes&
 }
 
 ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
-  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 ? 0 : paths.num_antennas[0];
+  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 || paths.is_monostatic ? 0 : paths.num_antennas[0];
   const size_t leg = node % DirectToEvaluate::kNodesTogether * num_legs + of_end + antenna;
   return paths.legs + leg * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
 }
@@ -238,7 +238,7 @@ ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_
 
 ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, size_t slot) {
   const PointLanes at = points_at(*paths.slots, slot);
-  for (int end = 0; end < 2; ++end) {
+  for (int end = 0; end < (paths.is_monostatic ? 1 : 2); ++end) {
     for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
       measure_leg(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
     }

@@ -55,7 +55,8 @@ Scene scene_of_all_kinds(bool has_mirrors = true) {
   add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
   add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
   add_body(scene, "far", {9, -1, 0.3}, Transform(Eigen::Scaling(1.0, 2.0, 0.5)), turns);
-  add_body(scene, "plate", {7, -2, 0.2}, Transform(Eigen::Scaling(1.0, 3.0, 1e-6)), nullptr);
+  add_body(scene, "plate", {7, -2, 0.2}, Transform(Eigen::AngleAxisd(0.7, Vec3(0.1, 0.2, 1).normalized()) * Eigen::Scaling(1.0, 3.0, 1e-6)),
+           nullptr);
   return scene;
 }
 
@@ -155,6 +156,17 @@ TEST(SharedLegs, PathsOfOnePointAreThoseEvaluatedOneByOne) {
       paths.frame.footprint = footprint;
       expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02), kGrazingFilterRounding);
     }
+  }
+}
+
+// As one antenna that sends and receives, and as ones that differ in where they look.
+TEST(SharedLegs, AntennasOfBothEndsMayBeTheSame) {
+  Radar radar = array_of_powers();
+  radar.receivers = radar.transmitters;
+  for (const double turn : {0.0, 0.2}) {
+    radar.receivers[1].orientation = Quaternion(Eigen::AngleAxisd(0.3 + turn, Vec3::UnitZ()));
+    const Paths paths = record(radar, false);
+    expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02), kGrazingFilterRounding);
   }
 }
 

@@ -18,6 +18,7 @@ struct ScalarMath {
   static ECHOPATH_INLINE double magnitude(double x) { return __builtin_fabs(x); }
   static ECHOPATH_INLINE double with_sign_of(double x, double sign) { return __builtin_copysign(x, sign); }
   static ECHOPATH_INLINE double larger(double x, double y) { return x > y ? x : y; }
+  static ECHOPATH_INLINE double smaller(double x, double y) { return x < y ? x : y; }
   static ECHOPATH_INLINE double exp(double x) { return __builtin_exp(x); }
   // e^{jx}, x in rad
   static ECHOPATH_INLINE ComplexOf<double> cis(double x) { return {__builtin_cos(x), __builtin_sin(x)}; }

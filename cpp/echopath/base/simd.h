@@ -7,10 +7,13 @@
 // Helpers of such loops must be inlined to be compiled for the same instruction set.
 #define ECHOPATH_INLINE inline __attribute__((always_inline))
 
+// Before a loop: do not unroll it; its rounds may run side by side, whatever its pointers suggest.
 #if defined(__clang__)
 #define ECHOPATH_NO_UNROLL _Pragma("clang loop unroll(disable)")
+#define ECHOPATH_SIDE_BY_SIDE _Pragma("clang loop vectorize(assume_safety)")
 #else
 #define ECHOPATH_NO_UNROLL _Pragma("GCC unroll 1")
+#define ECHOPATH_SIDE_BY_SIDE _Pragma("GCC ivdep")
 #endif
 
 namespace echopath {
@@ -24,7 +27,7 @@ const char* name_of(InstructionSet set);
 
 #ifdef ECHOPATH_X86_KERNELS
 template <auto kLoop, class... Args>
-__attribute__((target("arch=x86-64-v4"))) void run_for_avx512(Args... args) {
+__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) void run_for_avx512(Args... args) {
   kLoop(args...);
 }
 template <auto kLoop, class... Args>

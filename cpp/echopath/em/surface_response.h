@@ -28,9 +28,12 @@ class SurfaceModel {
   const Material& material() const { return *material_; }
   // Whether its coefficients depend on the polarisation.
   bool is_dielectric() const { return is_dielectric_; }
+  // Whether they depend on nothing at all, and what they are then.
+  bool is_constant() const { return !is_dielectric_ && wavenumber_height_ == 0; }
+  const SurfaceResponse& constant() const { return constant_; }
   // What `respond` gives.
   SurfaceResponse respond(double cos_incidence, PolarizationMode mode) const {
-    return is_dielectric_ || wavenumber_height_ > 0 ? respond_at(cos_incidence, mode) : constant_;
+    return is_constant() ? constant_ : respond_at(cos_incidence, mode);
   }
 
  private:

@@ -123,7 +123,8 @@ class Onlooker {
       if (job) job->throw_if_cancelled();
       const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
       for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
-        look_along(frame.direction(points->point(i)), end, tallies[static_cast<size_t>(task)]);
+        const Eigen::Vector2d point = points->point(i);
+        look_along(packed(frame.direction(point.x(), point.y())), end, tallies[static_cast<size_t>(task)]);
       }
     });
     Tally sum(surfaces_.names.size());

@@ -1,5 +1,6 @@
 #include "echopath/trace/bare_queries.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -46,7 +47,10 @@ void ask_all(const EmbreeScene& geometry, const QueryLog& log, bool one_by_one) 
 }
 
 void count_queries(const QueryLog& log, BareQueries& out) {
-  for (const auto [kind, count] : log.calls) {
+  const QueryLog::Ray* ray = log.rays.data();
+  for (const auto [kind, num_lanes] : log.calls) {
+    const auto count = std::count_if(ray, ray + num_lanes, [](const QueryLog::Ray& one) { return one.far > 0; });
+    ray += num_lanes;
     out.num_queries += count;
     if (kind == QueryLog::Kind::kClosestPacket || kind == QueryLog::Kind::kShadowPacket) out.num_in_packets += count;
     if (kind == QueryLog::Kind::kShadow || kind == QueryLog::Kind::kShadowPacket) out.num_shadow += count;

@@ -88,31 +88,20 @@ Vec3 cosine_lobe(const std::array<double, 2>& random) {
 
 void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batches) {
   ScatterCell shift{};
-  for (int k = 0; k < count; ++k) {
-    const bool is_new = k == 0 || batches[k] != batches[k - 1] || (first + k) % kScatterNetSize == 0;
-    if (is_new) shift = scatter_shift(seed, batches[k], first + k, 0);
-    const ScatterCell cell = scatter_cell(shift, first + k);
-    const auto lane = static_cast<size_t>(k);
-    x_[lane] = cell[0];
-    y_[lane] = cell[1];
+  for (int lane = 0; lane < count; ++lane) {
+    const bool is_new = lane == 0 || batches[lane] != batches[lane - 1] || (first + lane) % kScatterNetSize == 0;
+    if (is_new) shift = scatter_shift(seed, batches[lane], first + lane, 0);
+    const ScatterCell cell = scatter_cell(shift, first + lane);
+    lobe.x[lane] = cell[0];
+    lobe.y[lane] = cell[1];
   }
-  std::fill(x_.begin() + count, x_.end(), 0.0);
-  std::fill(y_.begin() + count, y_.end(), 0.0);
+  std::fill(lobe.x.lanes + count, lobe.x.lanes + kPacketSize, 0.0);
+  std::fill(lobe.y.lanes + count, lobe.y.lanes + kPacketSize, 0.0);
   const auto index = static_cast<uint64_t>(first);
   using Lanes = ChanceLanes<kPacketSize>;
-  run_simd<&draw_chance<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re_.data(), phase_im_.data(), axis_coin_.data(),
-                                                                    lobe_coin_.data(), survival_coin_.data()});
-  run_simd<&draw_lobes>(seed, index, LobeLanes{x_.data(), y_.data(), z_.data()});
-}
-
-HitChance PacketChance::hit(int lane) const {
-  const auto k = static_cast<size_t>(lane);
-  return {{phase_re_[k], phase_im_[k]}, axis_coin_[k], lobe_coin_[k], survival_coin_[k]};
-}
-
-Vec3 PacketChance::lobe(int lane) const {
-  const auto k = static_cast<size_t>(lane);
-  return {x_[k], y_[k], z_[k]};
+  run_simd<&draw_chance<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re.lanes, phase_im.lanes, axis_coin.lanes,
+                                                                    lobe_coin.lanes, survival_coin.lanes});
+  run_simd<&draw_lobes>(seed, index, LobeLanes{lobe.x.lanes, lobe.y.lanes, lobe.z.lanes});
 }
 
 }  // namespace echopath

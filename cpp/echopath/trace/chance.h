@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "echopath/base/geometry.h"
-#include "echopath/trace/embree_scene.h"
+#include "echopath/trace/packet.h"
 
 namespace echopath {
 
@@ -21,18 +21,16 @@ HitChance hit_chance(uint64_t seed, int64_t ray, int depth);
 // A direction over a surface with its normal along z, in a cosine lobe: of two numbers in [0, 1).
 Vec3 cosine_lobe(const std::array<double, 2>& random);
 
-// Of rays in a row.
-class PacketChance {
- public:
-  // Of the first hits of rays [first, first + count); batches [count]. With what hit_chance and cosine_lobe of scatter_point
-  // give for each, but for rounding.
-  void draw(uint64_t seed, int64_t first, int count, const int* batches);
-  HitChance hit(int lane) const;
-  Vec3 lobe(int lane) const;
+// Of the rays of a packet, at their first hits: what hit_chance and cosine_lobe of scatter_point give for each, but for rounding.
+struct PacketChance {
+  LaneValues phase_re, phase_im, axis_coin, lobe_coin, survival_coin;
+  LaneVectors lobe;
 
- private:
-  using Column = std::array<double, kPacketSize>;
-  alignas(64) Column phase_re_, phase_im_, axis_coin_, lobe_coin_, survival_coin_, x_, y_, z_;
+  // Of rays [first, first + count); batches [count].
+  void draw(uint64_t seed, int64_t first, int count, const int* batches);
+  HitChance hit(int lane) const {
+    return {{phase_re[lane], phase_im[lane]}, axis_coin[lane], lobe_coin[lane], survival_coin[lane]};
+  }
 };
 
 }  // namespace echopath

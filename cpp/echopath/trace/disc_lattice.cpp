@@ -63,12 +63,18 @@ Eigen::Vector2d DiscLattice::point(int64_t index) const {
   return rows_[row] + static_cast<double>(index - first_[row]) * step_;
 }
 
-void DiscLattice::points(int64_t first, int64_t count, Eigen::Vector2d* out) const {
-  const int64_t end = first + count;
-  for (size_t row = row_of(first); first < end; ++row) {
-    for (; first < std::min(end, first_[row + 1]); ++first) {
-      *out++ = rows_[row] + static_cast<double>(first - first_[row]) * step_;
+void DiscLattice::points(int64_t first, int64_t count, double* x, double* y) const {
+  for (size_t row = row_of(first); count > 0; ++row) {
+    const int64_t num_here = std::min(count, first_[row + 1] - first);
+    for (int64_t i = 0; i < num_here; ++i) {
+      const auto steps = static_cast<double>(first - first_[row] + i);
+      x[i] = rows_[row][0] + steps * step_[0];
+      y[i] = rows_[row][1] + steps * step_[1];
     }
+    first += num_here;
+    count -= num_here;
+    x += num_here;
+    y += num_here;
   }
 }
 

@@ -22,7 +22,7 @@ class DiscLattice : public DiscPoints {
   int64_t size() const override { return first_.back(); }
   double cell_area() const override { return cell_area_; }
   Eigen::Vector2d point(int64_t index) const override;
-  void points(int64_t first, int64_t count, Eigen::Vector2d* out) const override;
+  void points(int64_t first, int64_t count, double* x, double* y) const override;
   int batch_of(int64_t index) const override;
 
  private:

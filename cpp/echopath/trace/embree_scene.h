@@ -1,5 +1,5 @@
 #pragma once
-// The posed triangles of a scene behind Embree; the only file pair that knows Embree and its versions.
+// The posed triangles of a scene, and what rays meet of them.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -8,9 +8,11 @@
 
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
+#include "echopath/trace/packet.h"
 #include "echopath/trace/paths.h"
 #include "echopath/trace/posed_meshes.h"
 #include "echopath/trace/query_log.h"
+#include "echopath/trace/ray_formula.h"
 
 namespace echopath {
 
@@ -24,11 +26,13 @@ struct RayHit {
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
 };
 
+struct PacketFacets;  // embree_packets.cpp, as the next one
+struct RayLanes;
+struct ValidLanes;
+
 struct Segment {
   Vec3 from, to;
 };
-
-inline constexpr int kPacketSize = 16;  // rays that Embree follows at a time
 
 // Coordinates are relative to `origin` (world), so that single precision resolves what lies around it. A ray that starts far
 // outside the scene is moved up to it in double precision first.
@@ -49,12 +53,31 @@ class EmbreeScene {
   // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
   // does not find on the ray (slivers near grazing); treated as lost.
   Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
-  // Likewise of `count` rays, at most kPacketSize, from one point; 4 times as fast where they are nearly parallel.
-  void intersect(const Vec3& from, const Vec3* directions, int count, Verdict* verdicts, RayHit* hits) const;
+  // Likewise from a point of the scene itself, on a surface or lifted off it.
+  Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // What the rays of a packet meet, lane by lane.
+  struct PacketHits {
+    std::array<Verdict, kPacketSize> verdicts;
+    std::array<Hit, kPacketSize> met;
+    LaneVectors position, normal;
+    LaneValues distance, stretch;
+    std::array<bool, kPacketSize> is_smooth{};
+    std::array<Mat3, kPacketSize> curvature;
+
+    RayHit operator[](int lane) const;
+    void set(int lane, const RayHit& hit);
+  };
+  // Likewise of the first `count` rays of a packet, from one point; 4 times as fast where they are nearly parallel. Lanes
+  // behind them meet nothing.
+  void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
   // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;
   // Likewise of `count` segments; 4 times as fast, in whatever order.
   void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
+  // Likewise between the points of a packet, in the lanes where `asked` is set, and one other point; elsewhere nothing is
+  // blocked.
+  using Lanes = std::array<bool, kPacketSize>;
+  void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
   // From now on every query is written down, too; null: no more. One thread at a time may ask while that lasts.
   void record_queries(QueryLog* log) { log_ = log; }
   // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
@@ -62,6 +85,7 @@ class EmbreeScene {
   void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
+  double lift() const { return lift_; }  // m
 
   // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
   // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
@@ -83,32 +107,24 @@ class EmbreeScene {
     const Vec3* vertices;
     const Vec3* normals;  // null where facets are meant
   };
-  // A line as Embree takes it.
-  struct Line {
-    Vec3 from, direction;
-    float far;
-  };
   Vec3 moved_up(const Vec3& from, const Vec3& direction) const {
-    const double distance = -from.dot(direction);  // to the point of the ray next to the origin
-    return distance > 2.0 * reach_ ? Vec3(from + (distance - 2.0 * reach_) * direction) : from;
+    return from + way_up(unpacked(from), unpacked(direction), reach_) * direction;
   }
-  // `far` is 0 where the points are too near to each other for anything to lie between them.
-  Line line_between(const Vec3& from, const Vec3& to) const {
-    const Vec3 whole = to - from;
-    const double length = whole.norm();
-    if (length <= 2.0 * lift_) return {from, Vec3::UnitX(), 0.0f};
-    const Vec3 direction = (1.0 / length) * whole, start = moved_up(from, direction);
-    const double rest = length - direction.dot(start - from);
-    return {start, direction, static_cast<float>(rest * (1.0 - 1e-6))};
+  SegmentRay ray_between(const Vec3& from, const Vec3& to) const {
+    return segment_ray(unpacked(from), unpacked(to), 2.0 * lift_, reach_);
   }
-  void ask_for_corners(const RayHit* hits, int count) const;
+  // Of packets (embree_packets.cpp).
+  void fetch(const PacketHits& hits, PacketFacets& facets) const;
+  void ask_segments(const RayLanes& rays, ValidLanes& blocked) const;
+  // `start`: where Embree has the ray begin.
+  Verdict intersect(const Vec3& from, const Vec3& start, const Vec3& direction, RayHit& out) const;
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
   QueryLog* log_ = nullptr;
   double lift_ = 0.0;   // m
-  double reach_ = 0.0;  // m: radius around the origin that holds the scene
+  double reach_ = 0.0;  // m: rays from farther away are moved up to there
   PosedMeshes meshes_;
   std::vector<Surface> surfaces_;  // by mesh ID
 };

@@ -149,16 +149,16 @@ Eigen::Vector2d LaunchPlan::point_of(int stratum, int64_t ray) const {
   return points[k]->point(ray - first_ray[k]);
 }
 
-void LaunchPlan::points_of(int64_t begin, int count, Columns out) const {
-  const int64_t end = begin + count;
-  for (int stratum = stratum_of(begin); begin < end; ++stratum) {
+void LaunchPlan::place(int64_t begin, int count, Places& out) const {
+  int stratum = stratum_of(begin);
+  for (int lane = 0; lane < count; ++stratum) {
     const auto k = static_cast<size_t>(stratum);
-    const int64_t num_here = std::min(end, first_ray[k + 1]) - begin;
-    points[k]->points(begin - first_ray[k], num_here, out.points);
-    std::fill_n(out.strata, num_here, stratum);
-    for (int64_t i = 0; i < num_here; ++i) out.batches[i] = batches == 1 ? 0 : batch_of(stratum, begin + i);
-    out = {out.strata + num_here, out.batches + num_here, out.points + num_here};
-    begin += num_here;
+    const int end = static_cast<int>(std::min<int64_t>(count, first_ray[k + 1] - begin));
+    points[k]->points(begin + lane - first_ray[k], end - lane, out.x.lanes + lane, out.y.lanes + lane);
+    for (; lane < end; ++lane) {
+      out.strata[static_cast<size_t>(lane)] = stratum;
+      out.batches[static_cast<size_t>(lane)] = batches == 1 ? 0 : batch_of(stratum, begin + lane);
+    }
   }
 }
 

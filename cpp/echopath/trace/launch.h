@@ -1,8 +1,10 @@
 #pragma once
 // Where rays start: strata of directions and the low-discrepancy set inside each.
+#include <array>
 #include <vector>
 
 #include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/packet.h"
 #include "echopath/trace/sampler.h"
 
 namespace echopath {
@@ -14,10 +16,10 @@ namespace echopath {
 // there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
 // At most 255 strata: images over the most mirrors are left out first, then the objects of the smallest solid angle.
 struct LaunchPlan {
-  // Where to write what belongs to each of some rays.
-  struct Columns {
-    int *strata, *batches;
-    Eigen::Vector2d* points;  // of the unit disc
+  // What belongs to each of a packet's rays.
+  struct Places {
+    std::array<int, kPacketSize> strata, batches;
+    LaneValues x, y;  // of the unit disc
   };
 
   std::vector<Stratum> strata;
@@ -33,7 +35,7 @@ struct LaunchPlan {
   double lattice_density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density / batches; }
   Eigen::Vector2d point_of(int stratum, int64_t ray) const;
   // Of `count` rays in a row.
-  void points_of(int64_t begin, int count, Columns out) const;
+  void place(int64_t begin, int count, Places& out) const;
   bool is_defensive(int stratum) const { return stratum + 1 == static_cast<int>(strata.size()); }
 };
 

@@ -38,7 +38,7 @@ class ImageSearch {
     if (num_found == 0) return;
     const std::complex<double> weight = (settings_.is_polarized ? 1.0 : field()) * (0.5 * num_found);
     if (std::abs(weight) == 0) return;
-    block_.add(hits_.data(), static_cast<int>(hits_.size()), 0, weight, kImageStratum);
+    block_.add(hits_.data(), static_cast<int>(hits_.size()), 0, std::complex<float>(weight), kImageStratum);
     if (settings_.is_polarized) block_.set_jones(jones_matrix());
     block_.statistics.num_hits += static_cast<int64_t>(hits_.size());
   }

@@ -5,35 +5,17 @@
 
 namespace echopath {
 
-namespace {
-
-constexpr int64_t kOfRay = -1;
-
-}  // namespace
-
-void PathBlock::add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
-                           int path_stratum) {
-  const std::complex<float> rounded(static_cast<float>(path_weight.real()), static_cast<float>(path_weight.imag()));
-  rows.push_back({offset, diffuse_bits, rounded, current_half, static_cast<uint8_t>(count), static_cast<uint8_t>(path_stratum),
-                  current_batch});
-}
-
-void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
+void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
   add_record(static_cast<int64_t>(hits.size()), count, diffuse_bits, path_weight, path_stratum);
   hits.insert(hits.end(), first, first + count);
 }
 
-void PathBlock::add_prefix(int count, uint64_t diffuse_bits, std::complex<double> path_weight, int path_stratum) {
-  used_depth_ = std::max(used_depth_, count);
-  add_record(kOfRay, count, diffuse_bits, path_weight, path_stratum);
-}
-
-void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<double> path_weight,
+void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight,
                              int path_stratum) {
   uint64_t reversed_bits = 0;
   for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
   add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
-  rows.back().flags |= kReversedPath;
+  rows.flags[rows.size() - 1] |= kReversedPath;
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }
 
@@ -47,16 +29,15 @@ void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
   curved_cell.back() = cell;
 }
 
-void PathBlock::end_ray(const Hit* ray_hits) {
-  if (used_depth_ > 0) {
-    const auto base = static_cast<int64_t>(hits.size());
-    for (int k = 0; k < used_depth_; ++k) hits.push_back(ray_hits[k]);
-    for (size_t i = first_of_ray_; i < rows.size(); ++i) {
-      if (rows[i].offset == kOfRay) rows[i].offset = base;
-    }
-  }
-  first_of_ray_ = rows.size();
-  used_depth_ = 0;
+void PathColumns::grow() {
+  const size_t room = 2 * size_ + 64;
+  offset.resize(room);
+  diffuse.resize(room);
+  weight.resize(room);
+  flags.resize(room);
+  num_bounces.resize(room);
+  stratum.resize(room);
+  batch.resize(room);
 }
 
 void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
@@ -100,17 +81,16 @@ void PathBlock::clear() {
 
 // The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.
 void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const {
-  const PathRows at = to;  // where no store can change it
-  for (size_t i = 0; i < end - begin; ++i) {
-    const Row& from = rows[begin + i];
-    at.offsets[i] = first_hit + from.offset;
-    at.num_bounces[i] = from.num_bounces;
-    at.diffuse[i] = from.diffuse;
-    at.weight[i] = from.weight;
-    at.stratum[i] = from.stratum;
-    at.batch[i] = from.batch;
-    at.flags[i] = from.flags;
-  }
+  const auto copy = [&](const auto& column, auto* out) {
+    std::copy(column.begin() + static_cast<int64_t>(begin), column.begin() + static_cast<int64_t>(end), out);
+  };
+  for (size_t i = begin; i < end; ++i) to.offsets[i - begin] = first_hit + rows.offset[i];
+  copy(rows.num_bounces, to.num_bounces);
+  copy(rows.diffuse, to.diffuse);
+  copy(rows.weight, to.weight);
+  copy(rows.stratum, to.stratum);
+  copy(rows.batch, to.batch);
+  copy(rows.flags, to.flags);
   to.skip_rows(end - begin);
   // These end with the last path that has an entry.
   for (size_t i = begin; i < std::min(end, curved_cell.size()); ++i) paths.curved_cell[row + i - begin] = curved_cell[i];

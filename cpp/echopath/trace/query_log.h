@@ -1,9 +1,10 @@
 #pragma once
 // The queries of a trace as Embree got them, to be asked again without the tracer around them (bare_queries.h).
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "echopath/base/geometry.h"
+#include "echopath/base/vector_of.h"
 
 namespace echopath {
 
@@ -14,8 +15,8 @@ struct QueryLog {
     uint8_t num_rays;
   };
   struct Ray {
-    Eigen::Vector3f from, direction;
-    float far;  // m; 0: a lane that is not in use
+    VectorOf<float> from, direction;
+    float far;  // m; negative: a lane that is not in use
   };
   // Where a block of launch rays begins.
   struct Mark {
@@ -25,8 +26,11 @@ struct QueryLog {
   std::vector<Ray> rays;  // of each call in turn
   std::vector<Mark> marks;
 
-  void add(const Vec3& from, const Vec3& direction, float far) {
-    rays.push_back({from.cast<float>(), direction.cast<float>(), far});
+  void add(const VectorOf<double>& from, const VectorOf<double>& direction, double far) {
+    const auto rounded = [](const VectorOf<double>& v) {
+      return VectorOf<float>{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    };
+    rays.push_back({rounded(from), rounded(direction), static_cast<float>(far)});
   }
   void mark() { marks.push_back({calls.size(), rays.size()}); }
 };

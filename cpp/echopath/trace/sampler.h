@@ -21,9 +21,13 @@ class DiscPoints {
   virtual int64_t size() const = 0;
   virtual double cell_area() const = 0;                     // what one point stands for
   virtual Eigen::Vector2d point(int64_t index) const = 0;  // index in [0, size())
-  // `count` points in a row.
-  virtual void points(int64_t first, int64_t count, Eigen::Vector2d* out) const {
-    for (int64_t i = 0; i < count; ++i) out[i] = point(first + i);
+  // Coordinates [count] of points in a row.
+  virtual void points(int64_t first, int64_t count, double* x, double* y) const {
+    for (int64_t i = 0; i < count; ++i) {
+      const Eigen::Vector2d one = point(first + i);
+      x[i] = one[0];
+      y[i] = one[1];
+    }
   }
   virtual int batch_of(int64_t index) const = 0;           // index of its shift
 };

@@ -11,20 +11,6 @@
 namespace echopath {
 namespace {
 
-static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs knows of no roulette on mirrors");
-// Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
-constexpr double kLargestArea = 1e60;
-
-// The direction over a surface whose components along two axes across the unit normal and along it are given. The axes turn
-// smoothly but for one line (Duff et al. 2017, "Building an orthonormal basis, revisited").
-Vec3 over_surface(const Vec3& normal, const Vec3& local) {
-  const double sign = std::copysign(1.0, normal.z());
-  const double a = -1.0 / (sign + normal.z()), b = normal.x() * normal.y() * a;
-  const Vec3 first(1.0 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x());
-  const Vec3 second(b, sign + normal.y() * normal.y() * a, -normal.y());
-  return local.x() * first + local.y() * second + local.z() * normal;
-}
-
 // The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
 double middle_extent(const std::vector<Vec3>& vertices) {
   Vec3 mean = Vec3::Zero();
@@ -56,99 +42,55 @@ RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const st
       wavelength_(kSpeedOfLight / settings.frequency) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) models_.emplace_back(*scene.node_of(id).material, settings.frequency);
+  for (const SurfaceModel& model : models_) constant_odds_.push_back(odds_of(model, model.constant()));
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
+  has_only_direct_legs_ = transmitter_.beams.empty() && receiver_.beams.empty() && !settings.is_polarized;
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 
 void RayShooter::shoot(int64_t begin, int64_t end, PathBlock& block) const {
   thread_local Scratch scratch;
   thread_local Packet packet;
-  for (int64_t first = begin; first < end; first += kPacketSize) {
-    shoot_packet(first, static_cast<int>(std::min<int64_t>(kPacketSize, end - first)), packet, scratch, block);
+  for (; begin < end; begin += kPacketSize) {
+    packet.begin = begin;
+    packet.count = static_cast<int>(std::min<int64_t>(kPacketSize, end - begin));
+    shoot_packet(packet, scratch, block);
   }
   block.statistics.num_queries += std::exchange(scratch.search.num_queries, 0);
 }
 
-// Together to their first hits, each on its own from there.
-void RayShooter::shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const {
-  launch_packet(begin, count, packet);
-  geometry_.intersect(settings_.transmitter, packet.directions.data(), count, packet.verdicts.data(), packet.hits.data());
-  block.statistics.num_queries += count;
-  look_at_receiver(count, packet, block);
-  Surface surface;
-  for (int k = 0; k < count; ++k) {
-    if (packet.verdicts[k] == EmbreeScene::Verdict::kMiss) continue;
-    Ray ray = launched(begin + k, packet.strata[k], packet.directions[k]);
-    block.current_batch = static_cast<uint8_t>(packet.batches[k]);
-    block.current_half = half_of_ray(ray.index);
-    surface.point = packet.hits[k];
-    surface.receiver = packet.receiver[k];
-    surface.chance = packet.chance.hit(k);
-    surface.packet = &packet.chance;
-    surface.lane = k;
-    if (arrive(ray, packet.verdicts[k], surface, block)) follow(ray, surface, scratch, block);
-    block.end_ray(ray.hits.data());
-  }
-}
-
-// Directions, and what chance decides where rays arrive.
-void RayShooter::launch_packet(int64_t begin, int count, Packet& packet) const {
-  plan_.points_of(begin, count, {packet.strata.data(), packet.batches.data(), packet.points.data()});
-  for (int k = 0; k < count; ++k) packet.directions[k] = cones_.direction(packet.strata[k], packet.points[k]);
-  packet.chance.draw(settings_.seed, begin, count, packet.batches.data());
-}
-
-// From all first hits together: they lie beside each other. What a mirror needs depends on more.
-void RayShooter::look_at_receiver(int count, Packet& packet, PathBlock& block) const {
-  std::array<int, kPacketSize> asked;
-  size_t num_asked = 0;
-  for (int k = 0; k < count; ++k) {
-    const RayHit& hit = packet.hits[k];
-    packet.receiver[k] = Sight::kUnknown;
-    if (packet.verdicts[k] != EmbreeScene::Verdict::kHit || models_[hit.hit.mesh_id].material().mirror) continue;
-    if (hit.normal.dot(settings_.receiver - hit.position) <= 0) continue;
-    packet.segments[num_asked] = {geometry_.lifted(hit.position, hit.normal), settings_.receiver};
-    asked[num_asked++] = k;
-  }
-  if (num_asked == 0) return;
-  geometry_.occluded(packet.segments.data(), num_asked, packet.blocked.data());
-  block.statistics.num_queries += static_cast<int64_t>(num_asked);
-  for (size_t i = 0; i < num_asked; ++i) packet.receiver[asked[i]] = packet.blocked[i] ? Sight::kBlocked : Sight::kOpen;
-}
-
-RayShooter::Ray RayShooter::launched(int64_t index, int stratum, const Vec3& direction) const {
-  Ray ray;
-  ray.index = index;
-  ray.stratum = stratum;
-  ray.from = settings_.transmitter;
-  ray.direction = ray.launch_direction = direction;
-  ray.leg_density = ray.launch_density = cones_.density_of_ray(direction, stratum);
-  if (settings_.is_polarized) ray.polarized = launched_fields(direction);
-  if (has_smooth_) ray.rays = RayDifferential::from_point(direction);
-  return ray;
-}
-
-// From its first hit on.
+// From its hit of `surface` on.
 void RayShooter::follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const {
-  do {
+  for (RayHit met;;) {
     connect(ray, surface, scratch, block);
-    if (ray.depth == settings_.max_bounces || !bounce(ray, surface, scratch, block)) break;
-  } while (advance(ray, surface, block));
+    if (ray.depth == settings_.max_bounces) return;
+    const Departure way = depart(ray, surface, scratch.chain, block.current_batch);
+    if (way.ends || ask(way.from, way.direction, met, block) != EmbreeScene::Verdict::kHit) return;
+    if (!travel(ray, way, met, surface, scratch, block)) return;
+  }
 }
 
-bool RayShooter::advance(Ray& ray, Surface& surface, PathBlock& block) const {
+EmbreeScene::Verdict RayShooter::ask(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const {
   ++block.statistics.num_queries;
-  if (!arrive(ray, geometry_.intersect(ray.from, ray.direction, surface.point), surface, block)) return false;
+  const EmbreeScene::Verdict verdict = geometry_.intersect_from_surface(from, direction, met);
+  if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
+  return verdict;
+}
+
+// From the hit of `surface` to the one that is met next. What the bounce makes of a ray is worked out only then: most meet
+// nothing.
+bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch,
+                        PathBlock& block) const {
+  if (!bounce(ray, surface, way, scratch)) return false;
+  surface.point = met;
   surface.receiver = Sight::kUnknown;
-  surface.packet = nullptr;
+  if (!arrive(ray, surface, block)) return false;
   surface.chance = hit_chance(settings_.seed, ray.index, ray.depth);
   return true;
 }
 
-// At the point of `surface`, if it is one.
-bool RayShooter::arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface, PathBlock& block) const {
-  if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
-  if (verdict != EmbreeScene::Verdict::kHit) return false;
+// At the point of `surface`, if it counts as a hit.
+bool RayShooter::arrive(Ray& ray, Surface& surface, PathBlock& block) const {
   surface.cos_incidence = -surface.point.normal.dot(ray.direction);
   if (surface.cos_incidence < kGrazing) {
     ++block.statistics.num_grazing;
@@ -159,20 +101,24 @@ bool RayShooter::arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface
     return false;
   }
   ++block.statistics.num_hits;
+  surface.model = &models_[surface.point.hit.mesh_id];
+  surface.mode = mode_along(*surface.model, settings_.polarization, ray.direction, surface.point.normal);
+  surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
+  settle(ray, surface);
+  return true;
+}
+
+// At a hit whose response is known.
+void RayShooter::settle(Ray& ray, Surface& surface) const {
+  surface.material = &surface.model->material();
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;
   if (has_smooth_ && ray.coherent) follow_tube(ray, surface);
-  surface.model = &models_[surface.point.hit.mesh_id];
-  surface.material = &surface.model->material();
-  const bool is_dielectric = surface.model->is_dielectric();
-  surface.mode = mode_along(*surface.model, settings_.polarization, ray.direction, surface.point.normal);
-  surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
   if (!surface.material->mirror) {
     ray.has_dielectric_tm |= surface.mode == PolarizationMode::kTm;
-    ray.has_odd_conductors ^= !is_dielectric;
+    ray.has_odd_conductors ^= !surface.model->is_dielectric();
   }
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
-  return true;
 }
 
 // A mirror must hold the first Fresnel zone between what lies `before` and `behind` it (unfolded lengths, m). A point a
@@ -193,93 +139,6 @@ void RayShooter::follow_tube(Ray& ray, Surface& surface) const {
     surface.tube_area = std::max(std::abs(ray.rays.area(ray.direction, distance)), wavelength_ * ray.leg_length);
   }
   ray.rays.transfer(ray.direction, distance, surface.point.normal);
-}
-
-double RayShooter::survival_of(const SurfaceResponse& response, int num_bounces) {
-  return num_bounces < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
-}
-
-RayShooter::Odds RayShooter::odds_of(const Surface& surface, const SurfaceResponse& response) const {
-  const Odds shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
-  const bool is_asked = settings_.specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
-  // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
-  if (!is_asked || surface.material->mirror) return shares;
-  return {settings_.specular_probability, 1.0 - settings_.specular_probability};
-}
-
-bool RayShooter::bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
-  const SurfaceResponse& response = surface.response;
-  const Odds odds = odds_of(surface, response);
-  const int num_bounces = ray.coherent ? ray.depth : ray.depth - scratch.chain.first;
-  const double survival = survival_of(response, num_bounces);
-  const bool is_open = odds.specular > 0 && odds.diffuse > 0;
-  bool specular = odds.diffuse == 0;
-  if (surface.chance.survival_coin >= survival) return false;
-  if (is_open) specular = surface.chance.lobe_coin < odds.specular;
-  ray.from = geometry_.lifted(surface.point.position, surface.point.normal);
-  if (specular) bounce_specular(ray, surface, odds.specular * survival, scratch.chain);
-  else bounce_diffuse(ray, surface, odds.diffuse * survival, scratch, block);
-  if (specular) ray.chain_share *= odds.specular;
-  return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
-}
-
-// `probability`: with which the ray goes on this way.
-void RayShooter::bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const {
-  const SurfaceResponse& response = surface.response;
-  const RayHit& point = surface.point;
-  ray.field_factor /= probability;
-  if (ray.coherent && has_smooth_) reflect_tube(ray, surface);
-  if (settings_.is_polarized) reflect_polarized(ray, surface, ray.polarized);
-  if (settings_.is_polarized && !ray.coherent && chain.back) reflect_polarized(ray, surface, chain.fields);
-  const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
-  const int mirror = mirror_of_mesh_[point.hit.mesh_id];
-  if (mirror >= 0) {
-    ray.coefficient *= mirror_sign(*surface.material, surface.mode, settings_.polarization, ray.direction, point.normal);
-  }
-  ray.direction = (ray.direction + 2.0 * surface.cos_incidence * point.normal).normalized();
-  ray.coefficient *= response.gamma * response.coherent;
-  ray.leg_density *= probability;
-  const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
-  ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
-  ray.last_was_mirror = mirror < 0;
-  if (mirror < 0) ray.mirror = bounced;
-  if (!ray.coherent) leave_specular(ray, surface, probability, chain);
-}
-
-// The tube of a coherent ray, before its direction changes.
-void RayShooter::reflect_tube(Ray& ray, const Surface& surface) const {
-  const RayHit& point = surface.point;
-  const Mat3 flat = Mat3::Zero();
-  ray.rays.reflect(ray.direction, point.normal, point.is_smooth ? point.curvature : flat);
-  ray.is_curved = ray.is_curved || point.is_smooth;
-}
-
-// The direction in which the ray leaves its hit diffusely, the normal along z. Neighbours are neighbours no more deeper in a
-// chain.
-Vec3 RayShooter::scatter_lobe(const Ray& ray, const Surface& surface, int batch) const {
-  if (surface.packet) return surface.packet->lobe(surface.lane);
-  if (ray.coherent) return cosine_lobe(scatter_point(settings_.seed, batch, ray.index, ray.depth - 1));
-  const auto index = static_cast<uint64_t>(ray.index);
-  return cosine_lobe(uniform2(settings_.seed, Stream::kBounce, index, static_cast<uint32_t>(ray.depth)));
-}
-
-void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch,
-                                PathBlock& block) const {
-  const Vec3& normal = surface.point.normal;
-  const Vec3 out = over_surface(normal, scatter_lobe(ray, surface, block.current_batch));
-  if (ray.coherent) begin_chain(ray, surface, probability, scratch);
-  ray.coefficient *= diffuse_coefficient(surface.response);
-  ray.area *= surface.area;
-  ray.diffuse |= uint64_t{1} << (ray.depth - 1);
-  ray.coherent = false;
-  ray.sequence = kOther;
-  ray.mirror = MirrorBounce{};
-  ray.last_was_mirror = false;
-  leave_diffuse(ray, surface, out, probability, scratch.chain);
-  if (settings_.is_polarized) scatter_polarized(ray, surface, out);
-  ray.direction = out;
-  ray.leg_length = 0.0;
-  ray.leg_density = probability * std::max(normal.dot(ray.direction), 1e-9) / kPi;
 }
 
 }  // namespace echopath

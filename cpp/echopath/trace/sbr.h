@@ -42,17 +42,32 @@ class RayShooter {
  private:
   struct Ray;      // what the ray carries
   struct Surface;  // where it is
+  struct RayAtHit;
   struct Scratch;
-  struct Odds;     // of going on
+  struct Odds {    // of going on
+    double specular = 0.0, diffuse = 0.0;
+  };
   struct Packet;   // of neighbouring rays up to their first hits
+  struct Departure;  // of a ray from a hit
   struct Chain;    // of diffuse hits
   using RayHits = std::array<Hit, 64>;
 
-  void shoot_packet(int64_t begin, int count, Packet& packet, Scratch& scratch, PathBlock& block) const;
-  void look_at_receiver(int count, Packet& packet, PathBlock& block) const;
-  Ray launched(int64_t index, int stratum, const Vec3& direction) const;
-  void launch_packet(int64_t begin, int count, Packet& packet) const;
+  // sbr_packet.cpp: to the first hits, and from there as far as it can be told lane by lane.
+  void shoot_packet(Packet& packet, Scratch& scratch, PathBlock& block) const;
+  void launch_packet(Packet& packet) const;
+  void arrive_packet(Packet& packet, PathBlock& block) const;
+  void look_at_surface(Packet& packet, int lane) const;
+  void look_at_receiver(Packet& packet, PathBlock& block) const;
+  void shoot_lane(const Packet& packet, int lane, Scratch& scratch, PathBlock& block) const;
+  static void add_echoes(const Packet& packet, int lane, PathBlock& block);
+  static Departure departure_of(const Packet& packet, int lane);
+  RayAtHit& start(const Packet& packet, int lane, Scratch& scratch) const;
+  // One ray.
   void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
+  EmbreeScene::Verdict ask(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
+  bool travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch, PathBlock& block) const;
+  bool arrive(Ray& ray, Surface& surface, PathBlock& block) const;
+  void settle(Ray& ray, Surface& surface) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   struct MirrorBounce;
@@ -62,8 +77,6 @@ class RayShooter {
               bool with_reversal, PathBlock& block) const;
   static RayHits way_back_over(const Ray& ray, const Leg& leg);
   void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
-  bool advance(Ray& ray, Surface& surface, PathBlock& block) const;
-  bool arrive(Ray& ray, EmbreeScene::Verdict verdict, Surface& surface, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
@@ -77,12 +90,14 @@ class RayShooter {
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const;
   void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
                   PathBlock& block) const;
-  bool bounce(Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
-  void bounce_specular(Ray& ray, const Surface& surface, double probability, Chain& chain) const;
+  // sbr_bounce.cpp
+  Departure depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const;
+  bool bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
+  void bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Chain& chain) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
-  void bounce_diffuse(Ray& ray, const Surface& surface, double probability, Scratch& scratch, PathBlock& block) const;
-  Vec3 scatter_lobe(const Ray& ray, const Surface& surface, int batch) const;
-  Odds odds_of(const Surface& surface, const SurfaceResponse& response) const;
+  void bounce_diffuse(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
+  Vec3 scatter_lobe(const Ray& ray, int batch) const;
+  Odds odds_of(const SurfaceModel& model, const SurfaceResponse& response) const;
   static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
   SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;
   // sbr_diffuse.cpp: chains of several diffuse hits.
@@ -120,9 +135,11 @@ class RayShooter {
   AntennaView transmitter_, receiver_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
   std::vector<SurfaceModel> models_;  // by mesh ID
+  std::vector<Odds> constant_odds_;   // by mesh ID, of models that are constant
   std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then
+  bool has_only_direct_legs_ = false;  // and no fields to follow
 };
 
 }  // namespace echopath

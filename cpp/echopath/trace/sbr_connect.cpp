@@ -10,7 +10,6 @@
 namespace echopath {
 namespace {
 
-constexpr double kNearAntenna = 1e-3;  // m
 // Of the hits that aimed rays make on a mirror, those that become diffuse echoes: such a ray is about an object behind, and
 // the patch of mirror that lies in its way has nothing over the rest of the plane, which the field of view samples.
 constexpr double kMirrorShare = 0.125;
@@ -97,11 +96,12 @@ void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, 
                         bool with_reversal, PathBlock& block) const {
   const int count = ray.depth + leg.num_bounces;
   if (count > settings_.max_bounces) return;
-  if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, weight, ray.stratum);
-  else block.add(way_back_over(ray, leg).data(), count, bits, weight, ray.stratum);
+  const std::complex<float> rounded(weight);
+  if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, rounded, ray.stratum);
+  else block.add(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
   if (!with_reversal) return;
-  block.add_reversal(way_back_over(ray, leg).data(), count, bits, weight, ray.stratum);
+  block.add_reversal(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
 }
 
@@ -193,7 +193,7 @@ void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scrat
     return record_fan(ray, surface, weight, scratch, block);
   }
   const std::complex<double> own = weight * diffuse_coefficient(surface.response) * ray.coefficient;
-  block.add_prefix(ray.depth, uint64_t{1} << (ray.depth - 1), own, ray.stratum);
+  block.add_prefix(ray.depth, uint64_t{1} << (ray.depth - 1), std::complex<float>(own), ray.stratum);
 }
 
 void RayShooter::record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
@@ -224,7 +224,7 @@ void RayShooter::record_matrices(const Ray& ray, const Surface& surface, std::co
       const int count = in.num_bounces + 1 + out.num_bounces;
       if (count > settings_.max_bounces) continue;
       const auto hits = pair_hits(in, surface.point.hit, out);
-      block.add(hits.data(), count, uint64_t{1} << in.num_bounces, weight, ray.stratum);
+      block.add(hits.data(), count, uint64_t{1} << in.num_bounces, std::complex<float>(weight), ray.stratum);
       block.set_jones(pair_matrix(surface, scratch, i, j));
     }
   }

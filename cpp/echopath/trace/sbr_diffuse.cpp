@@ -70,7 +70,7 @@ void RayShooter::leave_diffuse(const Ray& ray, const Surface& surface, const Vec
   }
   if (surface.point.normal.dot(out) < kGrazing) chain.odds = 0.0;  // the opposite ray would be dropped
   if (is_first) return;
-  chain.odds *= chain.held * odds_of(surface, response).diffuse / probability;
+  chain.odds *= chain.held * odds_of(*surface.model, response).diffuse / probability;
   chain.held = survival_of(response, kRouletteBounce);
 }
 
@@ -78,7 +78,7 @@ void RayShooter::leave_diffuse(const Ray& ray, const Surface& surface, const Vec
 void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double probability, Chain& chain) const {
   const SurfaceResponse& response = surface.response;
   chain.coefficient *= response.gamma * response.coherent;
-  chain.odds *= chain.held * odds_of(surface, response).specular / probability;
+  chain.odds *= chain.held * odds_of(*surface.model, response).specular / probability;
   chain.held = survival_of(response, kRouletteBounce);
   // Of several bounces in a row, whether unflagged surfaces are large enough is judged differently in the other order, which
   // is left to its own rays.
@@ -105,7 +105,7 @@ double RayShooter::share_of_order(const Surface& surface, const SurfaceResponse&
   if (chain.odds == 0) return 1.0;
   const double density = cones_.density(leg.at_antenna) * leg.specular_share * surface.point.normal.dot(leg.to_antenna) /
                          (leg.length * leg.length);
-  const double probability = odds_of(surface, response).diffuse * survival_of(response, leg.num_bounces + 1);
+  const double probability = odds_of(*surface.model, response).diffuse * survival_of(response, leg.num_bounces + 1);
   return 1.0 / (1.0 + chain.odds * density * probability / chain.density);
 }
 
@@ -144,7 +144,7 @@ void RayShooter::record_reversed(const Ray& ray, const Chain& chain, const Leg& 
   }
   int count = ray.depth;
   for (int k = 0; k < leg.num_bounces; ++k) hits[static_cast<size_t>(count++)] = leg.bounces[static_cast<size_t>(k)].hit;
-  block.add_reversal(hits.data(), count, bits, weight, ray.stratum);
+  block.add_reversal(hits.data(), count, bits, std::complex<float>(weight), ray.stratum);
 }
 
 }  // namespace echopath

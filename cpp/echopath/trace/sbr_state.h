@@ -1,5 +1,5 @@
 #pragma once
-// What sbr.cpp and sbr_connect.cpp share: the state of a ray. Internal to the module.
+// What the sbr_*.cpp share: the state of a ray. Internal to the module.
 #include <array>
 #include <cmath>
 #include <optional>
@@ -10,6 +10,7 @@
 
 namespace echopath {
 
+inline constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
 inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
 // Rays leave this bounce and later ones by Russian roulette. Of a chain of diffuse hits its own bounces count, so that the
 // odds of its orders do not depend on how they were reached.
@@ -60,25 +61,63 @@ struct RayShooter::Surface {
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
   Sight receiver = Sight::kUnknown;  // as seen from here
   HitChance chance;
-  const PacketChance* packet = nullptr;  // of the packet that this hit is one of, null behind first hits
-  int lane = 0;                          // there
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
-struct RayShooter::Packet {
-  std::array<int, kPacketSize> strata, batches;
-  std::array<Eigen::Vector2d, kPacketSize> points;
-  std::array<Vec3, kPacketSize> directions;
-  PacketChance chance;  // of the first hits
-  std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
-  std::array<RayHit, kPacketSize> hits;
-  std::array<Sight, kPacketSize> receiver;  // from the hits
-  std::array<Segment, kPacketSize> segments;
-  std::array<uint8_t, kPacketSize> blocked;
+struct RayShooter::RayAtHit {
+  Ray ray;
+  Surface surface;
+
+  RayAtHit() {}  // does not clear what its members leave as it is
 };
 
-struct RayShooter::Odds {
-  double specular = 0.0, diffuse = 0.0;
+// Neighbouring rays and their first hits, lane by lane.
+struct RayShooter::Packet {
+  int64_t begin = 0;  // index of the first ray
+  int count = 0;
+  LaunchPlan::Places places;
+  LaneVectors directions;
+  LaneValues densities;  // rays per sr of all strata toward there
+  PacketChance chance;
+  EmbreeScene::PacketHits hits;
+  LaneVectors lifted;        // the hits, off their surfaces
+  LaneValues cos_incidence;
+  LaneValues cos_receiver;   // positive where the receiver is on the lit side; not divided by its distance
+  LaneValues near_squared;   // m^2: to the nearest antenna
+  EmbreeScene::Lanes arrives;              // whether the ray is at a hit at all
+  std::array<Sight, kPacketSize> receiver;  // as seen from there
+  std::array<const SurfaceModel*, kPacketSize> models;
+  std::array<PolarizationMode, kPacketSize> modes;
+  LaneValues gamma_re, gamma_im, coherent, diffuse;  // the responses
+  LaneValues sign;                                   // of the field that comes back (sbr_connect.cpp)
+  LaneValues specular_odds, diffuse_odds;            // of going on that way, if it does
+  LaneVectors out;                                   // the direction in which it goes on
+  std::array<bool, kPacketSize> goes_on;             // whether anything does
+  std::array<bool, kPacketSize> is_plain;            // no legs but straight ones, and no field to follow
+  alignas(64) std::array<float, kPacketSize> field_re, field_im;  // weights of the coherent and the diffuse echo to the
+  alignas(64) std::array<float, kPacketSize> power_re, power_im;  // receiver
+
+  void set_response(int lane, const SurfaceResponse& response, const Odds& odds) {
+    gamma_re[lane] = response.gamma.real();
+    gamma_im[lane] = response.gamma.imag();
+    coherent[lane] = response.coherent;
+    diffuse[lane] = response.diffuse;
+    specular_odds[lane] = odds.specular;
+    diffuse_odds[lane] = odds.diffuse;
+    sign[lane] = modes[static_cast<size_t>(lane)] == PolarizationMode::kTm ? -1.0 : 1.0;
+  }
+  SurfaceResponse response(int lane) const { return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane]}; }
+};
+
+// How a ray leaves a hit.
+struct RayShooter::Departure {
+  Vec3 from, direction;
+  bool is_specular = false;
+  double odds = 1.0;      // of that, where the ray goes on
+  double survival = 1.0;  // probability that it does
+  bool ends = false;
+
+  double probability() const { return odds * survival; }
 };
 
 // The hits of a ray from its first diffuse one on, which other rays meet in the opposite order (sbr_diffuse.cpp).
@@ -107,6 +146,7 @@ struct RayShooter::Scratch {
   bool has_receive = false;                     // `receive` is that of the ray's hit
   LegSearch search;
   Chain chain;  // of rays that have left a diffuse hit
+  RayAtHit first;  // the ray of a packet that is followed now
 };
 
 // |Gamma| S: of the field that a diffuse hit scatters.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int64_t kRaysPerBlock = 256;
 // What is shot before it becomes part of the record: small enough for caches, and many blocks for each thread.
-constexpr int64_t kBlocksPerWave = 64, kBlocksPerThread = 32;
+constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
 constexpr int64_t kBlocksAhead = 64;  // that tell how large a record of several waves will be
 
 // The whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.

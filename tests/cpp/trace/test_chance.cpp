@@ -27,7 +27,7 @@ TEST(Chance, PacketsHoldTheNumbersOfEachRay) {
         EXPECT_EQ(found.lobe_coin, expected.lobe_coin);
         EXPECT_EQ(found.survival_coin, expected.survival_coin);
         const Vec3 lobe = cosine_lobe(scatter_point(kSeed, batches[static_cast<size_t>(lane)], first + lane, 0));
-        EXPECT_LT((packet.lobe(lane) - lobe).norm(), kRounding);
+        EXPECT_LT((packet.lobe[lane] - lobe).norm(), kRounding);
       }
     }
   }

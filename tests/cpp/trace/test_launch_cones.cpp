@@ -65,10 +65,10 @@ TEST(LaunchCones, ProjectionKeepsAreas) {
     const Stratum stratum = cone({1, 2, 3}, half_angle, 1.0);
     const ConeFrame frame(stratum);
     for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
-      const Vec3 direction = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.6, -0.8));
+      const Vec3 direction = packed(frame.direction(0.6 * std::sqrt(share), -0.8 * std::sqrt(share)));
       EXPECT_NEAR(direction.norm(), 1.0, kRounding);
       // A quarter of a turn about the axis stays one.
-      const Vec3 turned = frame.direction(std::sqrt(share) * Eigen::Vector2d(0.8, 0.6));
+      const Vec3 turned = packed(frame.direction(0.8 * std::sqrt(share), 0.6 * std::sqrt(share)));
       EXPECT_LT((turned - stratum.axis.cross(direction) - stratum.axis.dot(direction) * stratum.axis).norm(), kRounding);
       EXPECT_NEAR(0.5 * (direction - stratum.axis).squaredNorm(), share * stratum.versine, kRounding);
     }
@@ -84,16 +84,14 @@ TEST(LaunchPlan, RaysInARowAreThoseOneByOne) {
     plan.strata.emplace_back();
     plan.first_ray.push_back(plan.first_ray.back() + count);
   }
-  constexpr int kRow = 16;
-  for (int64_t begin = 0; begin + kRow <= plan.first_ray.back(); begin += 5) {
-    std::array<int, kRow> strata, batches;
-    std::array<Eigen::Vector2d, kRow> points;
-    plan.points_of(begin, kRow, {strata.data(), batches.data(), points.data()});
-    for (int i = 0; i < kRow; ++i) {
-      const int stratum = plan.stratum_of(begin + i);
-      EXPECT_EQ(strata[i], stratum);
-      EXPECT_EQ(batches[i], plan.batch_of(stratum, begin + i));
-      EXPECT_EQ(points[i], plan.point_of(stratum, begin + i));
+  for (int64_t begin = 0; begin + kPacketSize <= plan.first_ray.back(); begin += 5) {
+    LaunchPlan::Places places;
+    plan.place(begin, kPacketSize, places);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      const int stratum = plan.stratum_of(begin + lane);
+      EXPECT_EQ(places.strata[static_cast<size_t>(lane)], stratum);
+      EXPECT_EQ(places.batches[static_cast<size_t>(lane)], plan.batch_of(stratum, begin + lane));
+      EXPECT_EQ(Eigen::Vector2d(places.x[lane], places.y[lane]), plan.point_of(stratum, begin + lane));
     }
   }
 }

@@ -98,12 +98,12 @@ TEST(PathBlock, OrderIsThatOfAdding) {
   PathBlock block;
   const Hit ray[] = {hit(7), hit(8)};
   const Legs legs{{{}, {1}}, {{}}};
-  block.add(ray, 1, 1, Complex(2.0, 0.0), 0);
+  block.add(ray, 1, 1, std::complex<float>(2.0, 0.0), 0);
   add_fan(block, legs, 4);
-  block.add_prefix(2, 1, Complex(3.0, 0.0), 0);
+  block.add_prefix(2, 1, std::complex<float>(3.0, 0.0), 0);
   block.end_ray(ray);
   add_fan(block, legs, 4);
-  block.add_reversal(ray, 2, 1, Complex(4.0, 0.0), 0);
+  block.add_reversal(ray, 2, 1, std::complex<float>(4.0, 0.0), 0);
   std::vector<Expected> expected = {{{7}, 1, 2.0}};
   const std::vector<Expected> fan = pairs(legs, 4);
   expected.insert(expected.end(), fan.begin(), fan.end());
@@ -112,7 +112,7 @@ TEST(PathBlock, OrderIsThatOfAdding) {
   expected.push_back({{8, 7}, 2, 4.0});
   // Behind a block of its own, so that places are not those of the block.
   std::vector<PathBlock> blocks(3);
-  blocks[0].add(ray, 2, 3, Complex(5.0, 0.0), 0);
+  blocks[0].add(ray, 2, 3, std::complex<float>(5.0, 0.0), 0);
   blocks[2] = block;
   expected.insert(expected.begin(), {{7, 8}, 3, 5.0});
   expect_paths(record_of(blocks), expected);
@@ -122,7 +122,7 @@ TEST(PathBlock, OptionalColumnsStayWithTheirPaths) {
   PathBlock block;
   const Hit ray[] = {hit(7)};
   add_fan(block, {{{}, {1}}, {{}}}, 4);
-  block.add(ray, 1, 0, Complex(2.0, 0.0), 0);
+  block.add(ray, 1, 0, std::complex<float>(2.0, 0.0), 0);
   block.set_curved_cell({1, 2, 3, 4, 5, 6, 7});
   add_fan(block, {{{}}, {{}}}, 4);
   const Paths paths = record_of({block});
@@ -138,7 +138,7 @@ TEST(RecordWriter, RecordDoesNotDependOnHowItGrew) {
   for (uint32_t k = 0; k < blocks.size(); ++k) {
     const Hit ray[] = {hit(k), hit(k + 10)};
     for (uint32_t i = 0; i <= k; ++i) {
-      blocks[k].add(ray, 2, i, Complex(1.0 + i, k), 0);
+      blocks[k].add(ray, 2, i, std::complex<float>(1.0f + static_cast<float>(i), static_cast<float>(k)), 0);
       expected.push_back({{k, k + 10}, i, Complex(1.0 + i, k)});
     }
     blocks[k].statistics.num_hits = 1 << k;
@@ -158,7 +158,7 @@ TEST(RecordWriter, RecordDoesNotDependOnHowItGrew) {
 TEST(RecordWriter, ExpectedBlocksMoveNothing) {
   std::vector<PathBlock> like(2);
   const Hit ray[] = {hit(1), hit(2)};
-  for (int i = 0; i < 30; ++i) like[1].add(ray, 2, 0, Complex(1.0, 0.0), 0);
+  for (int i = 0; i < 30; ++i) like[1].add(ray, 2, 0, std::complex<float>(1.0, 0.0), 0);
   like[1].set_curved_cell({1, 2, 3, 4, 5, 6, 7});
   Paths paths;
   RecordWriter record(paths);

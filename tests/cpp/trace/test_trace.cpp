@@ -168,20 +168,21 @@ TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
   for (int i = 0; i < 5000; ++i) {
     directions.push_back(Vec3(std::cos(0.01 * i), std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized());
   }
-  std::array<EmbreeScene::Verdict, kPacketSize> verdicts;
-  std::array<RayHit, kPacketSize> hits;
+  EmbreeScene::PacketHits hits;
   int num_hits = 0, num_different = 0;
   std::vector<Segment> segments;
   for (size_t begin = 0; begin < directions.size();) {
     const int count = std::min(1 + static_cast<int>(begin % kPacketSize), static_cast<int>(directions.size() - begin));
-    geometry.intersect(Vec3::Zero(), &directions[begin], count, verdicts.data(), hits.data());
+    LaneVectors lanes{};
+    for (int k = 0; k < count; ++k) lanes.set(k, unpacked(directions[begin + static_cast<size_t>(k)]));
+    geometry.intersect(Vec3::Zero(), lanes, count, hits);
     for (int k = 0; k < count; ++k, ++begin) {
       RayHit single;
       const EmbreeScene::Verdict verdict = geometry.intersect(Vec3::Zero(), directions[begin], single);
-      num_different += verdict != verdicts[static_cast<size_t>(k)] ? 1 : 0;
-      if (verdict != EmbreeScene::Verdict::kHit || verdicts[static_cast<size_t>(k)] != verdict) continue;
+      num_different += verdict != hits.verdicts[static_cast<size_t>(k)] ? 1 : 0;
+      if (verdict != EmbreeScene::Verdict::kHit || hits.verdicts[static_cast<size_t>(k)] != verdict) continue;
       ++num_hits;
-      num_different += (single.position - hits[static_cast<size_t>(k)].position).norm() > 1e-4 ? 1 : 0;
+      num_different += (single.position - hits[k].position).norm() > 1e-4 ? 1 : 0;
       segments.push_back({geometry.lifted(single.position, single.normal), Vec3(12.0, 0.4 * std::sin(1.0 * num_hits), 0.2)});
     }
   }

@@ -1,0 +1,39 @@
+#pragma once
+// Rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
+#include <cstddef>
+
+#include "echopath/base/geometry.h"
+#include "echopath/base/vector_of.h"
+
+namespace echopath {
+
+inline constexpr int kPacketSize = 16;  // rays that Embree follows at a time
+
+struct LaneRange {
+  int begin, end;
+};
+
+// Not set at first.
+struct alignas(64) LaneValues {
+  double lanes[kPacketSize];
+
+  ECHOPATH_INLINE double& operator[](int lane) { return lanes[lane]; }
+  ECHOPATH_INLINE double operator[](int lane) const { return lanes[lane]; }
+};
+
+struct LaneVectors {
+  LaneValues x, y, z;
+
+  ECHOPATH_INLINE VectorOf<double> at(int lane) const { return {x[lane], y[lane], z[lane]}; }
+  ECHOPATH_INLINE void set(int lane, const VectorOf<double>& value) {
+    x[lane] = value.x;
+    y[lane] = value.y;
+    z[lane] = value.z;
+  }
+  Vec3 operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
+};
+
+ECHOPATH_INLINE VectorOf<double> unpacked(const Vec3& v) { return {v[0], v[1], v[2]}; }
+ECHOPATH_INLINE Vec3 packed(const VectorOf<double>& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace echopath

@@ -14,12 +14,14 @@ struct LaneRange {
 };
 
 // Not set at first.
-struct alignas(64) LaneValues {
-  double lanes[kPacketSize];
+template <class Value>
+struct alignas(64) LanesOf {
+  Value lanes[kPacketSize];
 
-  ECHOPATH_INLINE double& operator[](int lane) { return lanes[lane]; }
-  ECHOPATH_INLINE double operator[](int lane) const { return lanes[lane]; }
+  ECHOPATH_INLINE Value& operator[](int lane) { return lanes[lane]; }
+  ECHOPATH_INLINE Value operator[](int lane) const { return lanes[lane]; }
 };
+using LaneValues = LanesOf<double>;
 
 struct LaneVectors {
   LaneValues x, y, z;

@@ -39,11 +39,11 @@ ECHOPATH_INLINE void weigh_lanes(Packet* packet) {
     const double distance = packet->hits.distance[lane], re = packet->gamma_re[lane], im = packet->gamma_im[lane];
     const double area = distance * distance / (packet->densities[lane] * packet->cos_incidence[lane]);
     const double field = area * packet->hits.stretch[lane] * packet->coherent[lane] * packet->sign[lane];
-    packet->field_re.data()[lane] = static_cast<float>(-im * field);
-    packet->field_im.data()[lane] = static_cast<float>(re * field);
+    packet->field_re[lane] = static_cast<float>(-im * field);
+    packet->field_im[lane] = static_cast<float>(re * field);
     const double power = ScalarMath::root(area) * ScalarMath::root(re * re + im * im) * packet->diffuse[lane];
-    packet->power_re.data()[lane] = static_cast<float>(power * packet->chance.phase_re[lane]);
-    packet->power_im.data()[lane] = static_cast<float>(power * packet->chance.phase_im[lane]);
+    packet->power_re[lane] = static_cast<float>(power * packet->chance.phase_re[lane]);
+    packet->power_im[lane] = static_cast<float>(power * packet->chance.phase_im[lane]);
   }
 }
 
@@ -152,8 +152,8 @@ void RayShooter::add_echoes(const Packet& packet, int lane, PathBlock& block) {
   const auto k = static_cast<size_t>(lane);
   if (packet.receiver[k] != Sight::kOpen) return;
   const int stratum = packet.places.strata[k];
-  if (packet.coherent[lane] > 0) block.add_prefix(1, 0, {packet.field_re[k], packet.field_im[k]}, stratum);
-  if (packet.diffuse[lane] > 0) block.add_prefix(1, 1, {packet.power_re[k], packet.power_im[k]}, stratum);
+  if (packet.coherent[lane] > 0) block.add_prefix(1, 0, {packet.field_re[lane], packet.field_im[lane]}, stratum);
+  if (packet.diffuse[lane] > 0) block.add_prefix(1, 1, {packet.power_re[lane], packet.power_im[lane]}, stratum);
 }
 
 RayShooter::Departure RayShooter::departure_of(const Packet& packet, int lane) {

@@ -94,8 +94,7 @@ struct RayShooter::Packet {
   LaneVectors out;                                   // the direction in which it goes on
   std::array<bool, kPacketSize> goes_on;             // whether anything does
   std::array<bool, kPacketSize> is_plain;            // no legs but straight ones, and no field to follow
-  alignas(64) std::array<float, kPacketSize> field_re, field_im;  // weights of the coherent and the diffuse echo to the
-  alignas(64) std::array<float, kPacketSize> power_re, power_im;  // receiver
+  LanesOf<float> field_re, field_im, power_re, power_im;  // weights of the coherent and the diffuse echo to the receiver
 
   void set_response(int lane, const SurfaceResponse& response, const Odds& odds) {
     gamma_re[lane] = response.gamma.real();

@@ -16,7 +16,7 @@ from .timing import processor_time, wall_time
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share
 LINEAR_ROUNDS = 9
-TRIAL_RAYS = 2_000                              # that tell how many paths come of a ray
+TRIAL_RAYS = 16_000                             # that tell how many paths come of a ray
 MARGIN = 1.02                                   # of rays, since records differ in paths per ray by a per cent
 FRAME_CHIRPS = 16                               # of the frames that the number of paths is varied of
 MEASURED_PATHS = 10_000_000                     # in all repeats of a frame; 5 to 31 repeats

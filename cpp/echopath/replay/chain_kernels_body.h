@@ -1,6 +1,7 @@
 // The inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
 // ECHOPATH_LANES set (no include guard).
 #include "echopath/base/phasor.h"
+#include "echopath/base/vector_of.h"
 #include "echopath/replay/chain_formula.h"
 #include "echopath/replay/chain_kernels.h"
 #include "echopath/signal/vector.h"
@@ -73,24 +74,6 @@ struct OneMath : ScalarMath {
   static ECHOPATH_INLINE void store(double* to, double x) { *to = x; }
 };
 
-template <class Real>
-struct Vector {
-  Real x, y, z;
-};
-
-template <class Real>
-ECHOPATH_INLINE Vector<Real> operator-(const Vector<Real>& a, const Vector<Real>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class Real>
-ECHOPATH_INLINE Vector<Real> operator*(Real factor, const Vector<Real>& a) {
-  return {factor * a.x, factor * a.y, factor * a.z};
-}
-template <class Real>
-ECHOPATH_INLINE Real dot(const Vector<Real>& a, const Vector<Real>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // Rows at some neighbouring nodes.
 template <class Math>
 struct At {
@@ -98,17 +81,17 @@ struct At {
   size_t node, stride;
 
   ECHOPATH_INLINE Real value(const double* rows, int row) const { return Math::load(rows + static_cast<size_t>(row) * stride + node); }
-  ECHOPATH_INLINE Vector<Real> vector(const double* rows, int row) const {
+  ECHOPATH_INLINE VectorOf<Real> vector(const double* rows, int row) const {
     return {value(rows, row), value(rows, row + 1), value(rows, row + 2)};
   }
   ECHOPATH_INLINE void set(double* rows, int row, Real x) const { Math::store(rows + static_cast<size_t>(row) * stride + node, x); }
-  ECHOPATH_INLINE void set(double* rows, int row, const Vector<Real>& v) const {
+  ECHOPATH_INLINE void set(double* rows, int row, const VectorOf<Real>& v) const {
     set(rows, row, v.x);
     set(rows, row + 1, v.y);
     set(rows, row + 2, v.z);
   }
   // A vector of a mesh's frame in the world.
-  ECHOPATH_INLINE Vector<Real> turned(const double* mesh, const double* v) const {
+  ECHOPATH_INLINE VectorOf<Real> turned(const double* mesh, const double* v) const {
     const auto along = [&](int axis) {
       return value(mesh, 3 * axis) * v[0] + value(mesh, 3 * axis + 1) * v[1] + value(mesh, 3 * axis + 2) * v[2];
     };
@@ -195,20 +178,20 @@ void reflect(const CoherentPath& coherent, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
     const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
-    const Vector<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
+    const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
     const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
     CellWaves<Real> waves;
     waves.inverse_in = 1.0 / in;
     waves.inverse_out = 1.0 / out;
-    const Vector<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
+    const VectorOf<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
                                             : waves.inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
-    const Vector<Real> departure = waves.inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
+    const VectorOf<Real> departure = waves.inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
     const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
     waves.cos_in = Math::magnitude(cos_in);
     waves.cos_out = Math::magnitude(cos_out);
     waves.side = Math::with_sign_of(Real{} + 1.0, cos_in);
     for (int a = 0; a < 2; ++a) {
-      const Vector<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
+      const VectorOf<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
       waves.along_arrival[a] = dot(tangent, arrival);
       waves.along_departure[a] = dot(tangent, departure);
     }

@@ -32,60 +32,54 @@ struct FlatCell {
   Vec product[3];
 };
 
-ECHOPATH_INLINE Vector<Vec> vector_at(Rows3 rows, size_t slot) {
+ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {
   return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
 }
-ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const Vector<Vec>& v) {
+ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const VectorOf<Vec>& v) {
   store(rows[0] + slot, v.x);
   store(rows[1] + slot, v.y);
   store(rows[2] + slot, v.z);
 }
-ECHOPATH_INLINE Vector<Vec> operator+(const Vector<Vec>& a, const Vector<Vec>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-ECHOPATH_INLINE Vector<Vec> cross(const Vector<Vec>& a, const Vector<Vec>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-ECHOPATH_INLINE Vector<Vec> times(const double* matrix, const Vector<Vec>& v) {
+ECHOPATH_INLINE VectorOf<Vec> times(const double* matrix, const VectorOf<Vec>& v) {
   const auto along = [&](int axis) {
     return matrix[3 * axis] * v.x + matrix[3 * axis + 1] * v.y + matrix[3 * axis + 2] * v.z;
   };
   return {along(0), along(1), along(2)};
 }
-ECHOPATH_INLINE Vector<Vec> choose(Mask first, const Vector<Vec>& a, const Vector<Vec>& b) {
+ECHOPATH_INLINE VectorOf<Vec> choose(Mask first, const VectorOf<Vec>& a, const VectorOf<Vec>& b) {
   return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
 }
 
 // Any unit vector across a unit vector.
-ECHOPATH_INLINE Vector<Vec> orthogonal(const Vector<Vec>& v) {
+ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
   const Vec least = 1e-12 * LaneMath::magnitude(v.z);
   const Mask is_upright = (LaneMath::magnitude(v.x) <= least) & (LaneMath::magnitude(v.y) <= least);
   const Vec of_xy = 1.0 / LaneMath::root(v.x * v.x + v.y * v.y), of_yz = 1.0 / LaneMath::root(v.y * v.y + v.z * v.z);
   return choose(is_upright, {Vec{}, -v.z * of_yz, v.y * of_yz}, {-v.y * of_xy, v.x * of_xy, Vec{}});
 }
 
-ECHOPATH_INLINE Mask is_finite(const Vector<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
+ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
 
 // Where the point is, and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
 void prepare(const DirectTrace& trace, DirectSlots& slots) {
   for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
-    const Vector<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
+    const VectorOf<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
     const Vec u = load(slots.along_edge[0] + slot), v = load(slots.along_edge[1] + slot);
-    const Vector<Vec> point = vector_at(slots.corner, slot) + u * edge_u + v * edge_v;
-    const Vector<Vec> across = times(trace.normal, cross(edge_u, edge_v));
-    const Vector<Vec> normal = (1.0 / LaneMath::root(dot(across, across))) * across;
-    const Vector<Vec> moved{all(trace.translation[0]), all(trace.translation[1]), all(trace.translation[2])};
-    const Vector<Vec> at = times(trace.linear, point) + moved;
+    const VectorOf<Vec> point = vector_at(slots.corner, slot) + u * edge_u + v * edge_v;
+    const VectorOf<Vec> across = times(trace.normal, cross(edge_u, edge_v));
+    const VectorOf<Vec> normal = (1.0 / LaneMath::root(dot(across, across))) * across;
+    const VectorOf<Vec> moved{all(trace.translation[0]), all(trace.translation[1]), all(trace.translation[2])};
+    const VectorOf<Vec> at = times(trace.linear, point) + moved;
     const Vec length = LaneMath::root(dot(at, at));
-    const Vector<Vec> arrival = (1.0 / length) * at;
+    const VectorOf<Vec> arrival = (1.0 / length) * at;
     const Vec cos_in = dot(normal, arrival), side = length / LaneMath::root(load(slots.density + slot));  // of the tube, m
-    const Vector<Vec> slope = arrival - cos_in * normal;
+    const VectorOf<Vec> slope = arrival - cos_in * normal;
     const Vec sine = LaneMath::root(dot(slope, slope));
-    const Vector<Vec> along = choose(sine > 1e-9, (1.0 / sine) * slope, orthogonal(normal));
-    const Vector<Vec> first = (side / LaneMath::larger(LaneMath::magnitude(cos_in), all(1e-3))) * along;
-    const Vector<Vec> second = side * cross(normal, along), none{};
+    const VectorOf<Vec> along = choose(sine > 1e-9, (1.0 / sine) * slope, orthogonal(normal));
+    const VectorOf<Vec> first = (side / LaneMath::larger(LaneMath::magnitude(cos_in), all(1e-3))) * along;
+    const VectorOf<Vec> second = side * cross(normal, along), none{};
     const Mask has_cell = is_finite(first) & is_finite(second);
-    const Vector<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
+    const VectorOf<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
     set_vector(slots.point, slot, at);
     set_vector(slots.normal, slot, normal);
     for (int a = 0; a < 2; ++a) set_vector(slots.tangent[a], slot, tangent[a]);
@@ -98,7 +92,7 @@ void prepare(const DirectTrace& trace, DirectSlots& slots) {
 
 // v times the matrix.
 template <class Real>
-ECHOPATH_INLINE Vector<Real> times_transposed(const double* matrix, const Vector<Real>& v) {
+ECHOPATH_INLINE VectorOf<Real> times_transposed(const double* matrix, const VectorOf<Real>& v) {
   const auto along = [&](int axis) { return matrix[axis] * v.x + matrix[3 + axis] * v.y + matrix[6 + axis] * v.z; };
   return {along(0), along(1), along(2)};
 }
@@ -113,7 +107,7 @@ void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
         const auto entry = [&](int row) { return at.value(antenna.mesh, PointToPose::kLinear + 3 * row + axis); };
         return entry(0) * v.x + entry(1) * v.y + entry(2) * v.z;
       };
-      return times_transposed(trace.mesh_from_trace, Vector<typename Math::Real>{along(0), along(1), along(2)});
+      return times_transposed(trace.mesh_from_trace, VectorOf<typename Math::Real>{along(0), along(1), along(2)});
     };
     const auto moved = at.vector(antenna.mesh, PointToPose::kTranslation);
     const auto position = turned_back(at.vector(antenna.antenna, LegToMeasure::kImagePosition) - moved);
@@ -125,7 +119,7 @@ void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
 }
 
 struct PointLanes {
-  Vector<Vec> point, normal, tangent[2];
+  VectorOf<Vec> point, normal, tangent[2];
 };
 
 ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
@@ -143,7 +137,7 @@ ECHOPATH_INLINE Vec root_gain_of(const DirectAntenna& antenna, Vec cosine) {
 ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
                                  const PointLanes& at, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
-  const Vector<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
+  const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
                          at.point.z - value(LegToMeasure::kImagePosition + 2)};
   const Roots distance = roots_of(dot(line, line));
   const Vec inverse = distance.inverse, cosine = -inverse * dot(at.normal, line);

@@ -100,6 +100,17 @@ def test_a_probe_sees_every_path_and_changes_nothing(paths):
     assert probe.power_sum[0] == pytest.approx(power.sum(), rel=1e-4)
 
 
+def test_a_probe_changes_no_bit_of_what_is_evaluated_in_every_chirp():
+    """Hundreds of echoes of amplitudes that no polynomial follows, over one and over two hits."""
+    scene, rough = ep.Scene(), ep.Material(reflectivity=0.6, scattering=0.7)
+    scene.add(ep.actors.box((2.0, 1.0, 1.0)), name="rotor", material=rough, position=(5, 0, 1),
+              motion=ep.LinearMotion(angular_velocity=(0, 0, 1500)))
+    scene.add(ep.actors.wall(20.0, 6.0), name="wall", position=(8, 3, 0), material=rough)
+    paths = ep.trace(scene, make_radar(), num_rays=3000, max_bounces=2, seed=2)
+    assert shares_hits(paths).sum() > 1000
+    assert np.array_equal(ep.synthesize(paths, probe=ep.SignalProbe(seed=3)), ep.synthesize(paths))
+
+
 def test_bits_do_not_depend_on_the_number_of_threads(paths):
     cubes = []
     try:

@@ -158,13 +158,14 @@ void combine(const DiffusePath& diffuse, size_t stride) {
   const PathToCombine& path = diffuse.path;
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
-    auto length = at.value(path.start, LegToMeasure::kLength) + at.value(path.end, LegToMeasure::kLength);
+    auto length = at.value(path.start, LegToMeasure::kLength);  // added up as in `reflect`: both may be of one echo
     const auto start = at.value(path.start, LegToMeasure::kFactor), end = at.value(path.end, LegToMeasure::kFactor);
     auto size = diffuse_product<Math>(start, end);
     if (path.inner) {
       length = length + at.value(path.inner, InnerRows::kLength);
       size = diffuse_size<Math>(diffuse, at, start, end);
     }
+    length = length + at.value(path.end, LegToMeasure::kLength);
     at.set(path.out, PathToCombine::kLength, length);
     at.set(path.out, PathToCombine::kRe, path.re * size);
     at.set(path.out, PathToCombine::kIm, path.im * size);

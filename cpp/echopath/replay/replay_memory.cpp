@@ -2,27 +2,21 @@
 
 #include <utility>
 
+#include "echopath/base/kept_memory.h"
+
 namespace echopath {
 namespace {
 
-std::mutex kept_mutex;
-std::unique_ptr<ReplayMemory> kept;
+KeptMemory<ReplayMemory>& kept() {
+  static KeptMemory<ReplayMemory>& memory = *new KeptMemory<ReplayMemory>;  // threads may outlive what is static
+  return memory;
+}
 
 }  // namespace
 
-std::unique_ptr<ReplayMemory> ReplayMemory::take() {
-  {
-    const std::lock_guard lock(kept_mutex);
-    if (kept) return std::move(kept);
-  }
-  return std::make_unique<ReplayMemory>();
-}
+std::unique_ptr<ReplayMemory> ReplayMemory::take() { return kept().take(); }
 
-void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) {
-  if (memory->num_bytes() > kMostKept) return;
-  const std::lock_guard lock(kept_mutex);
-  kept.swap(memory);
-}
+void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) { kept().leave(std::move(memory)); }
 
 std::unique_ptr<ReplayWorkspace> ReplayMemory::take_workspace() {
   const std::lock_guard lock(mutex_);

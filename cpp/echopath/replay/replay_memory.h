@@ -19,20 +19,16 @@ struct ReplayWorkspace {
 // Thread-safe.
 class ReplayMemory {
  public:
-  static constexpr size_t kMostKept = size_t{64} << 20;  // bytes, in the whole process
-
-  // What the last replay left, or none yet.
+  // What another left, or new; see KeptMemory.
   static std::unique_ptr<ReplayMemory> take();
-  // For the next: the one that is kept; none that is larger than kMostKept.
   static void leave(std::unique_ptr<ReplayMemory> memory);
 
   SpareEchoes echoes;
   std::unique_ptr<ReplayWorkspace> take_workspace();
   void give(std::unique_ptr<ReplayWorkspace> workspace);
+  size_t num_bytes() const;  // of what is not in use
 
  private:
-  size_t num_bytes() const;
-
   std::mutex mutex_;
   std::vector<std::unique_ptr<ReplayWorkspace>> workspaces_;  // not in use
 };

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <thread>
@@ -114,6 +115,30 @@ TEST_F(ParallelFor, RunBothRethrowsWhatEitherThrows) {
   EXPECT_THROW(run_both(fails, nothing), FileError);
   EXPECT_THROW(run_both(nothing, fails), FileError);
   EXPECT_THROW(run_both([] { parallel_for(kCount, [](int64_t) { throw FileError("disk"); }); }, nothing), FileError);
+}
+
+// The side that throws waits until the loop of the other has begun.
+TEST_F(ParallelFor, RunBothEndsTheLoopOfOneSideWhereTheOtherThrows) {
+  constexpr int64_t kSteps = 1000;
+  for (const int threads : {2, 4}) {
+    set_num_threads(threads);
+    for (const bool first_throws : {false, true}) {
+      std::atomic<int64_t> calls = 0;
+      const std::function<void()> fails = [&] {
+        while (calls == 0) std::this_thread::yield();
+        throw FileError("disk");
+      };
+      const std::function<void()> counts = [&] {
+        parallel_for(kSteps, [&](int64_t) {
+          std::this_thread::sleep_for(std::chrono::microseconds(1));
+          ++calls;
+        });
+        EXPECT_EQ(calls, kSteps) << threads << " threads";
+      };
+      EXPECT_THROW(run_both(first_throws ? fails : counts, first_throws ? counts : fails), FileError);
+      EXPECT_EQ(calls, kSteps) << threads << " threads";
+    }
+  }
 }
 
 TEST_F(ParallelFor, RunBothFlushesDenormalsInsideAndRestoresTheCallersMode) {

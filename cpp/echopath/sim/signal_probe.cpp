@@ -37,14 +37,14 @@ struct SampleRow {
 // Carriers side by side.
 constexpr int kMostLanes = 8;
 template <int kLanes>
-struct LanesOf;
+struct VectorOfLanes;
 template <>
-struct LanesOf<4> {
+struct VectorOfLanes<4> {
   typedef double Vector __attribute__((vector_size(32)));
   typedef double Unaligned __attribute__((vector_size(32), aligned(8), may_alias));
 };
 template <>
-struct LanesOf<8> {
+struct VectorOfLanes<8> {
   typedef double Vector __attribute__((vector_size(64)));
   typedef double Unaligned __attribute__((vector_size(64), aligned(8), may_alias));
 };
@@ -54,8 +54,8 @@ struct LanesOf<8> {
 template <int kLanes>
 ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
                                double* sums) {
-  using Lanes = typename LanesOf<kLanes>::Vector;
-  using Unaligned = typename LanesOf<kLanes>::Unaligned;
+  using Lanes = typename VectorOfLanes<kLanes>::Vector;
+  using Unaligned = typename VectorOfLanes<kLanes>::Unaligned;
   const auto at = [](const double* from) -> Lanes { return *reinterpret_cast<const Unaligned*>(from); };
   Lanes sum_re[kSamples], sum_im[kSamples];
   for (int s = 0; s < kSamples; ++s) {

@@ -33,9 +33,8 @@ class Frame:
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
-    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when not
-    asked
-        for
+    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when
+        not asked for
     detections: Detections in its map, None when not asked for
     checks: list [C] of Check, what the guard of the run compared; [] when it was off
     stages: time and peak memory of each stage

@@ -291,7 +291,6 @@ std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
   return bits;
 }
 
-
 namespace {
 
 constexpr size_t kWord = sizeof(uint64_t);

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 
-
 from .. import _core
 from .powers import decomposed
 

@@ -166,7 +166,7 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
 void warn_of_blindness(const Radar& radar) {
   if (default_angles(virtual_array(radar)).azimuth.size() > 1) return;
   constexpr const char* kText = "range_azimuth: the antennas of this radar tell no azimuths apart (they stand in one place "
-                                "or above the other): every azimuth of the map shows the same";
+                                "or one above the other): every azimuth of the map shows the same";
   if (PyErr_WarnEx(PyExc_RuntimeWarning, kText, 1) != 0) throw py::error_already_set();
 }
 

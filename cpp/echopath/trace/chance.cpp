@@ -5,12 +5,15 @@
 
 #include "echopath/base/phasor.h"
 #include "echopath/base/random.h"
+#include "echopath/base/simd.h"
 #include "echopath/trace/scatter_points.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kCoin = 0x1.0p-32;
+// The middle of one of 2^32 intervals of [0, 1]: never 0, which would take a way however small its odds, and what is carried on
+// is divided by them.
+ECHOPATH_INLINE double coin_of(uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1.0p-32; }
 
 template <size_t kLanes>
 ECHOPATH_INLINE PhiloxWords<kLanes> draw_words(uint64_t seed, Stream stream, uint64_t first, uint32_t dimension) {
@@ -34,39 +37,29 @@ template <size_t kLanes>
 ECHOPATH_INLINE void draw_chance(uint64_t seed, uint64_t first, uint32_t depth, ChanceLanes<kLanes> out) {
   const PhiloxWords<kLanes> words = draw_words<kLanes>(seed, Stream::kPhase, first, depth);
   for (size_t i = 0; i < kLanes; ++i) {
-    const Phasor phase = phasor_of_cycles(words[0][i] * kCoin);
+    const Phasor phase = phasor_of_cycles(coin_of(words[0][i]));
     out.phase_re[i] = phase.re;
     out.phase_im[i] = phase.im;
-    out.axis_coin[i] = words[1][i] * kCoin;
-    out.lobe_coin[i] = words[2][i] * kCoin;
-    out.survival_coin[i] = words[3][i] * kCoin;
+    out.axis_coin[i] = coin_of(words[1][i]);
+    out.lobe_coin[i] = coin_of(words[2][i]);
+    out.survival_coin[i] = coin_of(words[3][i]);
   }
 }
 
-struct Direction {
-  double x, y, z;
-};
-
-ECHOPATH_INLINE Direction direction_of(double u, double v) {
+ECHOPATH_INLINE VectorOf<double> direction_of(double u, double v) {
   const double sine = std::sqrt(u);
   const Phasor turn = phasor_of_cycles(v);
   return {sine * turn.re, sine * turn.im, std::sqrt(1.0 - u)};
 }
 
-// The cells of the rays, and then their directions.
-struct LobeLanes {
-  double *x, *y, *z;
-};
-
-ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LobeLanes lanes) {
+// x and y: the cells of the rays, which become their directions.
+ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LaneVectors* lanes) {
   const PhiloxWords<kPacketSize> words = draw_words<kPacketSize>(seed, Stream::kScatterPoint, first, 0);
-  for (size_t i = 0; i < kPacketSize; ++i) {
-    const double u = (lanes.x[i] + unit_interval(words[0][i], words[1][i])) * (1.0 / kScatterNetSize);
-    const double v = (lanes.y[i] + unit_interval(words[2][i], words[3][i])) * (1.0 / kScatterNetSize);
-    const Direction direction = direction_of(u, v);
-    lanes.x[i] = direction.x;
-    lanes.y[i] = direction.y;
-    lanes.z[i] = direction.z;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const auto i = static_cast<size_t>(lane);
+    const double u = (lanes->x[lane] + unit_interval(words[0][i], words[1][i])) * (1.0 / kScatterNetSize);
+    const double v = (lanes->y[lane] + unit_interval(words[2][i], words[3][i])) * (1.0 / kScatterNetSize);
+    lanes->set(lane, direction_of(u, v));
   }
 }
 
@@ -82,8 +75,7 @@ HitChance hit_chance(uint64_t seed, int64_t ray, int depth) {
 }
 
 Vec3 cosine_lobe(const std::array<double, 2>& random) {
-  const Direction direction = direction_of(random[0], random[1]);
-  return {direction.x, direction.y, direction.z};
+  return packed(direction_of(random[0], random[1]));
 }
 
 void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batches) {
@@ -101,7 +93,7 @@ void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batc
   using Lanes = ChanceLanes<kPacketSize>;
   run_simd<&draw_chance<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re.lanes, phase_im.lanes, axis_coin.lanes,
                                                                     lobe_coin.lanes, survival_coin.lanes});
-  run_simd<&draw_lobes>(seed, index, LobeLanes{lobe.x.lanes, lobe.y.lanes, lobe.z.lanes});
+  run_simd<&draw_lobes>(seed, index, &lobe);
 }
 
 }  // namespace echopath

@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// Of hit number `depth` (1: the first) of a ray. Coins are uniform in [0, 1) with 32 bits.
+// Of hit number `depth` (1: the first) of a ray. Coins are uniform in (0, 1) with 32 bits.
 struct HitChance {
   std::complex<double> phase;  // of what it scatters, of magnitude 1
   double axis_coin = 0.0;      // of the axis about which it turns polarisations

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "echopath/base/errors.h"
 #include "echopath/base/simd.h"
 
 namespace echopath {

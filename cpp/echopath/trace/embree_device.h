@@ -6,7 +6,6 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include <array>
 #include <limits>
 #include <vector>
 

@@ -68,7 +68,7 @@ class EmbreeScene {
     void set(int lane, const RayHit& hit);
   };
   // Likewise of the first `count` rays of a packet, from one point; 4 times as fast where they are nearly parallel. Lanes
-  // behind them meet nothing.
+  // behind them hold finite numbers, too, and meet nothing.
   void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
   // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/simd.h"
+
 namespace echopath {
 namespace {
 

@@ -29,17 +29,6 @@ void PathBlock::set_curved_cell(const std::array<float, 7>& cell) {
   curved_cell.back() = cell;
 }
 
-void PathColumns::grow() {
-  const size_t room = 2 * size_ + 64;
-  offset.resize(room);
-  diffuse.resize(room);
-  weight.resize(room);
-  flags.resize(room);
-  num_bounces.resize(room);
-  stratum.resize(room);
-  batch.resize(room);
-}
-
 void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
   PathFan& fan = fans.emplace_back();
   fan.num_before = rows.size();
@@ -77,6 +66,9 @@ void PathBlock::clear() {
   statistics = TraceStatistics();
   num_fan_paths_ = num_fan_hits_ = 0;
   first_of_ray_ = 0;
+  used_depth_ = 0;
+  current_batch = kNoBatch;
+  current_half = 0;
 }
 
 // The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.

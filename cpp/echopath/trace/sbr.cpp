@@ -4,9 +4,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/random.h"
 #include "echopath/trace/sbr_state.h"
-#include "echopath/trace/scatter_points.h"
 
 namespace echopath {
 namespace {
@@ -27,7 +25,6 @@ double middle_extent(const std::vector<Vec3>& vertices) {
 
 }  // namespace
 
-// Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
 double curvature_along(const RayHit& point, const Vec3& direction) {
   if (!point.is_smooth) return 0.0;
   const Vec3 along = (direction - point.normal.dot(direction) * point.normal).normalized();

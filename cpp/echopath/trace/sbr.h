@@ -12,10 +12,10 @@
 // have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
 // the opposite order would have to use such a mirror.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
+#include "echopath/trace/chance.h"
 #include "echopath/trace/launch.h"
 #include "echopath/trace/launch_cones.h"
 #include "echopath/trace/legs.h"
-#include "echopath/trace/chance.h"
 #include "echopath/trace/path_block.h"
 
 namespace echopath {

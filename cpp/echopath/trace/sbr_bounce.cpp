@@ -48,7 +48,6 @@ RayShooter::Departure RayShooter::depart(const Ray& ray, const Surface& surface,
 bool RayShooter::bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
   if (way.is_specular) bounce_specular(ray, surface, way, scratch.chain);
   else bounce_diffuse(ray, surface, way, scratch);
-  ray.from = way.from;
   ray.direction = way.direction;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }

@@ -2,8 +2,6 @@
 //
 // Where a hit has no other legs than straight ones and fields need not be followed, what it sends to the receiver comes from its
 // lane, and a ray is made only of what meets something behind it.
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "echopath/base/simd.h"
@@ -173,7 +171,6 @@ RayShooter::RayAtHit& RayShooter::start(const Packet& packet, int lane, Scratch&
   scratch.has_receive = false;
   ray.index = packet.begin + lane;
   ray.stratum = packet.places.strata[k];
-  ray.from = settings_.transmitter;
   ray.direction = ray.launch_direction = packet.directions[lane];
   ray.leg_density = ray.launch_density = packet.densities[lane];
   if (settings_.is_polarized) ray.polarized = launched_fields(ray.direction);

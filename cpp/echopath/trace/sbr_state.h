@@ -27,7 +27,7 @@ struct RayShooter::MirrorBounce {
 struct RayShooter::Ray {
   int64_t index = 0;
   int stratum = 0;
-  Vec3 from, direction, launch_direction;
+  Vec3 direction, launch_direction;
   RayHits hits;
   int depth = 0;              // hits so far
   uint64_t diffuse = 0;       // bit per hit

@@ -1,6 +1,7 @@
 // What chance decides at hits: the same one by one and in packets, and scattered as it says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -50,6 +51,20 @@ TEST(Chance, CoinsAreFairAndIndependent) {
   EXPECT_NEAR(lobe, 0.5, 5 * std::sqrt(1.0 / 12 / kRays));
   EXPECT_NEAR(product, 0.25, 5 * std::sqrt(7.0 / 144 / kRays));
   EXPECT_LT(std::abs(phase), 5 / std::sqrt(double{kRays}));
+}
+
+// A coin of 0 would take a way of any odds. Of these rays one draws the word 0 for its lobe.
+TEST(Chance, NoCoinIsZero) {
+  constexpr uint64_t kSeed = 2230;
+  const std::array<int, kPacketSize> batches{};
+  double least = 1.0;
+  PacketChance packet;
+  for (int64_t first = 0; first < int64_t{1} << 19; first += kPacketSize) {
+    packet.draw(kSeed, first, kPacketSize, batches.data());
+    for (int lane = 0; lane < kPacketSize; ++lane) least = std::min(least, packet.lobe_coin[lane]);
+  }
+  EXPECT_GT(least, 0.0);
+  EXPECT_LT(least, 0x1.0p-32);  // it was there
 }
 
 // The next hit, the next ray of as many digits, another seed in its high half, and the directions have chance of their own.

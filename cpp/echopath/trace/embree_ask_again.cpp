@@ -1,5 +1,4 @@
-#include "echopath/trace/query_log.h"
-
+// The queries of a log once more, and nothing else.
 #include "echopath/trace/embree_device.h"
 
 namespace echopath {

@@ -76,12 +76,13 @@ class Nufft : public SpreadMethod {
 
   void samples(const double* row, std::complex<double>* out) const override {
     FftBuffer& grid = scratch(grid_size_);
-    // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide.
+    // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide, but may be
+    // shorter than what pads the row behind it.
     const int64_t before = kernel_.width - 1, end = before + grid_size_;
     const double* imaginary = row + row_length();
     run_simd<interleave>(row + before, imaginary + before, grid_size_, reinterpret_cast<double*>(grid.data()));
     for (int64_t i = 0; i < before; ++i) grid[grid_size_ - before + i] += std::complex<double>(row[i], imaginary[i]);
-    for (int64_t i = end; i < row_length(); ++i) grid[i - end] += std::complex<double>(row[i], imaginary[i]);
+    for (int64_t i = end; i < row_length(); ++i) grid[(i - end) % grid_size_] += std::complex<double>(row[i], imaginary[i]);
     fft_.transform(grid);
     // Sample n is bin n - reference_sample(), modulo the grid.
     const int64_t num_below = reference_sample(), num_samples = static_cast<int64_t>(correction_.size());

@@ -17,8 +17,8 @@ int num_threads();
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job = nullptr);
 
 // Calls both, side by side where there are threads; their own parallel loops share these. An exception of either is rethrown here
-// after both ended. Neither may wait for the other, nor hold a lock across a parallel loop that the other takes: who waits for
-// tasks helps with any.
+// after what has begun has ended; the other may not have begun then. Neither may wait for the other, nor hold a lock across a
+// parallel loop that the other takes: who waits for tasks helps with any.
 void run_both(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace echopath

@@ -38,7 +38,8 @@ void set_ray(RTCRay& ray, const VectorOf<Real>& from, const VectorOf<Real>& dire
 // Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
 // says.
 template <class Real>
-ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& from, const VectorOf<Real>& direction, float far) {
+ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& from, const VectorOf<Real>& direction,
+                             float far) {
   rays.org_x[lane] = static_cast<float>(from.x);
   rays.org_y[lane] = static_cast<float>(from.y);
   rays.org_z[lane] = static_cast<float>(from.z);

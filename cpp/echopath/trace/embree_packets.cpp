@@ -49,7 +49,8 @@ ECHOPATH_INLINE void move_up_lanes(VectorOf<double> from, const LaneVectors* dir
   }
 }
 
-ECHOPATH_INLINE void connect_lanes(const LaneVectors* from, const LaneVectors* to, double shortest, double reach, RayLanes* rays) {
+ECHOPATH_INLINE void connect_lanes(const LaneVectors* from, const LaneVectors* to, double shortest, double reach,
+                                   RayLanes* rays) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const SegmentRay ray = segment_ray(from->at(lane), to->at(lane), shortest, reach);

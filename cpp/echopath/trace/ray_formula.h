@@ -53,7 +53,8 @@ ECHOPATH_INLINE double way_up(const VectorOf<double>& from, const VectorOf<doubl
 }
 
 // `shortest`: m, below which points are too near.
-ECHOPATH_INLINE SegmentRay segment_ray(const VectorOf<double>& from, const VectorOf<double>& to, double shortest, double reach) {
+ECHOPATH_INLINE SegmentRay segment_ray(const VectorOf<double>& from, const VectorOf<double>& to, double shortest,
+                                       double reach) {
   const VectorOf<double> whole = to - from;
   const double length = ScalarMath::root(dot(whole, whole));
   SegmentRay ray;
@@ -65,8 +66,8 @@ ECHOPATH_INLINE SegmentRay segment_ray(const VectorOf<double>& from, const Vecto
 }
 
 // The direction over a surface whose components along two axes across the unit normal and along it are given. The axes turn
-// smoothly but where the normal has a z of kAxesTurn (Duff et al. 2017, "Building an orthonormal basis, revisited"; there it is 0):
-// a slope that is rare, since rounding decides on which side of it a surface lies.
+// smoothly but where the normal has a z of kAxesTurn (Duff et al. 2017, "Building an orthonormal basis, revisited"; there it
+// is 0): a slope that is rare, since rounding decides on which side of it a surface lies.
 inline constexpr double kAxesTurn = -0.3217;
 
 ECHOPATH_INLINE VectorOf<double> over_surface(const VectorOf<double>& normal, const VectorOf<double>& local) {
@@ -78,7 +79,8 @@ ECHOPATH_INLINE VectorOf<double> over_surface(const VectorOf<double>& normal, co
 }
 
 // Unit, of a ray that arrives along `direction`.
-ECHOPATH_INLINE VectorOf<double> mirrored(const VectorOf<double>& normal, const VectorOf<double>& direction, double cos_incidence) {
+ECHOPATH_INLINE VectorOf<double> mirrored(const VectorOf<double>& normal, const VectorOf<double>& direction,
+                                          double cos_incidence) {
   const VectorOf<double> out = direction + (2.0 * cos_incidence) * normal;
   return (1.0 / ScalarMath::root(dot(out, out))) * out;
 }

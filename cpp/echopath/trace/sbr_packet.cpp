@@ -1,7 +1,7 @@
 // Neighbouring rays up to their first hits, and from there as far as it can be told lane by lane.
 //
-// Where a hit has no other legs than straight ones and fields need not be followed, what it sends to the receiver comes from its
-// lane, and a ray is made only of what meets something behind it.
+// Where a hit has no other legs than straight ones and fields need not be followed, what it sends to the receiver comes from
+// its lane, and a ray is made only of what meets something behind it.
 #include <memory>
 
 #include "echopath/base/simd.h"
@@ -86,7 +86,8 @@ void RayShooter::launch_packet(Packet& packet) const {
 }
 
 void RayShooter::arrive_packet(Packet& packet, PathBlock& block) const {
-  run_simd<&see_lanes<Packet>>(&packet, Antennas{unpacked(settings_.transmitter), unpacked(settings_.receiver)}, geometry_.lift());
+  const Antennas antennas{unpacked(settings_.transmitter), unpacked(settings_.receiver)};
+  run_simd<&see_lanes<Packet>>(&packet, antennas, geometry_.lift());
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const auto k = static_cast<size_t>(lane);
     const EmbreeScene::Verdict verdict = packet.hits.verdicts[k];
@@ -136,7 +137,8 @@ void RayShooter::shoot_lane(const Packet& packet, int lane, Scratch& scratch, Pa
   block.current_batch = static_cast<uint8_t>(packet.places.batches[k]);
   block.current_half = half_of_ray(packet.begin + lane);
   RayHit met;
-  const bool goes_on = packet.goes_on[k] && ask(packet.lifted[lane], packet.out[lane], met, block) == EmbreeScene::Verdict::kHit;
+  const bool goes_on =
+      packet.goes_on[k] && ask(packet.lifted[lane], packet.out[lane], met, block) == EmbreeScene::Verdict::kHit;
   if (packet.is_plain[k]) add_echoes(packet, lane, block);
   if (packet.is_plain[k] && !goes_on) return block.end_ray(&packet.hits.met[k]);
   auto& [ray, surface] = start(packet, lane, scratch);

@@ -68,9 +68,10 @@ std::vector<Row> rows_of(const Paths& paths, uint32_t without) {
 }
 
 bool same_hits(const Row& a, const Row& b) {
-  return a.diffuse == b.diffuse && std::equal(a.hits.begin(), a.hits.end(), b.hits.begin(), b.hits.end(), [](const Hit& x, const Hit& y) {
-           return x.mesh_id == y.mesh_id && x.triangle_id == y.triangle_id && x.u == y.u && x.v == y.v;
-         });
+  const auto is_same = [](const Hit& x, const Hit& y) {
+    return x.mesh_id == y.mesh_id && x.triangle_id == y.triangle_id && x.u == y.u && x.v == y.v;
+  };
+  return a.diffuse == b.diffuse && std::equal(a.hits.begin(), a.hits.end(), b.hits.begin(), b.hits.end(), is_same);
 }
 
 // A small flagged mirror that reflects the radar past everything, but has every hit looked at for legs by itself.

@@ -9,11 +9,17 @@
 
 namespace echopath {
 
-// Of type T, which tells its num_bytes(). Thread-safe; one for the whole process.
+// Of type T, which tells its num_bytes(). Thread-safe.
 template <class T>
 class KeptMemory {
  public:
   static constexpr size_t kMost = size_t{64} << 20;  // bytes in all
+
+  // The one of the whole process, never destroyed: threads may outlive what is static.
+  static KeptMemory& of_process() {
+    static KeptMemory& memory = *new KeptMemory;
+    return memory;
+  }
 
   // What was left last, or new.
   std::unique_ptr<T> take() {

@@ -5,18 +5,12 @@
 #include "echopath/base/kept_memory.h"
 
 namespace echopath {
-namespace {
 
-KeptMemory<ReplayMemory>& kept() {
-  static KeptMemory<ReplayMemory>& memory = *new KeptMemory<ReplayMemory>;  // threads may outlive what is static
-  return memory;
+std::unique_ptr<ReplayMemory> ReplayMemory::take() { return KeptMemory<ReplayMemory>::of_process().take(); }
+
+void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) {
+  KeptMemory<ReplayMemory>::of_process().leave(std::move(memory));
 }
-
-}  // namespace
-
-std::unique_ptr<ReplayMemory> ReplayMemory::take() { return kept().take(); }
-
-void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) { kept().leave(std::move(memory)); }
 
 std::unique_ptr<ReplayWorkspace> ReplayMemory::take_workspace() {
   const std::lock_guard lock(mutex_);

@@ -6,18 +6,12 @@
 #include "echopath/base/large_array.h"
 
 namespace echopath {
-namespace {
 
-KeptMemory<SynthesisMemory>& kept() {
-  static KeptMemory<SynthesisMemory>& memory = *new KeptMemory<SynthesisMemory>;  // threads may outlive what is static
-  return memory;
+std::unique_ptr<SynthesisMemory> SynthesisMemory::take() { return KeptMemory<SynthesisMemory>::of_process().take(); }
+
+void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) {
+  KeptMemory<SynthesisMemory>::of_process().leave(std::move(memory));
 }
-
-}  // namespace
-
-std::unique_ptr<SynthesisMemory> SynthesisMemory::take() { return kept().take(); }
-
-void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) { kept().leave(std::move(memory)); }
 
 // The smallest that will do.
 RowMemory SynthesisMemory::take_rows(size_t count) {

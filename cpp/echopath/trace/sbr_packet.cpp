@@ -106,24 +106,20 @@ void RayShooter::look_at_surface(Packet& packet, int lane) const {
   const uint32_t mesh = packet.hits.met[k].mesh_id;
   const SurfaceModel& model = models_[mesh];
   packet.models[k] = &model;
-  packet.modes[k] = PolarizationMode::kTe;
-  if (model.is_constant()) {
-    packet.set_response(lane, model.constant(), constant_odds_[mesh]);
-    return;
-  }
-  packet.modes[k] = mode_along(model, settings_.polarization, packet.directions[lane], packet.hits.normal[lane]);
+  const bool is_constant = model.is_constant(), is_near = packet.near_squared[lane] < kNearAntenna * kNearAntenna;
+  packet.modes[k] = is_constant ? PolarizationMode::kTe
+                                : mode_along(model, settings_.polarization, packet.directions[lane], packet.hits.normal[lane]);
   const SurfaceResponse response = model.respond(packet.cos_incidence[lane], packet.modes[k]);
-  packet.set_response(lane, response, odds_of(model, response));
+  packet.set_response(lane, response, is_constant ? constant_odds_[mesh] : odds_of(model, response));
+  packet.goes_on[k] = settings_.max_bounces > 1 && response.gamma != 0.0;
+  packet.is_plain[k] = has_only_direct_legs_ && !model.material().mirror && !is_near;
 }
 
 // From all first hits together: they lie beside each other. What a mirror needs depends on more.
 void RayShooter::look_at_receiver(Packet& packet, PathBlock& block) const {
   EmbreeScene::Lanes asked, blocked;
   for (size_t k = 0; k < kPacketSize; ++k) {
-    const bool is_mirror = packet.arrives[k] && packet.models[k]->material().mirror;
-    asked[k] = packet.arrives[k] && !is_mirror && packet.cos_receiver.lanes[k] > 0;
-    packet.goes_on[k] = settings_.max_bounces > 1 && (packet.gamma_re.lanes[k] != 0 || packet.gamma_im.lanes[k] != 0);
-    packet.is_plain[k] = has_only_direct_legs_ && !is_mirror && packet.near_squared.lanes[k] >= kNearAntenna * kNearAntenna;
+    asked[k] = packet.arrives[k] && !packet.models[k]->material().mirror && packet.cos_receiver.lanes[k] > 0;
     block.statistics.num_queries += asked[k];
   }
   geometry_.occluded(packet.lifted, settings_.receiver, asked, blocked);

@@ -1,0 +1,225 @@
+"""`echopath bench crowd`: each object of a crowded scene against itself traced alone, and whether the run says which errs."""
+from __future__ import annotations
+
+import dataclasses
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+
+import echopath as ep
+
+from ..files import write_texts
+from . import crowd_scenes as scenes
+from .crowd_coverage import measure_coverage
+from .machine import machine
+from .speed_tracer import bare_share
+
+RAYS, QUICK_RAYS = 300_000, 20_000
+SEEDS, QUICK_SEEDS = 3, 1
+ALONE_RAYS, QUICK_ALONE_RAYS = 2 ** 20, 2 ** 14
+BATCHES = 8
+MAX_BOUNCES = 4
+WANTED_DB, RIGHT_DB = 0.3, 0.1       # an echo errs by no more, or is flagged; one that errs by this is not flagged
+GROUND_RAYS, QUICK_GROUND_RAYS = (100_000, 1_000_000), (20_000,)
+PERSON_RAYS, PERSON_SEEDS = 100_000, 12
+QUICK_PERSON_RAYS, QUICK_PERSON_SEEDS = 10_000, 2
+PERSON_ERROR = 0.01                  # relative, standard error of his direct power
+
+
+def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
+    """Measures everything, writes crowd.json and crowd.png into `folder` and returns what the JSON holds.
+
+    quick: few rays and seeds, for a look; progress: callable (stage, fraction) or None
+    """
+    from .crowd_figure import draw_crowd
+
+    began = time.perf_counter()
+    works = {"streets": lambda: [measure_street(mirrors=mirrors, quick=quick) for mirrors in (True, False)],
+             "ground": lambda: measure_ground(quick=quick), "person": lambda: measure_person(quick=quick),
+             "coverage": lambda: measure_coverage(quick=quick)}
+    results = {"machine": machine(), "quick": quick}
+    for index, (name, work) in enumerate(works.items()):
+        results[name] = work()
+        if progress:
+            progress("crowd", (index + 1) / len(works))
+    results["must_reach"] = verdicts(results)
+    results["seconds"] = time.perf_counter() - began
+    folder = Path(folder)
+    write_texts(folder, {"crowd.json": json.dumps(results, indent=1) + "\n"})
+    draw_crowd(results, folder / "crowd.png")
+    return results
+
+
+@dataclasses.dataclass(frozen=True)
+class Level:
+    """A mean power as a run reports it. power: W; error_db: dB, of two standard errors; flagged: the run says that the
+    power may err by more than WANTED_DB; paths: behind it."""
+
+    power: float
+    error_db: float
+    flagged: bool
+    paths: int
+
+
+def level_of(paths) -> Level:
+    found = ep.received_power(paths)
+    if not found.power > 0.0:
+        return Level(0.0, float("inf"), not found.resolved, paths.num_paths)
+    error_db = 10.0 * np.log10(1.0 + 2.0 * found.standard_error / found.power)
+    return Level(found.power, float(error_db), bool(not found.resolved or error_db > WANTED_DB), paths.num_paths)
+
+
+def direct(paths, name: str):
+    """The echoes that touch that object alone, as often as they like."""
+    return paths.select(f"T '{name}'+ R")
+
+
+def decibels(power: float, truth: float) -> float:
+    """Of the ratio, at least -99 dB."""
+    return float(10.0 * np.log10(max(power / truth, 10.0 ** -9.9)))
+
+
+# --- the street ---
+
+def measure_street(*, mirrors: bool, quick: bool) -> dict:
+    """Seconds of the trace and of its bare queries, and a row for each object."""
+    radar, scene = scenes.radar(), scenes.street(mirrors=mirrors)
+    rays, names = QUICK_RAYS if quick else RAYS, scenes.street_names()
+
+    def levels_of(seed: int, batches: int) -> dict:
+        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=MAX_BOUNCES, seed=seed, batches=batches)
+        return {name: level_of(direct(paths, name)) for name in names}
+
+    one_set = levels_of(1, 1)
+    runs = [levels_of(seed, BATCHES) for seed in range(1, (QUICK_SEEDS if quick else SEEDS) + 1)]
+    noise = ep._core.noise_power(radar) / (radar.waveform.num_samples * radar.waveform.num_chirps)
+    rows = [_row(name, *_alone(name, radar, mirrors, quick), one_set[name], [levels[name] for levels in runs], noise)
+            for name in names]
+    return {"title": "flagged mirrors" if mirrors else "rough concrete", "rays": rays, "rows": rows,
+            **bare_share(scene, radar, rays, repetitions=1 if quick else 3)}
+
+
+def _alone(name: str, radar, mirrors: bool, quick: bool) -> tuple[float, float]:
+    """Direct power in W of an object traced alone, and by how many dB two seeds of it differ."""
+    scene = scenes.alone(name, mirrors=mirrors)
+    powers = [ep.received_power(direct(ep.trace(scene, radar, num_rays=QUICK_ALONE_RAYS if quick else ALONE_RAYS,
+                                                max_bounces=MAX_BOUNCES, seed=seed), name)).power for seed in (101, 102)]
+    mean = float(np.mean(powers))
+    return mean, abs(decibels(powers[0], powers[1])) if min(powers) > 0.0 else 0.0
+
+
+def _row(name: str, truth: float, spread_db: float, one_set: Level, levels: list[Level], noise: float) -> dict:
+    errors = [decibels(level.power, truth) if truth > 0.0 else 0.0 for level in levels]
+    return {"name": name, "truth_dbm": float(10.0 * np.log10(max(truth, 1e-300) * 1e3)), "alone_spread_db": spread_db,
+            "snr_db": decibels(truth, noise), "one_set_db": decibels(one_set.power, truth), "error_db": errors, "claimed_db": [level.error_db for level in levels],
+            "flagged": [level.flagged for level in levels], "paths": [level.paths for level in levels],
+            "verdict": [judged(error, level.flagged) for error, level in zip(errors, levels)]}
+
+
+def judged(error_db: float, flagged: bool) -> str:
+    """right or flagged, as wanted; MISSED: wrong by more than WANTED_DB and not flagged; NEEDLESS: flagged, yet right."""
+    error = abs(error_db)
+    if flagged:
+        return "NEEDLESS" if error <= RIGHT_DB else "flagged"
+    return "right" if error <= WANTED_DB else "MISSED"
+
+
+# --- the ground of a city ---
+
+def measure_ground(*, quick: bool) -> list[dict]:
+    """A row for each number of rays: the ground's path against the image method."""
+    scene, radar = scenes.city_ground()
+    truth = scenes.ground_path_power(radar.transmit_power)
+    rows = []
+    for rays in QUICK_GROUND_RAYS if quick else GROUND_RAYS:
+        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=1, batches=BATCHES)
+        level = level_of(paths.select("T 'ground' R"))
+        error = decibels(level.power, truth)
+        rows.append({"rays": rays, "error_db": error, "claimed_db": level.error_db, "flagged": level.flagged,
+                     "verdict": judged(error, level.flagged)})
+    return rows
+
+
+# --- a person among thousands of flat objects ---
+
+def measure_person(*, quick: bool) -> dict:
+    """Scatter of his direct power over seeds, relative, beside the standard error that the batches claim."""
+    scene, radar = scenes.flat_city()
+    rays, num_seeds = (QUICK_PERSON_RAYS, QUICK_PERSON_SEEDS) if quick else (PERSON_RAYS, PERSON_SEEDS)
+    levels = [level_of(direct(ep.trace(scene, radar, num_rays=rays, max_bounces=2, seed=seed, batches=BATCHES), "person"))
+              for seed in range(1, num_seeds + 1)]
+    powers = np.array([level.power for level in levels])
+    mean = float(powers.mean())
+    claimed = [0.5 * (10.0 ** (0.1 * level.error_db) - 1.0) for level in levels]
+    return {"rays": rays, "seeds": num_seeds, "objects": scene_size(scene), "paths": float(np.mean([one.paths for one in levels])),
+            "scatter": float(powers.std(ddof=1) / mean) if mean > 0.0 else float("inf"),
+            "claimed": float(np.sqrt(np.mean(np.square(claimed)))), "flagged": sum(one.flagged for one in levels)}
+
+
+def scene_size(scene) -> int:
+    """Number of children of the scene's root."""
+    return sum(node.parent < 0 for node in scene.nodes)
+
+
+# --- words ---
+
+def verdicts(results: dict) -> list[dict]:
+    """What the crowd must reach: one row {what, limit, measured, holds} each."""
+    rows = []
+    for street in results["streets"]:
+        verdict = [one for row in street["rows"] for one in row["verdict"]]
+        rows += [_verdict(f"street, {street['title']}: objects off by over {WANTED_DB} dB and not flagged", 0,
+                          verdict.count("MISSED")),
+                 _verdict(f"street, {street['title']}: objects right to {RIGHT_DB} dB and flagged", 0,
+                          verdict.count("NEEDLESS"))]
+    rows += [_verdict(f"city ground, {row['rays']:,} rays: off by over {WANTED_DB} dB and not flagged", 0,
+                      int(row["verdict"] == "MISSED")) for row in results["ground"]]
+    rows.append(_verdict("person among 2400: scatter of his direct power", PERSON_ERROR, results["person"]["scatter"]))
+    low, high = results["coverage"]["wanted"]
+    for row in results["coverage"]["rows"]:
+        holds = low <= row["coverage"] <= high
+        rows.append({"what": f"coverage, {row['kind']}, {row['rays']:,} rays: {low} to {high}", "limit": low,
+                     "measured": row["coverage"], "holds": bool(holds)})
+    return rows
+
+
+def _verdict(what: str, limit: float, measured: float) -> dict:
+    return {"what": what, "limit": limit, "measured": measured, "holds": bool(measured <= limit)}
+
+
+def describe(results: dict) -> list[str]:
+    """Lines for people: the streets by object, ground, person, coverage, and what must be reached."""
+    found = results["machine"]
+    lines = [f"{found['processor']}, {found['threads']} threads, echopath {found['echopath']}"]
+    for street in results["streets"]:
+        lines += ["", *_describe_street(street)]
+    lines += ["", "ground of a city, 30 m from transmitter to receiver, against the image method"]
+    lines += [f"  {row['rays']:>9,} rays: {row['error_db']:+7.2f} dB, claimed +-{row['claimed_db']:.2f}, {row['verdict']}"
+              for row in results["ground"]]
+    person = results["person"]
+    lines += ["", f"person at 40 m among {person['objects'] - 1} flat objects, {person['rays']:,} rays, {person['seeds']} seeds: "
+              f"{person['paths']:.0f} direct paths, scatter {100 * person['scatter']:.2f} %, "
+              f"claimed {100 * person['claimed']:.2f} %, flagged {person['flagged']} times",
+              "", f"coverage of the true value by two standard errors, {results['coverage']['seeds']} seeds",
+              f"  {'':<30}{'rays':>9}{'coverage':>10}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
+    lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f}{row['mean_error_db']:>+16.3f}"
+              f"{row['claimed_db']:>13.3f}{row['unresolved']:>12}" for row in results["coverage"]["rows"]]
+    lines += ["", f"{'must reach':<82}limit  measured"]
+    lines += [f"  {row['what']:<78} {row['limit']:6.4g} {row['measured']:9.4g}  {'holds' if row['holds'] else 'MISSED'}"
+              for row in results["must_reach"]]
+    return lines + ["", f"{results['seconds']:.0f} s in all"]
+
+
+def _describe_street(street: dict) -> list[str]:
+    lines = [f"street, {street['title']}, {street['rays']:,} rays: trace {street['trace_s']:.2f} s, "
+             f"{1.0 / street['share']:.2f} times the processor time of its {street['queries']:,} bare queries",
+             f"  {'direct echoes of':<16}{'alone, dBm':>11}{'(2 seeds, dB)':>14}{'over noise':>11}{'one set, dB':>13}"
+             f"   {BATCHES} batches: error and claimed error, dB, of each seed"]
+    for row in street["rows"]:
+        runs = "   ".join(f"{error:+6.2f} +-{min(claimed, 99.0):5.2f} {verdict:<8}" for error, claimed, verdict in
+                          zip(row["error_db"], row["claimed_db"], row["verdict"]))
+        lines.append(f"  {row['name']:<16}{row['truth_dbm']:>11.1f}{row['alone_spread_db']:>14.2f}{row['snr_db']:>11.0f}"
+                     f"{row['one_set_db']:>+13.2f}   {runs}")
+    return lines

@@ -1,0 +1,57 @@
+"""Errors of the objects of a crowded street and coverage of the true value, in one picture."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..origin import FIXED_SEEDS
+from ..plots.style import CURVE_COLOURS, new_figure, save_png
+from .crowd import WANTED_DB
+
+LEAST_SHOWN_DB = -12.0
+
+
+def draw_crowd(results: dict, path) -> None:
+    """Writes a PNG: error of each object with what the run claims (left), coverage over rays (right)."""
+    with new_figure(11.0, 5.4) as figure:
+        left, right = figure.subplots(1, 2, width_ratios=(1.3, 1.0))
+        _draw_streets(left, results["streets"])
+        _draw_coverage(right, results["coverage"])
+        save_png(figure, path, seed=FIXED_SEEDS)
+
+
+def _draw_streets(axes, streets: list) -> None:
+    axes.axvspan(-WANTED_DB, WANTED_DB, color="0.9")
+    for offset, colour, street in zip((-0.15, 0.15), CURVE_COLOURS, streets):
+        for index, row in enumerate(street["rows"]):
+            errors = np.maximum(row["error_db"], LEAST_SHOWN_DB)
+            places = np.full(len(errors), index + offset)
+            axes.errorbar(errors, places, xerr=np.minimum(row["claimed_db"], -LEAST_SHOWN_DB), fmt="none", ecolor=colour,
+                          alpha=0.4)
+            flagged = np.array(row["flagged"])
+            axes.plot(errors[~flagged], places[~flagged], "o", color=colour, markersize=4,
+                      label=f"{street['title']} (hollow: flagged)" if index == 0 else None)
+            axes.plot(errors[flagged], places[flagged], "o", color=colour, markersize=4, fillstyle="none")
+    axes.set_yticks(range(len(streets[0]["rows"])), [row["name"] for row in streets[0]["rows"]], fontsize=7)
+    axes.invert_yaxis()
+    axes.set_xlim(LEAST_SHOWN_DB, 6.0)
+    axes.set_xlabel("error of the direct power, dB (grey: wanted)")
+    axes.set_title("Each object of a street against itself alone")
+    axes.legend(frameon=False, fontsize=7, loc="lower left")
+    axes.grid(axis="x", alpha=0.25)
+
+
+def _draw_coverage(axes, coverage: dict) -> None:
+    axes.axhspan(*coverage["wanted"], color="0.9")
+    kinds = dict.fromkeys(row["kind"] for row in coverage["rows"])
+    for index, kind in enumerate(kinds):
+        rows = [row for row in coverage["rows"] if row["kind"] == kind]
+        axes.plot([row["rays"] for row in rows], [row["coverage"] for row in rows], marker="o", markersize=4,
+                  color=CURVE_COLOURS[index % len(CURVE_COLOURS)], linestyle="-" if index < len(CURVE_COLOURS) else "--",
+                  label=kind)
+    axes.set_xscale("log", base=2)
+    axes.set_ylim(-0.05, 1.05)
+    axes.set_xlabel("rays")
+    axes.set_ylabel("share of seeds whose interval holds the truth (grey: wanted)")
+    axes.set_title("Coverage")
+    axes.legend(frameon=False, fontsize=7)
+    axes.grid(alpha=0.25)

@@ -1,0 +1,112 @@
+"""The benchmark of crowded scenes: its scenes are what it says, its truths and verdicts hold, its files."""
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.bench import crowd, crowd_coverage
+from echopath.bench import crowd_scenes as scenes
+from echopath.bench.closed_forms import FREQUENCY
+from echopath.cli import main
+from echopath.tessellation import coarse_meshes
+
+MID_FRAME = 0.0128   # s
+LEAST_GAP = 0.2      # deg between neighbours as the radar sees them
+IMAGE = 1e-6         # relative: rounding of single-precision weights
+
+
+@pytest.fixture(scope="module")
+def street():
+    return scenes.street(mirrors=False)
+
+
+def root_name(scene, node: int) -> str:
+    nodes = scene.nodes
+    while nodes[node].parent >= 0:
+        node = nodes[node].parent
+    return nodes[node].name
+
+
+def test_street_has_what_it_is_named_for(street):
+    names = [node.name for node in street.nodes if node.parent < 0]
+    assert names == scenes.street_names() and len(names) == 21
+    for kind, count in (("car", 6), ("pole", 5), ("sign", 2), ("pedestrian", 3), ("cyclist", 1), ("guard_rail", 1)):
+        assert sum(name.startswith(kind) for name in names) == count
+
+
+def test_no_object_of_the_street_shadows_another(street):
+    spans = {}
+    for mesh in street.meshes:
+        name = root_name(street, mesh.node)
+        if name not in scenes.BACKDROPS:
+            x, y, _ = np.asarray(street.world_vertices(mesh.id, MID_FRAME)).T
+            azimuth = np.degrees(np.arctan2(y, x))
+            low, high = spans.get(name, (np.inf, -np.inf))
+            spans[name] = min(low, azimuth.min()), max(high, azimuth.max())
+    ordered = sorted(spans.values())
+    assert len(ordered) == 18
+    assert all(after[0] - before[1] > LEAST_GAP for before, after in zip(ordered, ordered[1:]))
+
+
+def test_meshes_of_the_street_are_fine_enough(street):
+    assert coarse_meshes(street, FREQUENCY) == []
+
+
+def test_an_object_alone_has_the_very_meshes_it_has_in_the_street(street):
+    only = scenes.alone("cyclist_18", mirrors=False)
+    ids = [mesh.id for mesh in street.meshes if root_name(street, mesh.node) == "cyclist_18"]
+    assert len(ids) == len(only.meshes)
+    for index, mesh in zip(ids, only.meshes):
+        assert np.array_equal(street.world_vertices(index, 0.0), only.world_vertices(mesh.id, 0.0))
+
+
+def test_screens_before_a_wall_send_nothing_back():
+    paths = ep.trace(scenes.alone("wall_left", mirrors=False), scenes.radar(), num_rays=5_000, max_bounces=2)
+    whole, wall = ep.received_power(paths).power, ep.received_power(paths.select("T 'wall_left'+ R")).power
+    assert wall > 0.0 and whole == pytest.approx(wall, rel=1e-12)
+
+
+def test_ground_path_of_a_flagged_mirror_has_the_power_of_the_closed_form():
+    scene, radar = scenes.city_ground(mirror=True)
+    paths = ep.trace(scene, radar, num_rays=100, max_bounces=1)
+    found = ep.received_power(paths.select("T 'ground' R")).power
+    assert found == pytest.approx(scenes.ground_path_power(radar.transmit_power), rel=IMAGE)
+
+
+def test_city_has_2400_children_beside_the_person():
+    scene, _ = scenes.flat_city()
+    assert crowd.scene_size(scene) == 2401 and len({node.name for node in scene.nodes if node.parent < 0}) == 2401
+
+
+@pytest.mark.parametrize("error, flagged, verdict", [(0.2, False, "right"), (-0.31, False, "MISSED"), (-5.0, True, "flagged"),
+                                                     (0.2, True, "flagged"), (0.05, True, "NEEDLESS")])
+def test_verdicts(error, flagged, verdict):
+    assert crowd.judged(error, flagged) == verdict
+
+
+@dataclasses.dataclass
+class Claim:
+    power: float
+    standard_error: float
+    resolved: bool = True
+
+
+def test_gaussian_claims_cover_as_often_as_two_sigma_do():
+    draw = np.random.default_rng(3)
+    claims = [Claim(power, 0.1) for power in 5.0 + 0.1 * draw.standard_normal(20_000)]
+    assert crowd_coverage.covered(claims, 5.0)["coverage"] == pytest.approx(0.9545, abs=0.005)
+    assert crowd_coverage.covered(claims, 6.0)["coverage"] == 0.0
+
+
+def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(crowd, "QUICK_RAYS", 4_000)
+    monkeypatch.setattr(crowd, "QUICK_ALONE_RAYS", 2_000)
+    assert main(["bench", "crowd", "--quick", "--out", str(tmp_path / "b")]) == 0
+    results = json.loads((tmp_path / "b" / "crowd.json").read_text())
+    assert (tmp_path / "b" / "crowd.png").stat().st_size > 10_000
+    assert [len(street["rows"]) for street in results["streets"]] == [21, 21]
+    assert {row["kind"] for row in results["coverage"]["rows"]} == {echo.kind for echo in crowd_coverage.all_echoes()}
+    told = capsys.readouterr().out
+    assert "person at 40 m among 2400 flat objects" in told and "must reach" in told

@@ -107,7 +107,7 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   paths->num_bounces = as_vector<uint8_t>(num_bounces, "num_bounces", "[P]");
   paths->diffuse = as_vector<uint64_t>(diffuse, "diffuse", "[P]");
   paths->weight = as_vector<std::complex<float>>(weight, "weight", "[P]");
-  paths->stratum = as_vector<uint8_t>(stratum, "stratum", "[P]");
+  paths->stratum = as_vector<uint16_t>(stratum, "stratum", "[P]");
   paths->batch = as_vector<uint8_t>(batch, "batch", "[P]");
   paths->flags = as_vector<uint32_t>(flags, "flags", "[P]");
   if (!curved_cell.is_none()) {
@@ -151,7 +151,7 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("num_bounces", path_column(&Paths::num_bounces), "[P]")
       .def_property_readonly("diffuse", path_column(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
-      .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 255: image method")
+      .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 65535: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
       .def_property_readonly("flags", path_column(&Paths::flags),
                              "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays")

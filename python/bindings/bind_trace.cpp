@@ -27,8 +27,14 @@ PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64
   refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
                                     "sampler", "batches", "target_error_db", "max_rays", "progress"});
   const Effort effort = effort_of(num_rays, batches, target_error_db, max_rays, kDefaultRays, 1);
-  TraceSettings settings{effort.num_rays, max_bounces, seed, start_time, kPolarization.value_of(polarization),
-                         kFootprint.value_of(footprint), effort.batches};
+  TraceSettings settings;
+  settings.num_rays = effort.num_rays;
+  settings.max_bounces = max_bounces;
+  settings.seed = seed;
+  settings.start_time = start_time;
+  settings.polarization = kPolarization.value_of(polarization);
+  settings.footprint = kFootprint.value_of(footprint);
+  settings.batches = effort.batches;
   settings.sampler = kSampler.value_of(sampler);
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
     return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job, kept)

@@ -13,23 +13,37 @@
 namespace echopath::bindings {
 
 void bind_trace_frame(py::module_& m) {
-  py::class_<Stratum>(m, "Stratum", "One launch stratum: uniform directions in a cone.")
+  py::class_<Stratum>(m, "Stratum", "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.")
       .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density,
-                       std::string name) {
+                       std::string name, const py::object& across, double half_azimuth, double low, double high,
+                       int object) {
              Stratum made;
              made.axis = as_vec3(axis, "axis");
              made.versine = versine;
+             made.across = as_vec3(across, "across");
+             made.half_azimuth = half_azimuth;
+             made.low = low;
+             made.high = high;
+             made.object = object;
              made.num_rays = num_rays;
              made.ray_density = ray_density;
              made.name = std::move(name);
              return made;
            }),
            py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"),
-           py::arg("name"))
+           py::arg("name"), py::arg("across") = py::make_tuple(0.0, 0.0, 0.0), py::arg("half_azimuth") = 0.0,
+           py::arg("low") = 0.0, py::arg("high") = 0.0, py::arg("object") = -1)
       .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
-      .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle; 2 is the whole sphere")
+      .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle of a cone; 2 is the whole sphere")
+      .def_property_readonly("across", [](const Stratum& self) { return to_numpy(self.across); },
+                             "[3] unit, world axes, along the great circle of a strip; zeros of a cone")
+      .def_readonly("half_azimuth", &Stratum::half_azimuth, "rad along the great circle on both sides of the axis; 0 of a cone")
+      .def_readonly("low", &Stratum::low, "least sine of the elevation over the great circle, toward axis x across")
+      .def_readonly("high", &Stratum::high, "largest sine of the elevation")
+      .def_property_readonly("solid_angle", &Stratum::solid_angle, "sr")
       .def_readonly("num_rays", &Stratum::num_rays, "launched in it")
       .def_readonly("name", &Stratum::name, "what it aims at")
+      .def_readonly("object", &Stratum::object, "index of the scene's node that it aims at; -1: none")
       .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
       .def("__repr__", [](const Stratum& self) {
         return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
@@ -38,13 +52,13 @@ void bind_trace_frame(py::module_& m) {
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
       .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
                        int64_t small,
-                       int64_t false_hits) {
-             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits};
+                       int64_t false_hits, int64_t unaimed) {
+             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed};
            }),
            py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
            py::arg("num_paths") = 0,
            py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
-           py::arg("num_false_hits") = 0)
+           py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
@@ -53,7 +67,9 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
       .def_readonly("num_small_mirrors", &TraceStatistics::num_small_mirrors,
                     "rays ended behind an unflagged mirror smaller than its Fresnel zone")
-      .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision");
+      .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision")
+      .def_readonly("num_unaimed", &TraceStatistics::num_unaimed,
+                    "objects and images that no rays aim at, because there are too many of them");
 
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,

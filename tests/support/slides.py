@@ -70,7 +70,7 @@ def one_path(scene, radar, points):
     last = 1 << (len(points) - 1)
     columns = {"offsets": np.array([0]), "num_bounces": np.array([len(points)], np.uint8),
                "diffuse": np.array([last], np.uint64), "weight": np.array([1], np.complex64),
-               "stratum": np.zeros(1, np.uint8), "batch": np.zeros(1, np.uint8),
+               "stratum": np.zeros(1, np.uint16), "batch": np.zeros(1, np.uint8),
                "flags": np.zeros(1, np.uint32)}
     return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
 

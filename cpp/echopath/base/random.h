@@ -11,7 +11,7 @@ namespace echopath {
 
 // Independent uses of one seed.
 enum class Stream : uint32_t {
-  kLaunchShift = 1, kBounce = 2, kPhase = 3, kNoise = 4, kLaunchPoint = 5, kThinning = 6, kScatterShift = 7, kScatterPoint = 8,
+  kLaunchShift = 1, kBounce = 2, kPhase = 3, kNoise = 4, kLaunchPoint = 5, kScatterShift = 7, kScatterPoint = 8,
   kProbe = 9, kTraining = 16
 };
 

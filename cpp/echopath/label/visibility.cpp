@@ -9,7 +9,8 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/embree_scene.h"
-#include "echopath/trace/launch_cones.h"
+#include "echopath/trace/fit_stratum.h"
+#include "echopath/trace/launch_directions.h"
 #include "echopath/trace/sampler.h"
 #include "echopath/trace/scene_objects.h"
 
@@ -94,37 +95,34 @@ class Onlooker {
         mesh_ids_(surfaces.meshes_of(object)) {}
 
   Sight look(const End& end, int num_directions, Job* job) const {
-    const Stratum cone = cone_from(end.position);
+    const Stratum stratum = stratum_from(end.position);
     int64_t count = num_directions;
-    Tally tally = scan(end, cone, count, job);
+    Tally tally = scan(end, stratum, count, job);
     if (2 * tally.num_found < num_directions) {
       count = std::min<int64_t>(kFinestLattice, num_directions / std::max<int64_t>(1, tally.num_found)) * num_directions;
-      tally = scan(end, cone, count, job);
+      tally = scan(end, stratum, count, job);
     }
-    return sight_of(tally, cone.solid_angle() / static_cast<double>(count), end);
+    return sight_of(tally, stratum.solid_angle() / static_cast<double>(count), end);
   }
 
  private:
-  Stratum cone_from(const Vec3& apex) const {
-    const VerticesOf vertices_of = [&](uint32_t id) -> const std::vector<Vec3>& { return whole_.vertices(id); };
-    const Sphere sphere = bounding_sphere(vertices_of, mesh_ids_);
-    if (sphere.holds(apex)) return Stratum{};  // all around
-    Stratum cone = cone_around(sphere, apex, surfaces_.names[object_]);
-    tighten(cone, vertices_of, mesh_ids_, apex, [](const Vec3& vertex) { return vertex; });
-    return cone;
+  // All directions for what surrounds the antenna.
+  Stratum stratum_from(const Vec3& apex) const {
+    std::vector<Vec3> vertices;
+    for (const uint32_t id : mesh_ids_) vertices.insert(vertices.end(), whole_.vertices(id).begin(), whole_.vertices(id).end());
+    return fit_stratum(vertices, apex, surfaces_.names[object_]).value_or(Stratum{});
   }
 
-  Tally scan(const End& end, const Stratum& cone, int64_t count, Job* job) const {
-    const ConeFrame frame(cone);
-    const auto points = disc_points(Sampler::kLattice, count, {Eigen::Vector2d(0.5, 0.5)});
+  Tally scan(const End& end, const Stratum& stratum, int64_t count, Job* job) const {
+    const LaunchDirections directions({stratum});
+    const auto points = launch_points(Sampler::kLattice, domain_of(stratum), count, {Eigen::Vector2d(0.5, 0.5)});
     const int64_t num_tasks = (count + kDirectionsPerTask - 1) / kDirectionsPerTask;
     std::vector<Tally> tallies(static_cast<size_t>(num_tasks), Tally(surfaces_.names.size()));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();
       const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
       for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
-        const Eigen::Vector2d point = points->point(i);
-        look_along(packed(frame.direction(point.x(), point.y())), end, tallies[static_cast<size_t>(task)]);
+        look_along(directions.direction(0, points->point(i)), end, tallies[static_cast<size_t>(task)]);
       }
     });
     Tally sum(surfaces_.names.size());

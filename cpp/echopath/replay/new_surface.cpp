@@ -6,7 +6,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/trace/launch.h"
-#include "echopath/trace/launch_cones.h"
+#include "echopath/trace/launch_directions.h"
 
 namespace echopath {
 namespace {
@@ -35,12 +35,14 @@ class Look {
        const TraceView& trace)
       : scene_(scene), frequency_(frequency), receivers_(receivers), geometry_(geometry), trace_(trace) {}
 
-  void shoot(const PosedAntenna& transmitter, const Vec3& direction, double ray_density, SurfaceSeen& seen) const {
+  // A ray of a stratum of the plan, which counts the surface that it owns.
+  void shoot(const PosedAntenna& transmitter, const Vec3& direction, const LaunchPlan& plan, int stratum, SurfaceSeen& seen) const {
     RayHit met;
     if (geometry_.intersect(transmitter.position, direction, met) != EmbreeScene::Verdict::kHit) return;
+    if (plan.owners.owner(met.hit.mesh_id, kDirect) != stratum) return;
     const SeenPoint now = point_of(met.hit, geometry_);
     const bool front = now.faces(transmitter.position);
-    const double arriving = transmitter.toward(direction).power * reflected(met.hit, now, direction) / ray_density;
+    const double arriving = transmitter.toward(direction).power * reflected(met.hit, now, direction) / plan.density(stratum);
     std::optional<bool> is_hidden;
     for (const PosedAntenna& receiver : receivers_) {
       if (!sees(geometry_, now, front, receiver.position)) continue;
@@ -108,14 +110,14 @@ SurfaceSeen look_for_new_surface(const Scene& scene, double frequency, const Ins
   for (const PosedAntenna& transmitter : antennas.transmitters) {
     if (job) job->throw_if_cancelled();
     const LaunchPlan plan = plan_rays(scene, geometry, transmitter.position, num_rays);
-    const LaunchCones cones(plan.strata);
+    const LaunchDirections directions(plan.strata);
     const int64_t count = plan.first_ray.back();
     std::vector<SurfaceSeen> parts(static_cast<size_t>((count + kRaysPerTask - 1) / kRaysPerTask), SurfaceSeen(scene));
     parallel_for(static_cast<int64_t>(parts.size()), [&](int64_t i) {
       for (int64_t ray = i * kRaysPerTask; ray < std::min(count, (i + 1) * kRaysPerTask); ++ray) {
         const int stratum = plan.stratum_of(ray);
-        const Vec3 direction = cones.direction(stratum, plan.point_of(stratum, ray));
-        look.shoot(transmitter, direction, cones.density_of_ray(direction, stratum), parts[static_cast<size_t>(i)]);
+        const Vec3 direction = directions.direction(stratum, plan.point_of(stratum, ray));
+        look.shoot(transmitter, direction, plan, stratum, parts[static_cast<size_t>(i)]);
       }
     });
     for (const SurfaceSeen& part : parts) sum.add(part);

@@ -20,6 +20,7 @@ TraceSettings settings_of(const TraceFrame& frame, double start_time) {
   settings.footprint = frame.footprint;
   settings.batches = frame.num_batches;
   settings.sampler = frame.sampler;
+  settings.shares = shares_of(frame.strata);
   return settings;
 }
 

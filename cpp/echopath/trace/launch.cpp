@@ -5,89 +5,14 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/trace/scene_objects.h"
+#include "echopath/trace/aim.h"
+#include "echopath/trace/launch_directions.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kDefensiveShare = 0.15;
-constexpr size_t kMaxCones = 254;
-// Difference of axes and versines, relative to the latter: planes at right angles have one image in both orders.
-constexpr double kSameCone = 1e-9;
-
-// As the antenna sees it over a sequence of mirrors (in travel order from there).
-Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
-  for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
-  return point;
-}
-
-struct Cone {
-  Stratum stratum;
-  int num_mirrors = 0;  // between the antenna and the object
-
-  bool is_same(const Cone& other) const {
-    const double difference = (stratum.axis - other.stratum.axis).norm() + std::abs(stratum.versine - other.stratum.versine);
-    return difference < kSameCone * stratum.versine;
-  }
-  // Of the rays, relative to other cones.
-  int64_t share() const { return num_mirrors < 2 ? kWholeShare : kWholeShare >> 2 * (num_mirrors - 1); }
-  static constexpr int64_t kWholeShare = int64_t{1} << 2 * (kMaxLegMirrors - 1);
-};
-
-// A cone around each image of an object that a beam may show.
-std::vector<Cone> aim_at_images(const Scene& scene, const VerticesOf& vertices_of, const std::vector<Mirror>& mirrors,
-                                const std::vector<Beam>& beams, const std::vector<uint32_t>& mesh_ids, const Sphere& sphere,
-                                const Cone& direct, const Vec3& apex) {
-  std::vector<Cone> cones;
-  for (const Beam& beam : beams) {
-    if (!beam.reaches(sphere.centre, sphere.radius)) continue;
-    const auto image = [&](const Vec3& point) { return image_of(point, mirrors, beam.mirrors); };
-    std::string name = direct.stratum.name;
-    for (size_t k = beam.mirrors.size(); k-- > 0;) {
-      name += " over " + scene.node_of(mirrors[static_cast<size_t>(beam.mirrors[k])].mesh_id).name;
-    }
-    Cone cone{cone_around({image(sphere.centre), sphere.radius}, apex, name), static_cast<int>(beam.mirrors.size())};
-    tighten(cone.stratum, vertices_of, mesh_ids, apex, image);
-    const bool is_new = std::none_of(cones.begin(), cones.end(), [&](const Cone& other) { return cone.is_same(other); });
-    if (is_new) cones.push_back(std::move(cone));
-  }
-  return cones;
-}
-
-struct Cones {
-  std::vector<Cone> objects, images;
-};
-
-Cones aim(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchSettings& settings) {
-  Cones cones;
-  const Vec3& apex = settings.transmitter;
-  const std::vector<Beam> beams = find_beams(apex, mirrors, settings.max_image_mirrors);
-  const VerticesOf vertices_of = [&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); };
-  for (const auto& [object, mesh_ids] : objects_of(scene)) {
-    const Sphere sphere = bounding_sphere(vertices_of, mesh_ids);
-    if (sphere.holds(apex)) continue;
-    Cone direct{cone_around(sphere, apex, scene.nodes()[static_cast<size_t>(object)].name)};
-    tighten(direct.stratum, vertices_of, mesh_ids, apex, [](const Vec3& vertex) { return vertex; });
-    const std::vector<Cone> images = aim_at_images(scene, vertices_of, mirrors, beams, mesh_ids, sphere, direct, apex);
-    cones.objects.push_back(std::move(direct));
-    cones.images.insert(cones.images.end(), images.begin(), images.end());
-  }
-  return cones;
-}
-
-std::vector<Cone> limited(Cones cones) {
-  const auto wider = [](const Cone& a, const Cone& b) { return a.stratum.versine > b.stratum.versine; };
-  if (cones.objects.size() > kMaxCones) {
-    std::stable_sort(cones.objects.begin(), cones.objects.end(), wider);
-    cones.objects.resize(kMaxCones);
-  }
-  for (int too_many = kMaxLegMirrors; too_many > 0 && cones.objects.size() + cones.images.size() > kMaxCones; --too_many) {
-    std::erase_if(cones.images, [&](const Cone& cone) { return cone.num_mirrors >= too_many; });
-  }
-  std::vector<Cone> all = std::move(cones.objects);
-  all.insert(all.end(), cones.images.begin(), cones.images.end());
-  return all;
-}
+constexpr double kFieldShare = 0.15;
+constexpr double kMovingShare = 0.5;  // of the rays that are aimed
 
 // Each batch has a shift of its own in each stratum.
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
@@ -102,36 +27,98 @@ std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batch
 
 void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sampler) {
   const auto k = static_cast<int64_t>(plan.strata.size());
-  plan.points.push_back(disc_points(sampler, num_rays, shifts_of(plan.seed, k, plan.batches)));
+  const LaunchDomain domain = domain_of(stratum);
+  plan.points.push_back(launch_points(sampler, domain, num_rays, shifts_of(plan.seed, k, plan.batches)));
   stratum.num_rays = plan.points.back()->size();
-  if (stratum.num_rays > 0) stratum.ray_density = kPi / plan.points.back()->cell_area() / stratum.solid_angle();
+  if (stratum.num_rays > 0) stratum.ray_density = domain.area() / plan.points.back()->cell_area() / stratum.solid_angle();
   plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
   plan.strata.push_back(std::move(stratum));
 }
 
+// Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
+std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
+  double moving = 0.0, resting = 0.0;
+  for (const Aim& aim : aims) (aim.moves ? moving : resting) += aim.weight();
+  const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
+  const double moving_share = moving == 0 ? 0.0 : resting == 0 ? 1.0 : kMovingShare;
+  std::vector<double> shares;
+  for (const Aim& aim : aims) {
+    shares.push_back(aim.moves ? aimed * moving_share * aim.weight() / moving
+                               : aimed * (1.0 - moving_share) * aim.weight() / resting);
+  }
+  shares.push_back(1.0 - aimed);
+  return shares;
+}
+
+std::vector<double> named_shares(const std::vector<Aim>& aims, const Stratum& field, const RayShares& shares) {
+  double mean = 0.0;
+  for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
+  const auto share_of = [&](const std::string& name) {
+    const auto found = shares.find(name);
+    return found == shares.end() ? mean : found->second;
+  };
+  std::vector<double> out;
+  for (const Aim& aim : aims) out.push_back(share_of(aim.stratum.name));
+  out.push_back(share_of(field.name));
+  return out;
+}
+
+// Whole rays, which add up; what is too little for a stratum falls to the last one.
+std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
+  double all = 0.0, before = 0.0;
+  for (const double share : shares) all += share;
+  std::vector<int64_t> rays;
+  int64_t done = 0, given = 0;
+  for (size_t k = 0; k + 1 < shares.size(); ++k) {
+    before += shares[k];
+    const auto end = static_cast<int64_t>(std::llround(before / all * static_cast<double>(num_rays)));
+    const int64_t here = end - done >= LaunchPlan::kFewestRays ? end - done : 0;
+    done = end;
+    given += here;
+    rays.push_back(here);
+  }
+  rays.push_back(num_rays - given);
+  return rays;
+}
+
+Stratum field_of_view(const LaunchSettings& settings) {
+  Stratum field;
+  field.axis = settings.boresight;
+  field.versine = settings.field_versine;
+  field.name = "field of view";
+  return field;
+}
+
 }  // namespace
+
+RayShares shares_of(const std::vector<Stratum>& strata) {
+  RayShares shares;
+  for (const Stratum& stratum : strata) shares[stratum.name] = static_cast<double>(stratum.num_rays);
+  return shares;
+}
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
+  const Stratum field = field_of_view(settings);
+  Aims found = aim_at_objects(scene, geometry, mirrors,
+                              {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(),
+                               settings.sampler == Sampler::kLattice});
+  const std::vector<double> shares = settings.shares.empty()
+                                         ? default_shares(found.aims, found.any_unaimed || !mirrors.empty())
+                                         : named_shares(found.aims, field, settings.shares);
+  const std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
   LaunchPlan plan;
   plan.seed = settings.seed;
   plan.batches = settings.batches;
+  plan.num_unaimed = found.num_left_out;
   plan.first_ray.assign(1, 0);
-  const std::vector<Cone> cones = limited(aim(scene, geometry, mirrors, settings));
-  int64_t shares = 0, shared = 0;
-  for (const Cone& cone : cones) shares += cone.share();
-  const double aimed_share = cones.empty() ? 0.0 : 1.0 - kDefensiveShare;
-  const auto aimed = static_cast<int64_t>(std::llround(aimed_share * static_cast<double>(settings.num_rays)));
-  for (const Cone& cone : cones) {
-    const int64_t before = aimed * shared / shares;
-    shared += cone.share();
-    add_stratum(plan, cone.stratum, aimed * shared / shares - before, settings.sampler);
+  plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, static_cast<int>(found.aims.size()));
+  for (size_t k = 0; k < found.aims.size(); ++k) {
+    add_stratum(plan, std::move(found.aims[k].stratum), rays[k], settings.sampler);
+    if (plan.strata[k].num_rays == 0) continue;
+    for (const MirrorSequence sequence : found.aims[k].sequences) plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
   }
-  Stratum defensive;
-  defensive.axis = settings.boresight;
-  defensive.versine = settings.field_versine;
-  defensive.name = "field of view";
-  add_stratum(plan, std::move(defensive), settings.num_rays - aimed, settings.sampler);
+  add_stratum(plan, field, rays.back(), settings.sampler);
   return plan;
 }
 

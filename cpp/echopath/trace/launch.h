@@ -1,42 +1,57 @@
 #pragma once
 // Where rays start: strata of directions and the low-discrepancy set inside each.
 #include <array>
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "echopath/trace/mirror_beams.h"
 #include "echopath/trace/packet.h"
+#include "echopath/trace/ray_owners.h"
 #include "echopath/trace/sampler.h"
+#include "echopath/trace/stratum.h"
 
 namespace echopath {
 
-// One cone around each object as seen from `transmitter`, about the centre of its box, one around each of its images over
-// mirrors, and a defensive stratum over the antenna's field of view, the last one. Objects are the children of the scene's
-// root, without their mirrors, whose bounding sphere does not hold the antenna. The cones share 85 % of the rays: equal shares
-// for objects and images over one mirror, a quarter of it for each mirror more. The defensive stratum has the rest (all, where
-// there is no object). `boresight`: unit; `field_versine`: 1 - cosine of the field of view's half angle.
-// At most 255 strata: images over the most mirrors are left out first, then the objects of the smallest solid angle.
+// Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
+using RayShares = std::map<std::string, double>;
+// Those of a plan that was carried out.
+RayShares shares_of(const std::vector<Stratum>& strata);
+
+// One stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over mirrors,
+// and the antenna's field of view, the last one. Objects are the children of the scene's root, without their mirrors; those that
+// surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes of mirrors. Each
+// stratum counts the echoes that it owns (ray_owners.h).
+// Unless told otherwise, objects that move have half of the rays that are aimed, others the other half; within each, objects
+// and images over one mirror share alike, and images over two have a quarter of that. The field of view has 15 % where it owns
+// anything. A stratum that would get fewer than kFewestRays has none: what it would own belongs to the field of view.
 struct LaunchPlan {
+  static constexpr int64_t kFewestRays = 4;
+
   // What belongs to each of a packet's rays.
   struct Places {
     std::array<int, kPacketSize> strata, batches;
-    LaneValues x, y;  // of the unit disc
+    LaneValues x, y;  // of the stratum's lattice
   };
 
   std::vector<Stratum> strata;
-  // Of each stratum, in the equal-area (Lambert) projection of its cone to the unit disc.
-  std::vector<std::unique_ptr<const DiscPoints>> points;
+  std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
   std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
+  RayOwners owners;
   uint64_t seed = 0;
   int batches = 1;
+  int64_t num_unaimed = 0;  // objects and images that have no stratum of their own because there are too many of them
 
   int stratum_of(int64_t ray) const;
   int batch_of(int stratum, int64_t ray) const;
-  // Rays per sr of one batch inside the cone.
-  double lattice_density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density / batches; }
+  // Rays per sr inside the stratum, of all batches together and of one of them.
+  double density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density; }
+  double lattice_density(int stratum) const { return density(stratum) / batches; }
   Eigen::Vector2d point_of(int stratum, int64_t ray) const;
   // Of `count` rays in a row.
   void place(int64_t begin, int count, Places& out) const;
-  bool is_defensive(int stratum) const { return stratum + 1 == static_cast<int>(strata.size()); }
+  bool is_field_of_view(int stratum) const { return stratum == owners.field_of_view(); }
 };
 
 struct LaunchSettings {
@@ -44,10 +59,11 @@ struct LaunchSettings {
   uint64_t seed = 0;
   Sampler sampler = Sampler::kLattice;
   int batches = 1;  // independent shifts of the set of each stratum, which share its rays
-  int max_image_mirrors = kMaxLegMirrors;  // images over more get no cone
+  int max_image_mirrors = kMaxLegMirrors;  // images over more get no stratum
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
-  double field_versine = 2.0;
+  double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
+  RayShares shares;  // empty: the rule above
 };
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

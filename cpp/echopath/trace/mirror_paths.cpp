@@ -14,7 +14,6 @@ constexpr size_t kMaxBeams = 20000;   // sequences of mirrors tried; the longest
 // one, and of one as far on the other side. In no direction that a scene is likely to be built along.
 constexpr double kAside = 1e-5;  // m
 const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
-constexpr int kImageStratum = 255;
 
 class ImageSearch {
  public:
@@ -38,7 +37,7 @@ class ImageSearch {
     if (num_found == 0) return;
     const std::complex<double> weight = (settings_.is_polarized ? 1.0 : field()) * (0.5 * num_found);
     if (std::abs(weight) == 0) return;
-    block_.add(hits_.data(), static_cast<int>(hits_.size()), 0, std::complex<float>(weight), kImageStratum);
+    block_.add(hits_.data(), static_cast<int>(hits_.size()), 0, std::complex<float>(weight), kNoStratum);
     if (settings_.is_polarized) block_.set_jones(jones_matrix());
     block_.statistics.num_hits += static_cast<int64_t>(hits_.size());
   }

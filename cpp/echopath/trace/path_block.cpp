@@ -33,7 +33,7 @@ void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
   PathFan& fan = fans.emplace_back();
   fan.num_before = rows.size();
   fan.hit = hit;
-  fan.stratum = static_cast<uint8_t>(path_stratum);
+  fan.stratum = static_cast<uint16_t>(path_stratum);
   fan.batch = current_batch;
   fan.flags = current_half;
   fan.max_bounces = static_cast<uint32_t>(max_bounces);

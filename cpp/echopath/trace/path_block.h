@@ -64,8 +64,8 @@ class PathBlock {
   void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const;
   static constexpr int64_t kOfRay = -1;
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
-    rows.add({offset, diffuse_bits, path_weight, current_half, static_cast<uint8_t>(count),
-              static_cast<uint8_t>(path_stratum), current_batch});
+    rows.add({offset, diffuse_bits, path_weight, current_half, static_cast<uint16_t>(path_stratum),
+              static_cast<uint8_t>(count), current_batch});
   }
 
   size_t first_of_ray_ = 0;  // path of the current ray

@@ -11,7 +11,8 @@ struct PathRow {
   uint64_t diffuse;
   std::complex<float> weight;
   uint32_t flags;
-  uint8_t num_bounces, stratum, batch;
+  uint16_t stratum;
+  uint8_t num_bounces, batch;
 };
 
 class PathColumns {
@@ -35,7 +36,8 @@ class PathColumns {
   std::vector<uint64_t> diffuse;
   std::vector<std::complex<float>> weight;
   std::vector<uint32_t> flags;
-  std::vector<uint8_t> num_bounces, stratum, batch;
+  std::vector<uint16_t> stratum;
+  std::vector<uint8_t> num_bounces, batch;
 
  private:
   void grow();

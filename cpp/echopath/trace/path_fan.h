@@ -17,7 +17,8 @@ struct FanLeg {
 struct PathFan {
   size_t num_before = 0;  // paths of the block in front of it, those of fans not counted
   Hit hit;
-  uint8_t stratum = 0, batch = 0;
+  uint16_t stratum = 0;
+  uint8_t batch = 0;
   uint32_t flags = 0;
   uint32_t num_in = 0, num_out = 0, max_bounces = 0;
 };
@@ -30,7 +31,8 @@ struct PathRows {
   uint8_t* num_bounces;
   uint64_t* diffuse;
   std::complex<float>* weight;
-  uint8_t *stratum, *batch;
+  uint16_t* stratum;
+  uint8_t* batch;
   uint32_t* flags;
 
   void skip_rows(size_t count);

@@ -58,10 +58,6 @@ HitSet used_hits(const Paths& paths) {
 
 }  // namespace
 
-double Stratum::solid_angle() const { return kTwoPi * versine; }
-
-bool Stratum::contains(const Vec3& direction) const { return 0.5 * (direction - axis).squaredNorm() <= versine; }
-
 void Paths::validate() const {
   const size_t size = offsets.size();
   require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
@@ -72,7 +68,7 @@ void Paths::validate() const {
     require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
     require(offsets[i] >= 0 && offsets[i] + num_bounces[i] <= num_hits(), "offsets", "must lead to hits", offsets[i]);
     require(batch[i] == kNoBatch || batch[i] < frame.num_batches, "batch", "must be one of the frame's", int{batch[i]});
-    require(stratum[i] == 255 || stratum[i] < frame.strata.size(), "stratum", "must be one of the frame's", int{stratum[i]});
+    require(stratum[i] == kNoStratum || stratum[i] < frame.strata.size(), "stratum", "must be one of the frame's", int{stratum[i]});
   }
   for (int64_t i = 0; i < num_hits(); ++i) {
     const Hit& hit = (*hits)[static_cast<size_t>(i)];

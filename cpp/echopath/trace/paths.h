@@ -14,6 +14,7 @@
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"
 #include "echopath/trace/sampler.h"
+#include "echopath/trace/stratum.h"
 
 namespace echopath {
 
@@ -27,17 +28,8 @@ struct Hit {  // 16 bytes
 };
 static_assert(sizeof(Hit) == 16);
 
-// One launch stratum: uniform directions in a cone.
-struct Stratum {
-  Vec3 axis = Vec3::UnitX();   // unit, world axes
-  double versine = 2.0;        // 1 - cos(half angle), exact for narrow cones; 2: whole sphere
-  int64_t num_rays = 0;
-  double ray_density = 0.0;    // rays per sr inside the cone, N_k p_k; exact, so that its integral may differ from num_rays
-  std::string name;            // what it aims at
-
-  double solid_angle() const;                  // sr
-  bool contains(const Vec3& direction) const;  // unit direction
-};
+// The stratum of paths that rays did not find (image method).
+inline constexpr uint16_t kNoStratum = 65535;
 
 // The batch of paths that rays did not find (image method): they stand in each batch's estimate in full.
 inline constexpr uint8_t kNoBatch = 255;
@@ -63,6 +55,7 @@ struct TraceStatistics {
   int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
   int64_t num_small_mirrors = 0;  // rays ended behind an unflagged mirror smaller than its Fresnel zone
   int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
+  int64_t num_unaimed = 0;       // objects and images that no rays aim at, because there are too many of them
 };
 
 // What a path's amplitude and length are relative to.
@@ -94,7 +87,7 @@ struct Paths {
   std::vector<uint8_t> num_bounces;
   std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
   std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
-  std::vector<uint8_t> stratum;              // index into frame.strata; 255: none (image method)
+  std::vector<uint16_t> stratum;             // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
   std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the

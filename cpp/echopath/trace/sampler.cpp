@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
 #include "echopath/base/random.h"
-#include "echopath/trace/disc_lattice.h"
+#include "echopath/trace/launch_lattice.h"
 
 namespace echopath {
 namespace {
@@ -24,7 +25,7 @@ Eigen::Vector2d concentric(double x, double y) {
 }
 
 // Batches of equal size, but for one point.
-class EqualShares : public DiscPoints {
+class EqualShares : public LaunchPoints {
  public:
   EqualShares(int64_t num_points, std::vector<Eigen::Vector2d> shifts) : num_points_(num_points), shifts_(std::move(shifts)) {}
   int64_t size() const override { return num_points_; }
@@ -78,10 +79,13 @@ class RandomPoints : public EqualShares {
 
 }  // namespace
 
-std::unique_ptr<const DiscPoints> disc_points(Sampler sampler, int64_t num_points,
-                                              const std::vector<Eigen::Vector2d>& shifts) {
+double LaunchDomain::area() const { return is_disc() ? kPi : 4.0 * half[0] * half[1]; }
+
+std::unique_ptr<const LaunchPoints> launch_points(Sampler sampler, const LaunchDomain& domain, int64_t num_points,
+                                                  const std::vector<Eigen::Vector2d>& shifts) {
+  require(sampler == Sampler::kLattice || domain.is_disc(), "sampler", "must be the lattice for strips", static_cast<int>(sampler));
   switch (sampler) {
-    case Sampler::kLattice: return std::make_unique<DiscLattice>(num_points, shifts);
+    case Sampler::kLattice: return std::make_unique<LaunchLattice>(domain, num_points, shifts);
     case Sampler::kFibonacci: return std::make_unique<FibonacciSpiral>(num_points, shifts);
     case Sampler::kR2: return std::make_unique<R2Sequence>(num_points, shifts);
     case Sampler::kRandom: break;

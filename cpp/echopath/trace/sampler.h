@@ -1,5 +1,5 @@
 #pragma once
-// How the rays of one stratum are spread over its cone.
+// How the rays of one stratum are spread over it.
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
@@ -14,10 +14,19 @@ enum class Sampler {
   kRandom,     // independent uniform points: what even sets are measured against
 };
 
-// Points in the unit disc, uniform in area; launch directions follow by the equal-area projection of the cone.
-class DiscPoints {
+// What the points of a stratum lie in: the unit disc, of which the equal-area projection of a cone makes directions, or a
+// rectangle of twice these half lengths about 0, of which that of a strip does.
+struct LaunchDomain {
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();  // zero: the unit disc
+
+  bool is_disc() const { return half[0] == 0.0; }
+  double area() const;
+};
+
+// Points in a domain, uniform in area.
+class LaunchPoints {
  public:
-  virtual ~DiscPoints() = default;
+  virtual ~LaunchPoints() = default;
   virtual int64_t size() const = 0;
   virtual double cell_area() const = 0;                     // what one point stands for
   virtual Eigen::Vector2d point(int64_t index) const = 0;  // index in [0, size())
@@ -34,9 +43,9 @@ class DiscPoints {
 
 // Exactly num_points points, in as many independent batches, one after the other, as there are shifts [2] in [0, 1). A
 // shift moves its batch (lattice, R2: Cranley and Patterson 1976), turns it and moves it along the spiral (Fibonacci) or
-// seeds it (random).
-std::unique_ptr<const DiscPoints> disc_points(Sampler sampler, int64_t num_points,
-                                              const std::vector<Eigen::Vector2d>& shifts);
+// seeds it (random). All but the lattice are made for discs alone.
+std::unique_ptr<const LaunchPoints> launch_points(Sampler sampler, const LaunchDomain& domain, int64_t num_points,
+                                                  const std::vector<Eigen::Vector2d>& shifts);
 
 // Standard deviation, in launch cells per axis, of the Gaussian that stands for one ray in the second-order footprint:
 // the wider, the less the gaps between rays show; the narrower, the less is lost where the surface bends within a cell.

@@ -33,7 +33,7 @@ double curvature_along(const RayHit& point, const Vec3& direction) {
 
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
-    : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), cones_(plan.strata), settings_(settings),
+    : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), directions_(plan.strata), settings_(settings),
       legs_(geometry, mirrors, settings.frequency, settings.polarization), transmitter_(legs_.view_of(settings.transmitter)),
       receiver_(legs_.view_of(settings.receiver)), mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
@@ -86,6 +86,16 @@ bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surfa
   return true;
 }
 
+// Whether the rays of a stratum count what first hits on a mesh over these mirrors send.
+bool RayShooter::is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const {
+  return plan_.owners.owner(mesh_id, sequence) == stratum;
+}
+
+// Whether they are on their way to what they aim at when they meet this mesh.
+bool RayShooter::passes(int stratum, uint32_t mesh_id) const {
+  return mirror_of_mesh_[mesh_id] >= 0 && !plan_.is_field_of_view(stratum);
+}
+
 // At the point of `surface`, if it counts as a hit.
 bool RayShooter::arrive(Ray& ray, Surface& surface, PathBlock& block) const {
   surface.cos_incidence = -surface.point.normal.dot(ray.direction);
@@ -96,6 +106,12 @@ bool RayShooter::arrive(Ray& ray, Surface& surface, PathBlock& block) const {
   if (ray.last_was_mirror && !suffices(ray.mirror, ray.leg_length, surface.point.distance)) {
     ++block.statistics.num_small_mirrors;
     return false;
+  }
+  if (!ray.is_owned) {
+    const uint32_t mesh = surface.point.hit.mesh_id;
+    const bool passes_on = passes(ray.stratum, mesh) && ray.sequence != kOther && ray.depth < kMaxLegMirrors;
+    ray.is_owned = !passes_on && is_owner(ray.stratum, mesh, ray.sequence);
+    if (!passes_on && !ray.is_owned) return false;
   }
   ++block.statistics.num_hits;
   surface.model = &models_[surface.point.hit.mesh_id];

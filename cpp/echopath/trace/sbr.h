@@ -4,17 +4,18 @@
 // Regime C (coherent): the ray carries a field, and each unflagged hit radiates by physical optics over every visible
 // receive leg. Regime D (diffuse): the ray carries power with one random phase per diffuse hit. A diffuse hit that the ray
 // reached directly or over at most kMaxLegMirrors flagged mirrors is paired with all its visible transmit and receive legs,
-// under the balance weight over the ways in which rays could have found it. Flagged mirrors radiate diffusely only, by one
-// in eight of the rays that aim at objects and all others; paths over mirrors alone come from mirror_paths.h. A chain of
-// diffuse hits gives both of its orders, with one phase, under the balance weight over the rays that meet it from either end
-// (sbr_diffuse.cpp).
+// under the balance weight over the ways in which rays could have found it. A ray counts what its stratum owns (ray_owners.h):
+// one that was aimed at an object goes over flagged mirrors as they reflect, without chance, and ends at whatever else it meets
+// first. Flagged mirrors radiate diffusely only, by rays of the field of view; paths over mirrors alone come from
+// mirror_paths.h. A chain of diffuse hits gives both of its orders, with one phase, under the balance weight over the rays that
+// meet it from either end (sbr_diffuse.cpp).
 // A specular bounce off an unflagged surface smaller than its Fresnel zone is no mirror: the ray ends behind it. What it would
 // have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
 // the opposite order would have to use such a mirror.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include "echopath/trace/chance.h"
 #include "echopath/trace/launch.h"
-#include "echopath/trace/launch_cones.h"
+#include "echopath/trace/launch_directions.h"
 #include "echopath/trace/legs.h"
 #include "echopath/trace/path_block.h"
 
@@ -47,6 +48,7 @@ class RayShooter {
   struct Odds {    // of going on
     double specular = 0.0, diffuse = 0.0;
   };
+  static constexpr Odds kPassingOn{1.0, 0.0};  // of rays that are not yet where they aim at
   struct Packet;   // of neighbouring rays up to their first hits
   struct Departure;  // of a ray from a hit
   struct Chain;    // of diffuse hits
@@ -67,6 +69,8 @@ class RayShooter {
   EmbreeScene::Verdict ask(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
   bool travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch, PathBlock& block) const;
   bool arrive(Ray& ray, Surface& surface, PathBlock& block) const;
+  bool is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const;
+  bool passes(int stratum, uint32_t mesh_id) const;
   void settle(Ray& ray, Surface& surface) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
@@ -85,8 +89,7 @@ class RayShooter {
                        PathBlock& block) const;
   Leg own_leg(const Ray& ray) const;
   LegQuery legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const;
-  double counted_share(const Surface& surface) const;
-  bool is_counted(const Ray& ray, const Surface& surface) const;
+  double density_over(uint32_t mesh_id, const Leg& leg) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const;
   void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
                   PathBlock& block) const;
@@ -129,7 +132,7 @@ class RayShooter {
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
   const LaunchPlan& plan_;
-  LaunchCones cones_;
+  LaunchDirections directions_;
   SbrSettings settings_;
   LegFinder legs_;
   AntennaView transmitter_, receiver_;

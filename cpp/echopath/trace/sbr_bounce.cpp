@@ -30,7 +30,7 @@ RayShooter::Odds RayShooter::odds_of(const SurfaceModel& model, const SurfaceRes
 
 RayShooter::Departure RayShooter::depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const {
   const SurfaceResponse& response = surface.response;
-  const Odds odds = odds_of(*surface.model, response);
+  const Odds odds = ray.is_owned ? odds_of(*surface.model, response) : kPassingOn;
   Departure way;
   way.survival = survival_of(response, ray.coherent ? ray.depth : ray.depth - chain.first);
   way.ends = surface.chance.survival_coin >= way.survival || std::norm(response.gamma) == 0;
@@ -69,6 +69,7 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departu
   ray.chain_share *= way.odds;
   const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
   ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
+  if (is_leg) ray.is_owned = false;  // what is met next may have another owner
   ray.last_was_mirror = mirror < 0;
   if (mirror < 0) ray.mirror = bounced;
   if (!ray.coherent) leave_specular(ray, surface, way.probability(), chain);

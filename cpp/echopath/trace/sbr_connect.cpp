@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/random.h"
 #include "echopath/scene/smooth.h"
 #include "echopath/trace/sbr_state.h"
 
 namespace echopath {
 namespace {
-
-// Of the hits that aimed rays make on a mirror, those that become diffuse echoes: such a ray is about an object behind, and
-// the patch of mirror that lies in its way has nothing over the rest of the plane, which the field of view samples.
-constexpr double kMirrorShare = 0.125;
 
 // In travel order: over the transmit leg to `hit`, and over the receive leg.
 std::array<Hit, 2 * kMaxLegMirrors + 1> pair_hits(const Leg& in, const Hit& hit, const Leg& out) {
@@ -51,6 +46,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   const Vec3& point = surface.point.position;
   scratch.receive.clear();
   scratch.has_receive = false;
+  if (!ray.is_owned) return;
   const auto is_near = [&](const Vec3& antenna) { return (point - antenna).squaredNorm() < kNearAntenna * kNearAntenna; };
   if (is_near(settings_.receiver) || is_near(settings_.transmitter)) {
     ++block.statistics.num_near_antenna;
@@ -61,7 +57,6 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
   if (!radiates_field && !radiates_power) return;
   const bool in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
   // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
-  if (in_pairs && !is_counted(ray, surface)) return;
   legs_.find(legs_from(surface, settings_.max_bounces - (in_pairs ? 1 : ray.depth), kOther), receiver_, scratch.receive,
              scratch.search);
   scratch.has_receive = true;
@@ -159,28 +154,19 @@ Leg RayShooter::own_leg(const Ray& ray) const {
   return leg;
 }
 
-// Of the hits that rays of aimed strata make here, the share that becomes diffuse echoes over all pairs of legs.
-double RayShooter::counted_share(const Surface& surface) const { return surface.material->mirror ? kMirrorShare : 1.0; }
-
-bool RayShooter::is_counted(const Ray& ray, const Surface& surface) const {
-  if (!surface.material->mirror) return true;
-  const double share = plan_.is_defensive(ray.stratum) ? 1.0 : counted_share(surface);
-  if (share == 1.0) return true;
-  const auto hit = static_cast<uint32_t>(ray.depth);
-  return uniform2(settings_.seed, Stream::kThinning, static_cast<uint64_t>(ray.index), hit)[0] < share;
+// Rays per sr at the antenna's end of a transmit leg that come over it to a first hit on a mesh, and go on at all its mirrors:
+// those that aim there do.
+double RayShooter::density_over(uint32_t mesh_id, const Leg& leg) const {
+  const int stratum = plan_.owners.owner(mesh_id, leg.sequence);
+  return plan_.density(stratum) * (plan_.is_field_of_view(stratum) ? leg.specular_share : 1.0);
 }
 
 // The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here, the ray's own
 // way and the `others`.
 double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const {
-  const double aimed_share = counted_share(surface);
-  const double own_density =
-      aimed_share == 1.0 ? ray.launch_density : cones_.density_of_ray(ray.launch_direction, ray.stratum, aimed_share);
-  double hits_per_area =
-      own_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
+  double hits_per_area = ray.launch_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
   for (const Leg& leg : others) {
-    hits_per_area += cones_.density(leg.at_antenna, aimed_share) * leg.specular_share *
-                     surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
+    hits_per_area += density_over(surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
   }
   return 1.0 / hits_per_area;
 }

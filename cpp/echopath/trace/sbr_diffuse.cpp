@@ -48,7 +48,6 @@ void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double prob
     chain.fields = ray.polarized;
     return;
   }
-  // A hit that does not count as an echo (is_counted) has no legs yet.
   if (!scratch.has_receive) {
     legs_.find(legs_from(surface, ray.depth - 1, kOther), receiver_, scratch.receive, scratch.search);
   }
@@ -103,7 +102,7 @@ void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, Mir
 double RayShooter::share_of_order(const Surface& surface, const SurfaceResponse& response, const Leg& leg,
                                   const Chain& chain) const {
   if (chain.odds == 0) return 1.0;
-  const double density = cones_.density(leg.at_antenna) * leg.specular_share * surface.point.normal.dot(leg.to_antenna) /
+  const double density = density_over(surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) /
                          (leg.length * leg.length);
   const double probability = odds_of(*surface.model, response).diffuse * survival_of(response, leg.num_bounces + 1);
   return 1.0 / (1.0 + chain.odds * density * probability / chain.density);

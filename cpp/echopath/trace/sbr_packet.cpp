@@ -80,7 +80,8 @@ void RayShooter::launch_packet(Packet& packet) const {
   for (LaneRange lanes{0, 0}; lanes.begin < packet.count; lanes.begin = lanes.end) {
     const int stratum = places.strata[static_cast<size_t>(lanes.begin)];
     while (lanes.end < packet.count && places.strata[static_cast<size_t>(lanes.end)] == stratum) ++lanes.end;
-    cones_.launch(stratum, places.x, places.y, lanes, packet.directions, packet.densities);
+    directions_.launch(stratum, places.x, places.y, lanes, packet.directions);
+    for (int lane = lanes.begin; lane < lanes.end; ++lane) packet.densities[lane] = plan_.density(stratum);
   }
   packet.chance.draw(settings_.seed, packet.begin, packet.count, places.batches.data());
 }
@@ -96,6 +97,11 @@ void RayShooter::arrive_packet(Packet& packet, PathBlock& block) const {
     if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
     if (is_hit && !packet.arrives[k]) ++block.statistics.num_grazing;
     if (!packet.arrives[k]) continue;
+    const uint32_t mesh = packet.hits.met[k].mesh_id;
+    const bool passes_on = passes(packet.places.strata[k], mesh);
+    packet.is_owned[k] = !passes_on && is_owner(packet.places.strata[k], mesh, kDirect);
+    packet.arrives[k] = packet.is_owned[k] || passes_on;
+    if (!packet.arrives[k]) continue;
     ++block.statistics.num_hits;
     look_at_surface(packet, lane);
   }
@@ -110,7 +116,8 @@ void RayShooter::look_at_surface(Packet& packet, int lane) const {
   packet.modes[k] = is_constant ? PolarizationMode::kTe
                                 : mode_along(model, settings_.polarization, packet.directions[lane], packet.hits.normal[lane]);
   const SurfaceResponse response = model.respond(packet.cos_incidence[lane], packet.modes[k]);
-  packet.set_response(lane, response, is_constant ? constant_odds_[mesh] : odds_of(model, response));
+  const Odds odds = !packet.is_owned[k] ? kPassingOn : is_constant ? constant_odds_[mesh] : odds_of(model, response);
+  packet.set_response(lane, response, odds);
   packet.goes_on[k] = settings_.max_bounces > 1 && response.gamma != 0.0;
   packet.is_plain[k] = has_only_direct_legs_ && !model.material().mirror && !is_near;
 }
@@ -170,6 +177,7 @@ RayShooter::RayAtHit& RayShooter::start(const Packet& packet, int lane, Scratch&
   ray.index = packet.begin + lane;
   ray.stratum = packet.places.strata[k];
   ray.direction = ray.launch_direction = packet.directions[lane];
+  ray.is_owned = packet.is_owned[k];
   ray.leg_density = ray.launch_density = packet.densities[lane];
   if (settings_.is_polarized) ray.polarized = launched_fields(ray.direction);
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);

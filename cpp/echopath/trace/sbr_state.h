@@ -34,7 +34,8 @@ struct RayShooter::Ray {
   bool coherent = true;       // regime C
   MirrorSequence sequence = kDirect;  // how the transmitter was left
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
-  double launch_density = 0.0;        // rays per sr of all strata toward its launch direction
+  bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
+  double launch_density = 0.0;        // rays per sr of its stratum
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
@@ -77,14 +78,15 @@ struct RayShooter::Packet {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  LaneValues densities;  // rays per sr of all strata toward there
+  LaneValues densities;  // rays per sr of their strata
   PacketChance chance;
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;        // the hits, off their surfaces
   LaneValues cos_incidence;
   LaneValues cos_receiver;   // positive where the receiver is on the lit side; not divided by its distance
   LaneValues near_squared;   // m^2: to the nearest antenna
-  EmbreeScene::Lanes arrives;              // whether the ray is at a hit at all
+  EmbreeScene::Lanes arrives;              // whether the ray is at a hit that its stratum owns, or passes over a mirror
+  std::array<bool, kPacketSize> is_owned;  // the former
   std::array<Sight, kPacketSize> receiver;  // as seen from there
   std::array<const SurfaceModel*, kPacketSize> models;
   std::array<PolarizationMode, kPacketSize> modes;

@@ -7,16 +7,16 @@ namespace echopath {
 
 std::vector<SceneObject> objects_of(const Scene& scene) {
   std::vector<SceneObject> objects;
+  std::vector<int> place(scene.nodes().size(), -1);  // among the objects, by node
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     if (scene.node_of(id).material->mirror) continue;
     const int node = scene.meshes()[id].object;
-    const auto is_its = [&](const SceneObject& object) { return object.node == node; };
-    const auto found = std::find_if(objects.begin(), objects.end(), is_its);
-    if (found == objects.end()) {
-      objects.push_back({node, {id}});
-    } else {
-      found->mesh_ids.push_back(id);
+    int& index = place[static_cast<size_t>(node)];
+    if (index < 0) {
+      index = static_cast<int>(objects.size());
+      objects.push_back({node, {}});
     }
+    objects[static_cast<size_t>(index)].mesh_ids.push_back(id);
   }
   return objects;
 }
@@ -31,18 +31,6 @@ Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t
     for (const Vec3& vertex : vertices_of(id)) sphere.radius = std::max(sphere.radius, (vertex - sphere.centre).norm());
   }
   return sphere;
-}
-
-Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name) {
-  const Vec3 line = sphere.centre - apex;
-  const double distance = line.norm();
-  const double sine = std::min(1.0, sphere.radius / distance);
-  Stratum stratum;
-  stratum.axis = line / distance;
-  // Without cancellation.
-  stratum.versine = std::min(2.0, sine * sine / (1.0 + std::sqrt(1.0 - sine * sine)) * kConeMargin);
-  stratum.name = std::move(name);
-  return stratum;
 }
 
 }  // namespace echopath

@@ -1,11 +1,9 @@
 #pragma once
-// What counts as an object of a scene (PHYSICS 1.2), and the cone of directions that holds one.
+// What counts as an object of a scene, and the ball that holds one.
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "echopath/scene/scene.h"
-#include "echopath/trace/paths.h"
 
 namespace echopath {
 
@@ -22,8 +20,7 @@ struct SceneObject {
   std::vector<uint32_t> mesh_ids;
 };
 
-// In the order of their first mesh. Those whose bounding sphere holds an antenna surround it, as walls and grounds do:
-// they are objects to nobody.
+// In the order of their first mesh.
 std::vector<SceneObject> objects_of(const Scene& scene);
 
 // Vertices of a mesh in the axes of the caller.
@@ -31,26 +28,5 @@ using VerticesOf = std::function<const std::vector<Vec3>&(uint32_t mesh_id)>;
 
 // About the centre of the box of the vertices.
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids);
-
-// From `apex` outside of the sphere; without rays.
-Stratum cone_around(const Sphere& sphere, const Vec3& apex, std::string name);
-
-// Of versines, relative: a little wider than exact, so that single precision loses no edge.
-inline constexpr double kConeMargin = 1.0 + 1e-4;
-
-// Makes a cone no wider than the vertices need, as `image` shows them to `apex`: a long object seen end-on fills little of
-// its bounding sphere. image: a function (const Vec3&) -> Vec3
-template <class Image>
-void tighten(Stratum& cone, const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids, const Vec3& apex,
-             const Image& image) {
-  double widest = 0.0;
-  for (const uint32_t id : mesh_ids) {
-    for (const Vec3& vertex : vertices_of(id)) {
-      const Vec3 toward = (image(vertex) - apex).normalized();
-      widest = std::max(widest, 0.5 * (toward - cone.axis).squaredNorm());
-    }
-  }
-  cone.versine = std::min(cone.versine, widest * kConeMargin);
-}
 
 }  // namespace echopath

@@ -61,6 +61,7 @@ Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& sett
       shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_) {
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
+  empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
 }
 
 LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
@@ -69,6 +70,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
   launch.seed = settings.seed;
   launch.sampler = settings.sampler;
   launch.batches = settings.batches;
+  launch.shares = settings.shares;
   launch.max_image_mirrors = std::min(kMaxLegMirrors, settings.max_bounces - 1);
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

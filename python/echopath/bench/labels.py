@@ -115,7 +115,7 @@ def random_paths(paths, num_hits: int, least: int, most: int):
         hits=hits, offsets=np.cumsum(counts) - counts, num_bounces=counts.astype(np.uint8),
         diffuse=draw.integers(0, 2**63, len(counts), np.uint64)
         & ((np.uint64(1) << counts.astype(np.uint64)) - np.uint64(1)),
-        weight=none.astype(np.complex64), stratum=none.astype(np.uint8), batch=none.astype(np.uint8),
+        weight=none.astype(np.complex64), stratum=none.astype(np.uint16), batch=none.astype(np.uint8),
         flags=none.astype(np.uint32), scene=paths.scene, radar=paths.radar, frame=paths.frame)
 
 

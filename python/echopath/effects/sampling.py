@@ -14,7 +14,7 @@ def _aimed(case: Case):
     if not case.objects:
         return False, "nothing but mirrors: all rays fill the field of view"
     images = " and at their images" if case.mirrors and case.settings.max_bounces > 1 else ""
-    return True, f"a cone for each object{images}; the rest of the rays fills the field of view"
+    return True, f"a cone or strip that fits each object{images}; the rest of the rays fills the field of view"
 
 
 @rule("standard errors", "trace.batches")

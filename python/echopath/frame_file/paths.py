@@ -10,7 +10,7 @@ from .h5 import read_array, read_attribute, read_group, read_texts, write_array,
 
 HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
-               "stratum": np.uint8, "batch": np.uint8, "flags": np.uint32}
+               "stratum": np.uint16, "batch": np.uint8, "flags": np.uint32}
 # Columns that are there only where the scene asks for them: dtype and shape of an entry.
 OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2, 2))}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
@@ -18,7 +18,7 @@ FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization
                 "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
-              "num_false_hits")
+              "num_false_hits", "num_unaimed")
 
 
 def write_paths(group, paths, min_power: float = 0.0, power=None):
@@ -89,6 +89,10 @@ def _write_frame(group, frame) -> None:
     densities = np.array([stratum.ray_density for stratum in strata], np.float64)
     write_array(group, "stratum_ray_density", densities, unit="1/sr")
     write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
+    write_array(group, "stratum_across", np.array([stratum.across for stratum in strata], np.float64).reshape(-1, 3))
+    write_array(group, "stratum_object", np.array([stratum.object for stratum in strata], np.int64))
+    strips = [[stratum.half_azimuth, stratum.low, stratum.high] for stratum in strata]
+    write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
 
 
 def _read_frame(group):
@@ -97,9 +101,14 @@ def _read_frame(group):
     versine = read_array(group, "stratum_versine", np.float64, (len(names),))
     ray_density = read_array(group, "stratum_ray_density", np.float64, (len(names),))
     num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
+    across = read_array(group, "stratum_across", np.float64, (len(names), 3))
+    aimed_at = read_array(group, "stratum_object", np.int64, (len(names),))
+    strip = read_array(group, "stratum_strip", np.float64, (len(names), 3))
     strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
-                         ray_density=float(ray_density[i]),
-                         name=names[i]) for i in range(len(names))]
+                         ray_density=float(ray_density[i]), name=names[i], across=across[i],
+                         half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
+                         object=int(aimed_at[i]))
+              for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(
         start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),

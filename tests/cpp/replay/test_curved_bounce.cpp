@@ -48,7 +48,7 @@ Scenery scenery(const Vec3& centre, double radius, const Vec3& plate) {
   const double reach = (plate - specular).norm();
   const double half_angle = 4.0 * kSide / (2.0 * reach / radius * specular.norm() + reach);
   cone.versine = 0.5 * half_angle * half_angle;
-  made.plan.points.push_back(disc_points(Sampler::kLattice, 1 << 14, {{0.3, 0.6}}));
+  made.plan.points.push_back(launch_points(Sampler::kLattice, LaunchDomain{}, 1 << 14, {{0.3, 0.6}}));
   cone.num_rays = made.plan.points[0]->size();
   cone.ray_density = kPi / made.plan.points[0]->cell_area() / cone.solid_angle();
   made.plan.strata = {cone};

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "echopath/trace/embree_scene.h"
-#include "echopath/trace/disc_lattice.h"
+#include "echopath/trace/launch_lattice.h"
 #include "echopath/trace/launch.h"
-#include "echopath/trace/launch_cones.h"
+#include "echopath/trace/launch_directions.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> some_shifts() {
 
 TEST(Batches, OfALatticeAddUpAndAreEven) {
   for (const int64_t count : {0, 8, 100, 8000, 100003}) {
-    const DiscLattice lattice(count, some_shifts());
+    const LaunchLattice lattice(LaunchDomain{}, count, some_shifts());
     ASSERT_EQ(lattice.size(), count);
     if (count < 8000) continue;
     std::vector<double> size(kBatches), second_moment(kBatches);
@@ -48,7 +48,7 @@ TEST(Batches, OfALatticeAddUpAndAreEven) {
 }
 
 TEST(Batches, HaveLatticesOfTheirOwn) {
-  const DiscLattice lattice(8000, some_shifts());
+  const LaunchLattice lattice(LaunchDomain{}, 8000, some_shifts());
   std::vector<Eigen::Vector2d> points;
   for (int64_t i = 0; i < lattice.size(); ++i) points.push_back(lattice.point(i));
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
@@ -66,8 +66,8 @@ Scene rough_ball_and_wall() {
   return scene;
 }
 
-// Each batch alone stands for all directions: 1 / density, times the number of batches, adds up to the sphere.
-TEST(Batches, EachCoversTheSphere) {
+// Each batch alone stands for all directions of its stratum: its rays, over their density, are the solid angle.
+TEST(Batches, EachCoversItsStratum) {
   const Scene scene = rough_ball_and_wall();
   const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
   LaunchSettings settings;
@@ -75,14 +75,16 @@ TEST(Batches, EachCoversTheSphere) {
   settings.batches = kBatches;
   const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
-  const LaunchCones cones(plan.strata);
-  std::vector<double> solid_angle(kBatches);
+  std::vector<std::vector<double>> rays(plan.strata.size(), std::vector<double>(kBatches));
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
     const int stratum = plan.stratum_of(ray);
-    const double density = cones.density_of_ray(cones.direction(stratum, plan.point_of(stratum, ray)), stratum);
-    solid_angle[static_cast<size_t>(plan.batch_of(stratum, ray))] += kBatches / density;
+    rays[static_cast<size_t>(stratum)][static_cast<size_t>(plan.batch_of(stratum, ray))] += 1.0;
   }
-  for (const double covered : solid_angle) EXPECT_NEAR(covered / (4 * kPi), 1.0, kSphere);
+  for (size_t k = 0; k < plan.strata.size(); ++k) {
+    for (const double count : rays[k]) {
+      EXPECT_NEAR(count / plan.lattice_density(static_cast<int>(k)) / plan.strata[k].solid_angle(), 1.0, kSphere) << plan.strata[k].name;
+    }
+  }
 }
 
 TEST(Batches, MarkPathsAndLeaveImagesOut) {
@@ -96,7 +98,7 @@ TEST(Batches, MarkPathsAndLeaveImagesOut) {
   for (int64_t i = 0; i < paths.num_paths(); ++i) {
     const auto p = static_cast<size_t>(i);
     ++count[paths.batch[p]];
-    EXPECT_EQ(paths.batch[p] == kNoBatch, paths.stratum[p] == 255);
+    EXPECT_EQ(paths.batch[p] == kNoBatch, paths.stratum[p] == kNoStratum);
   }
   EXPECT_EQ(count[kNoBatch], 1);  // the echo of the wall
   for (size_t b = 0; b < 5; ++b) EXPECT_GT(count[b], 100) << b;

@@ -17,7 +17,7 @@ class EverySampler : public ::testing::TestWithParam<Sampler> {};
 
 TEST_P(EverySampler, HasExactlyTheNumberAskedForInsideTheDisc) {
   for (const int64_t count : {0, 1, 7, 4097}) {
-    const auto points = disc_points(GetParam(), count, kShift);
+    const auto points = launch_points(GetParam(), LaunchDomain{}, count, kShift);
     ASSERT_EQ(points->size(), count);
     for (int64_t i = 0; i < count; ++i) ASSERT_LE(points->point(i).norm(), 1.0 + kRim);
   }
@@ -27,7 +27,7 @@ TEST_P(EverySampler, HasExactlyTheNumberAskedForInsideTheDisc) {
 // independent points, 0.5 / sqrt(N) for x; even sets are far better.
 TEST_P(EverySampler, IsUniformInArea) {
   const double bound = 5 * 0.5 / std::sqrt(kCount) * (GetParam() == Sampler::kRandom ? 1.0 : 0.1);
-  const auto points = disc_points(GetParam(), kCount, kShift);
+  const auto points = launch_points(GetParam(), LaunchDomain{}, kCount, kShift);
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
   double inside = 0.0;
@@ -44,11 +44,11 @@ TEST_P(EverySampler, IsUniformInArea) {
 }
 
 TEST_P(EverySampler, ShiftsMoveThePointsAndMakeBatches) {
-  const auto points = disc_points(GetParam(), 1000, kShift), same = disc_points(GetParam(), 1000, kShift);
-  const auto moved = disc_points(GetParam(), 1000, kOther);
+  const auto points = launch_points(GetParam(), LaunchDomain{}, 1000, kShift), same = launch_points(GetParam(), LaunchDomain{}, 1000, kShift);
+  const auto moved = launch_points(GetParam(), LaunchDomain{}, 1000, kOther);
   EXPECT_EQ((points->point(500) - same->point(500)).norm(), 0.0);
   EXPECT_GT((points->point(500) - moved->point(500)).norm(), 1e-6);
-  const auto batches = disc_points(GetParam(), 1001, {kShift[0], kOther[0], {0.2, 0.4}});
+  const auto batches = launch_points(GetParam(), LaunchDomain{}, 1001, {kShift[0], kOther[0], {0.2, 0.4}});
   ASSERT_EQ(batches->size(), 1001);
   int64_t count[3] = {0, 0, 0};
   for (int64_t i = 0; i < 1001; ++i) {
@@ -64,7 +64,7 @@ TEST_P(EverySampler, ShiftsMoveThePointsAndMakeBatches) {
 // No two points of an even set come nearer than a part of the cell's side; random ones do.
 TEST_P(EverySampler, IsAsEvenAsItSays) {
   constexpr int64_t kFew = 2000;
-  const auto points = disc_points(GetParam(), kFew, kShift);
+  const auto points = launch_points(GetParam(), LaunchDomain{}, kFew, kShift);
   double least = 4.0;
   for (int64_t i = 0; i < kFew; ++i) {
     for (int64_t j = 0; j < i; ++j) least = std::min(least, (points->point(i) - points->point(j)).norm());

@@ -8,7 +8,8 @@
 #include "echopath/base/parallel.h"
 #include "echopath/trace/embree_scene.h"
 #include "echopath/trace/launch.h"
-#include "echopath/trace/launch_cones.h"
+#include "echopath/trace/launch_directions.h"
+#include "echopath/trace/launch_lattice.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -16,6 +17,7 @@ namespace {
 
 using namespace testing;
 
+constexpr double kSolidAngle = 0.02;  // of a mesh, relative: rays along its outline
 constexpr double kRounding = 1e-12;     // m and unit vectors
 constexpr double kSinglePosition = 1e-4; // m: single precision of a ray over some tens of metres
 
@@ -199,8 +201,8 @@ TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
   EXPECT_LE(num_other, 5);
 }
 
-// The density of rays over directions integrates to their number.
-TEST(Launch, DensityIsThatOfTheDirections) {
+// Rays that own what they meet, each over its density, add up to the solid angle of what there is to see.
+TEST(Launch, OwnersCoverEachSurfaceOnce) {
   const Scene scene = mixed_scene(Vec3::Zero());
   const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
   LaunchSettings settings;
@@ -208,15 +210,28 @@ TEST(Launch, DensityIsThatOfTheDirections) {
   const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
   ASSERT_GE(plan.strata.size(), 4u);  // ball, plate, an image, the field of view
-  const LaunchCones cones(plan.strata);
-  double solid_angle = 0.0;  // sum of 1 / density over all rays estimates the solid angle they cover: the sphere
+  const LaunchDirections directions(plan.strata);
+  std::vector<double> owned(scene.meshes().size()), seen(scene.meshes().size());  // sr, by mesh
+  const auto shoot = [&](const Vec3& direction, const auto& count) {
+    EXPECT_NEAR(direction.norm(), 1.0, kRounding);
+    RayHit hit;
+    if (geometry.intersect(Vec3::Zero(), direction, hit) == EmbreeScene::Verdict::kHit) count(hit.hit.mesh_id);
+  };
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {
     const int stratum = plan.stratum_of(ray);
-    const Vec3 direction = cones.direction(stratum, plan.point_of(stratum, ray));
-    EXPECT_NEAR(direction.norm(), 1.0, kRounding);
-    solid_angle += 1.0 / cones.density_of_ray(direction, stratum);
+    const Vec3 direction = directions.direction(stratum, plan.point_of(stratum, ray));
+    EXPECT_TRUE(plan.strata[static_cast<size_t>(stratum)].contains((1.0 - 1e-12) * direction)) << ray;
+    shoot(direction, [&](uint32_t mesh) {
+      if (plan.owners.owner(mesh, kDirect) == stratum) owned[mesh] += 1.0 / plan.density(stratum);
+    });
   }
-  EXPECT_NEAR(solid_angle / (4 * kPi), 1.0, 1e-3);
+  constexpr int64_t kEven = 1000000;  // directions over the whole sphere, for comparison
+  const LaunchLattice lattice(LaunchDomain{}, kEven, Eigen::Vector2d(0.3, 0.8));
+  const LaunchDirections sphere({Stratum{}});
+  for (int64_t i = 0; i < kEven; ++i) {
+    shoot(sphere.direction(0, lattice.point(i)), [&](uint32_t mesh) { seen[mesh] += 4 * kPi / kEven; });
+  }
+  for (size_t mesh = 0; mesh < owned.size(); ++mesh) EXPECT_NEAR(owned[mesh] / seen[mesh], 1.0, kSolidAngle) << mesh;
 }
 
 TEST(Trace, BadInputIsNamed) {

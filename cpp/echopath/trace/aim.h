@@ -1,0 +1,39 @@
+#pragma once
+// The objects of a scene and their images over mirrors, as targets of rays.
+#include <vector>
+
+#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/stratum.h"
+
+namespace echopath {
+
+struct Aim {
+  Stratum stratum;                        // that holds it, without rays
+  int object = 0;                         // index into objects_of(scene)
+  std::vector<MirrorSequence> sequences;  // over which rays find it there; planes at right angles have one image in both orders
+  int num_mirrors = 0;                    // 0: the object itself
+  bool moves = false;
+
+  // Of its share of the rays, relative to others.
+  double weight() const;
+};
+
+struct AimSettings {
+  Vec3 transmitter;
+  int max_mirrors = 0;
+  double largest_solid_angle = 0.0;  // sr: what fills more is left to the field of view
+  bool may_use_strips = true;
+};
+
+struct Aims {
+  std::vector<Aim> aims;             // objects first, then images
+  std::vector<int> object_of_mesh;   // by mesh ID, -1: a mirror
+  int num_objects = 0;
+  bool any_unaimed = false;          // some object has no stratum
+  int64_t num_left_out = 0;          // objects and images beyond the number of strata that a record can tell apart
+};
+
+Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                    const AimSettings& settings);
+
+}  // namespace echopath

@@ -1,0 +1,17 @@
+#include "echopath/trace/stratum.h"
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+
+double Stratum::solid_angle() const { return is_strip() ? 2.0 * half_azimuth * (high - low) : kTwoPi * versine; }
+
+bool Stratum::contains(const Vec3& direction) const {
+  if (!is_strip()) return 0.5 * (direction - axis).squaredNorm() <= versine;
+  const double height = direction.dot(axis.cross(across));
+  return height >= low && height <= high && std::abs(std::atan2(direction.dot(across), direction.dot(axis))) <= half_azimuth;
+}
+
+}  // namespace echopath

@@ -1,0 +1,28 @@
+#pragma once
+// A launch stratum: a part of the directions about the transmitter, with rays spread evenly over it.
+#include <cstdint>
+#include <string>
+
+#include "echopath/base/geometry.h"
+
+namespace echopath {
+
+// A cone about an axis, or a strip along a great circle (half_azimuth > 0): what is long is held by a strip, and straight things
+// seen from a point lie along great circles. Both are mapped with equal areas (launch_directions.h).
+struct Stratum {
+  Vec3 axis = Vec3::UnitX();   // unit, world axes; of a strip, the middle of the great circle
+  double versine = 2.0;        // cone: 1 - cos(half angle), exact for narrow cones; 2: whole sphere
+  Vec3 across = Vec3::Zero();  // strip: unit, at right angles to the axis, along the great circle
+  double half_azimuth = 0.0;   // strip: rad, along the great circle on both sides of the axis
+  double low = 0.0, high = 0.0;  // strip: sine of the elevation over the great circle, toward axis x across
+  int64_t num_rays = 0;
+  double ray_density = 0.0;    // rays per sr inside, N_k p_k; exact, so that its integral may differ from num_rays
+  std::string name;            // what it aims at
+  int object = -1;             // node of the scene that it aims at (a child of the root); -1: none
+
+  bool is_strip() const { return half_azimuth > 0.0; }
+  double solid_angle() const;                  // sr
+  bool contains(const Vec3& direction) const;  // unit direction
+};
+
+}  // namespace echopath

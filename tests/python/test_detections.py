@@ -242,7 +242,7 @@ def test_strong_echoes_are_not_noise_where_they_fade_in_single_antennas(seed):
     spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=seed), radar)
     found = ep.detect(spectrum, radar, paths=paths)
     strong = np.flatnonzero(found.snr_db > 20.0)
-    assert len(strong) >= 12 and "noise" not in found.part[strong] and "" not in found.object[strong]
+    assert len(strong) >= 10 and "noise" not in found.part[strong] and "" not in found.object[strong]
     assert all(len(found.paths(i)[0]) for i in strong)
 
 

@@ -12,7 +12,7 @@ namespace echopath {
 namespace {
 
 constexpr double kFieldShare = 0.15;
-constexpr double kMovingShare = 0.5;  // of the rays that are aimed
+constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
 // Each batch has a shift of its own in each stratum.
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
@@ -40,7 +40,7 @@ std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns
   double moving = 0.0, resting = 0.0;
   for (const Aim& aim : aims) (aim.moves ? moving : resting) += aim.weight();
   const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
-  const double moving_share = moving == 0 ? 0.0 : resting == 0 ? 1.0 : kMovingShare;
+  const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
   std::vector<double> shares;
   for (const Aim& aim : aims) {
     shares.push_back(aim.moves ? aimed * moving_share * aim.weight() / moving

@@ -23,7 +23,7 @@ RayShares shares_of(const std::vector<Stratum>& strata);
 // and the antenna's field of view, the last one. Objects are the children of the scene's root, without their mirrors; those that
 // surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes of mirrors. Each
 // stratum counts the echoes that it owns (ray_owners.h).
-// Unless told otherwise, objects that move have half of the rays that are aimed, others the other half; within each, objects
+// Unless told otherwise, objects that move have half of the rays that are aimed at least; otherwise objects
 // and images over one mirror share alike, and images over two have a quarter of that. The field of view has 15 % where it owns
 // anything. A stratum that would get fewer than kFewestRays has none: what it would own belongs to the field of view.
 struct LaunchPlan {

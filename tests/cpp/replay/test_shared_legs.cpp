@@ -18,7 +18,7 @@ constexpr double kRounding = 1e-13;  // relative: sums and products of about ten
 constexpr double kGrazingRounding = 3e-11;
 // relative: footprints are exponentials, and multiply the rounding of thousands of rad; cells of the plate, which rays of its own
 // graze, stretch a thousandfold; edges are three footprints
-constexpr double kFilterRounding = 1e-7;
+constexpr double kFilterRounding = 1e-6;
 constexpr double kFaintest = 1e-11;  // sqrt(W): flat-top footprints are differences from one, of echoes of 1e-6
 
 MaterialPtr rough(double diffuse_share, bool mirror) {

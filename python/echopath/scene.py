@@ -36,7 +36,7 @@ class Scene(_core.Scene):
         transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
         parent: full name of a node; None: the root
         smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
-            across creases of more than 30 degrees
+            across creases of more than 30 degrees; parts of actors may bring it themselves
         Raises ValueError or TypeError naming the argument; then nothing has been added.
         """
         if not isinstance(smooth, bool):
@@ -75,18 +75,19 @@ class _Batch:
             motion = getattr(content, "motion", None)
         self._add(name, self._parent, placement, motion, None, None)
         groups = {(): self._first}
-        for part_name, mesh, part_material, part_motion, part_placement in parts:
+        for part_name, mesh, part_material, part_motion, part_placement, part_smooth in parts:
             *path, own_name = str(part_name).split("/")
-            self._add_mesh(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material)
+            self._add_mesh(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material,
+                           part_smooth)
 
-    def _add_mesh(self, name, parent: int, placement, motion, mesh, material) -> None:
+    def _add_mesh(self, name, parent: int, placement, motion, mesh, material, smooth: bool = False) -> None:
         """A node with the mesh; below it the mesh's regions where a skin moves them."""
         if not isinstance(motion, _core.Skin) or mesh is None or mesh.whole is not None:
-            self._add(name, parent, placement, motion, mesh, material)
+            self._add(name, parent, placement, motion, mesh, material, smooth)
             return
         group = self._add(name, parent, placement, None, None, None)
         for joint, part in motion.parts(mesh):
-            self._add(joint, group, None, motion, part, material)
+            self._add(joint, group, None, motion, part, material, smooth)
 
     def _group(self, groups: dict, path: tuple) -> int:
         """The node of a group, added with those above it where it is not there yet."""
@@ -94,7 +95,7 @@ class _Batch:
             groups[path] = self._add(path[-1], self._group(groups, path[:-1]), None, None, None, None)
         return groups[path]
 
-    def _add(self, name, parent: int, placement, motion, mesh, material) -> int:
+    def _add(self, name, parent: int, placement, motion, mesh, material, smooth: bool = False) -> int:
         if not isinstance(name, str):
             raise TypeError(f"name: must be text, got {name!r}")
         material, material_name = _material(material, mesh, name)
@@ -105,19 +106,19 @@ class _Batch:
             raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion, VertexSequence or Skin, got {motion!r}")
         self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if deformation else motion,
                                      mesh=mesh, deformation=deformation, material=material, material_name=material_name,
-                                     smooth=self._smooth and mesh is not None))
+                                     smooth=(self._smooth or smooth) and mesh is not None))
         return self._first + len(self.nodes) - 1
 
 
 def _parts_of(content, material) -> list:
-    """(name, mesh, material, motion, placement) of each part of an actor or of a list of named meshes."""
+    """(name, mesh, material, motion, placement, smooth) of each part of an actor or of a list of named meshes."""
     if hasattr(content, "parts"):
         return [(part.name, part.mesh, part.material if material is None else material, part.motion,
-                 _placement(part.position, 0.0, None)) for part in content.parts]
+                 _placement(part.position, 0.0, None), getattr(part, "smooth", False)) for part in content.parts]
     if isinstance(content, (list, tuple)):
         if not all(_is_named_mesh(item) for item in content):
             raise TypeError("mesh_or_actor: a list must hold pairs (name, Mesh)")
-        return [(name, mesh, material, None, None) for name, mesh in content]
+        return [(name, mesh, material, None, None, False) for name, mesh in content]
     kind = type(content).__name__
     raise TypeError(f"mesh_or_actor: must be a Mesh, an Actor, a list of (name, Mesh) or None, got {kind}")
 

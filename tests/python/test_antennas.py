@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from support.scene_text import WAVEFORM
+from support.shapes import lambert
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "antennas"
 INTERPOLATION = 2e-3      # of the peak: bicubics on steps of 5 degrees
@@ -123,7 +124,7 @@ def test_table_survives_a_frame_file(tmp_path):
     receivers = [ep.Antenna((0, 0.002 * i, 0), pattern=pattern)
                  for i, pattern in enumerate([tables[0], ep.Isotropic(2.0), tables[1], tables[0]])]
     scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="clothing", position=(5, 0, 0))
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=lambert(0.27), position=(5, 0, 0))
     waveform = ep.ChirpSequence(num_chirps=2)
     radar = ep.Radar(waveform, transmitters=[ep.Antenna(pattern=tables[1])], receivers=receivers)
     paths = ep.trace(scene, radar, num_rays=1000)

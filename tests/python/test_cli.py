@@ -25,7 +25,7 @@ position = [0.0, 0.01, 0.0]
 [[objects]]
 name = "plate"
 mesh = "plate.obj"
-material = "clothing"
+material = {reflectivity = 0.27, scattering = 1.0}
 position = [5.0, 0.0, 0.0]
 motion = {kind = "linear", velocity = [-2.0, 0.0, 0.0]}
 [trace]

@@ -11,6 +11,7 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
+from support.shapes import lambert
 
 PROMISE = 0.5        # s, on a machine with nothing else to do
 PATIENCE = 1.5       # s, with the tests of a busy machine; tries until one keeps to it
@@ -25,7 +26,7 @@ def paths():
     """Millions of copies of the paths over a plate and a wall that both move: lengths and amplitudes take a while."""
     scene = ep.Scene()
     motion = ep.LinearMotion(velocity=(-1.0, 0.0, 0.0))
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), motion=motion, material="clothing")
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), motion=motion, material=lambert(0.27))
     scene.add(ep.actors.plate(9.0, 9.0), name="wall", position=(9.0, 0.0, 0.0), motion=motion, material="concrete")
     radar = build_radar(receivers=[(0, 0.01, 0)], num_chirps=8, chirp_interval=1e-4)
     traced = ep.trace(scene, radar, num_rays=3000, max_bounces=HITS_PER_PATH)
@@ -40,7 +41,7 @@ def paths():
 
 def rcs_of_two_directions():
     scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="clothing")
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=lambert(0.27))
     return ep.rcs(scene, frequency=77e9, incidence=[(1, 0, 0), (1, 1, 0)], num_rays=1 << 24)
 
 

@@ -11,6 +11,7 @@ import echopath as ep
 from echopath.cli import report
 from echopath.detections.echo_fields import Response
 from support.radars import build_radar
+from support.shapes import lambert
 
 C = ep.speed_of_light
 WAVELENGTH = C / 77.5e9
@@ -204,7 +205,7 @@ def movers():
     radar = radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6)
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
-    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="clothing", position=(14, -1, 0),
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
               motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
     paths = ep.trace(scene, radar, num_rays=3000, max_bounces=2)
     return radar, paths, ep.synthesize(paths, radar)

@@ -10,7 +10,7 @@ import echopath as ep
 from echopath.cli import report
 from echopath.effects import rules
 
-SPECULAR, ROUGH = "metal", "clothing"
+SPECULAR, ROUGH = "metal", ep.Material(reflectivity=0.27, scattering=1.0)
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
 
 
@@ -61,6 +61,8 @@ CASES = {
     "smooth surfaces": (dict(scene=make_scene(smooth=True)), "plate", {}),
     "tubes behind curved bounces": (dict(scene=SPECULAR_BALL), "ball", dict(scene=SPECULAR_BALL, max_bounces=1)),
     "caustics": (dict(scene=SPECULAR_BALL), "quarter turns", {}),
+    "shadow's edge of curved surfaces": (dict(scene=SPECULAR_BALL), "125 and 155 degrees",
+                                         dict(scene=SPECULAR_BALL, footprint="none")),
     "check of the tessellation": ({}, "0.3 dB", dict(scene=make_scene(ROUGH))),
     "perfect conductors": ({}, "plate", dict(scene=make_scene(ROUGH))),
     "Fresnel coefficients": (dict(scene=make_scene("concrete")), "plate", {}),

@@ -10,7 +10,7 @@ from echopath import frame_file, path_subset
 from echopath.frame_file import paths as frame_paths
 from echopath.path_subset import power_of_strongest, strongest, subset
 from support.radars import build_radar
-from support.shapes import quad
+from support.shapes import lambert, quad
 
 SUM_TOLERANCE = 1e-12  # sums of doubles in another order
 PATH_COLUMNS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
@@ -33,7 +33,7 @@ def make_scene():
     rough = ep.Material(permittivity=5 - 0.3j, scattering=0.3, cross_polarization=0.2, mirror=True)
     scene.add(wall, name="wall", material=rough)
     mesh, sequence = fan()
-    scene.add(mesh, name="fan", material="clothing", motion=sequence, position=(6, 0, 0))
+    scene.add(mesh, name="fan", material=lambert(0.27), motion=sequence, position=(6, 0, 0))
     keys = ep.KeyframeMotion(times=[-1.0, 0.0, 1.0, 2.0],
                              translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
     scene.add(None, name="carrier", motion=keys, position=(8, 1, 0), yaw=0.3)

@@ -35,7 +35,7 @@ actor = "plate"
 parameters = {width = 2.0, height = 2.0}
 position = [6.0, 0.0, 1.0]
 yaw_deg = 180.0
-material = "clothing"
+material = {reflectivity = 0.27, scattering = 1.0}
 motion = {kind = "linear", velocity = [-2.0, 0.0, 0.0]}
 [[objects]]
 name = "person"
@@ -43,7 +43,7 @@ actor = "plate"
 parameters = {width = 0.3, height = 1.0}
 position = [8.0, 0.0, 1.0]
 yaw_deg = 180.0
-material = "clothing"
+material = {reflectivity = 0.27, scattering = 1.0}
 motion = {kind = "linear", velocity = [-1.0, 0.0, 0.0]}
 [[objects]]
 name = "wall"

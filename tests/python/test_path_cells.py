@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
+from support.shapes import lambert
 
 NEAR_AN_EDGE = 0.02  # cells: the peak of a finite transform is that close to its frequency (TDM slots, window sidelobes)
 CARRIER_SPAN = 4e-4   # the carrier of an echo lies up to 20 MHz (75 m) below that of the chirp's middle, 77.5 GHz
@@ -23,7 +24,7 @@ def traced(radar):
     scene = ep.Scene()
     for index, (distance, speed) in enumerate(zip(RANGES, SPEEDS)):
         direction = np.array([1.0, 0.2 * (index - 3), 0.0])
-        scene.add(ep.actors.plate(0.5, 0.5), name=f"plate_{index}", material="clothing", position=distance * direction,
+        scene.add(ep.actors.plate(0.5, 0.5), name=f"plate_{index}", material=lambert(0.27), position=distance * direction,
                   motion=ep.LinearMotion(velocity=speed * direction / np.linalg.norm(direction)))
     return ep.trace(scene, radar, num_rays=700, max_bounces=1)
 
@@ -95,7 +96,7 @@ def test_what_the_anti_alias_filter_removes_does_not_come_back_in_front():
     waveform = radar_of(False, 1).waveform
     radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
     scene = ep.Scene()
-    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material="clothing", position=(waveform.max_range + 0.03, 0.0, 0.0))
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=lambert(0.27), position=(waveform.max_range + 0.03, 0.0, 0.0))
     paths = ep.trace(scene, radar, num_rays=30, max_bounces=1)
     cube = ep.synthesize(paths)
     assert not cube.any() and paths.num_paths > 0

@@ -11,6 +11,7 @@ from echopath.bench.machine import machine
 from echopath.cli.run import write_outputs
 from echopath.plots.style import new_figure, save_png
 from support.radars import build_radar
+from support.shapes import lambert
 
 SEED = 2**63 + 11  # no default, and more than a double holds
 NOISE_SEED = 7
@@ -22,7 +23,7 @@ def folder(tmp_path_factory):
     """What `echopath run` and `ep.save_labels` write of a frame with labels and detections."""
     folder = tmp_path_factory.mktemp("files")
     scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(4, 0, 1), material="clothing",
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(4, 0, 1), material=lambert(0.27),
               motion=ep.LinearMotion(velocity=(-2, 0, 0)))
     radar = build_radar([(0, 0, 1)], [(0, 0.01, 1)], num_chirps=8, chirp_interval=1e-4, transmit_power=10.0)
     frame = ep.simulate(scene, radar, num_rays=2000, seed=SEED, noise_seed=NOISE_SEED, parts={"one": "T . R"}, labels=True,

@@ -8,7 +8,7 @@ the way is found by trying all triangles. Time factor e^{+jwt}; lengths in m, am
 phase.
 
     a    = j sqrt(Pt Gt Gr)/(4 pi) Gamma s g_in g_out cos_in dS / (L_in L_out)          physical optics, obliquity cos_in
-    |a|^2 = Pt Gt/(4 pi) |g_in g_out|^2 |Gamma|^2 S^2/pi cos_in cos_out dS lambda^2 Gr/(4 pi) / (L_in L_out)^2     diffuse
+    |a|^2 = Pt Gt/(4 pi) |g_in g_out|^2 |Gamma(0)|^2 S^2/pi cos_in cos_out dS lambda^2 Gr/(4 pi) / (L_in L_out)^2  diffuse
     a    = Gamma s lambda sqrt(Pt Gt Gr)/(4 pi L)                                        over flagged planes alone
     s(T + t) = sum of conj(a) exp j 2 pi (f0 tau + mu t tau - mu tau^2/2),  tau = L(T + t)/c
 
@@ -42,7 +42,7 @@ class Reference(ReferenceLegs):
                 ways = one.gain * two.gain * (cos_out > 0) / (one.length * two.length)
                 ways = ways * np.sqrt(self.gain(0, one.leaving) * self.gain(1, two.leaving))
                 field = 1j * antennas * sign * gamma * coherent * cos_in * cells.areas * ways
-                power = np.sqrt(np.maximum(cos_in * cos_out, 0.0) * cells.areas / np.pi) * diffuse * np.abs(gamma)
+                power = np.sqrt(np.maximum(cos_in * cos_out, 0.0) * cells.areas / np.pi) * diffuse
                 out.append((one.length + two.length, field, antennas * self.wavelength * power * ways))
         return cells, out
 
@@ -60,6 +60,7 @@ class Reference(ReferenceLegs):
             gamma[at], is_tm[at] = self.coefficient(mesh, cos_in[at], -leg.toward[at], cells.normals[at])
             metal[at] = self.is_metal(mesh)
             coherent[at], diffuse[at] = self.shares(mesh, cos_in[at])
+            diffuse[at] *= self.facet_reflection(mesh)
         return gamma, coherent, diffuse, self.sign(leg, metal, is_tm)
 
     def gain(self, side, leaving):

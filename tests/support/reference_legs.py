@@ -190,6 +190,11 @@ class ReferenceLegs:
         is_te = np.abs(np.einsum("ij,ij->i", across, axis)) >= np.sqrt(0.5) * size - 1e-15
         return np.where(is_te, te, tm), ~is_te
 
+    def facet_reflection(self, mesh):
+        """|Gamma| at normal incidence: of the facets that scatter diffusely."""
+        gamma, _ = self.coefficient(mesh, np.ones(1), np.array([[0.0, 0.0, -1.0]]), np.array([[0.0, 0.0, 1.0]]))
+        return float(np.abs(gamma[0]))
+
     def is_metal(self, mesh):
         """Whether a mesh reflects as a conductor does."""
         return self.materials[mesh].permittivity is None

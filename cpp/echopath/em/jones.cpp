@@ -91,11 +91,9 @@ FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, c
   return -0.5 * cross(out, FieldVector(electric - cross(out, magnetic)));
 }
 
-FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
-                            const ModeCoefficients& coefficients, const Depolarization& depolarization) {
-  const Vec3 te = plane_normal(direction, normal), tm = te.cross(direction);
-  FieldVector field = std::abs(coefficients.te) * dot(te, incident) * te.cast<std::complex<double>>() +
-                      std::abs(coefficients.tm) * dot(tm, incident) * tm.cast<std::complex<double>>();
+FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& out, double reflection,
+                            const Depolarization& depolarization) {
+  FieldVector field = reflection * incident;
   if (depolarization.cross_share > 0) field = depolarized(field, direction, out, depolarization);
   const Vec3 facet = (out - direction).normalized();  // finite: `out` is on the lit side, `direction` comes from there
   return 2.0 * dot(facet, field) * facet.cast<std::complex<double>>() - field;

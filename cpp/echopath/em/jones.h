@@ -61,15 +61,15 @@ struct Depolarization {
 };
 
 // Diffuse scattering: what takes the place of |Gamma| E for power that leaves along the unit vector `out`.
-// The modes lose |Gamma_TE| and |Gamma_TM|; the rest keeps its power and turns as on a metal facet that mirrors `direction`
-// into `out`, so that a co-polarised radar sees all of it, in any orientation. Before, two waves in quadrature share it: one
-// with 1 - 2 K of the power as it is, one with 2 K mirrored at an axis across the direction, at the angle `axis` from the
+// `reflection` of the field is left, a magnitude (SurfaceResponse::facet); it turns as on a metal facet that mirrors
+// `direction` into `out`, so that a co-polarised radar sees all of it, in any orientation. Before, two waves in quadrature
+// share it: one with 1 - 2 K of the power as it is, one with 2 K mirrored at an axis across the direction, at the angle `axis` from the
 // normal of the scattering plane. Averaged over axes every linear polarisation has K of its power in the cross one, by no
 // hit is power gained or lost, and swapping both ends transposes the matrix. No surface that is reciprocal and has no
 // preferred axis turns more than half. With K = 1/4 it scatters like a cloud of thin needles.
 // Sources: K is K_x of Degli-Esposti et al. 2011; Nghiem et al. 1992 (reciprocal media without a preferred axis:
 // <hh vv*> = <|hh|^2> - 2 <|hv|^2>); Freeman and Durden 1998 (needles).
-FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
-                            const ModeCoefficients& coefficients, const Depolarization& depolarization);
+FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& out, double reflection,
+                            const Depolarization& depolarization);
 
 }  // namespace echopath

@@ -16,6 +16,8 @@ std::complex<double> complex_permittivity(const Material& material, double frequ
   return *material.permittivity - std::complex<double>(0.0, loss);
 }
 
+double facet_reflection(std::complex<double> permittivity) { return std::abs(fresnel_te(permittivity, 1.0)); }
+
 // `phase`: k sigma_h cos(incidence) in rad.
 double ament_of_phase(double phase) { return std::exp(-2.0 * phase * phase); }
 
@@ -29,6 +31,7 @@ SurfaceModel::SurfaceModel(const Material& material, double frequency)
     : material_(&material), is_dielectric_(!material.conductor && !material.reflectivity) {
   constant_.gamma = material.reflectivity ? -std::sqrt(*material.reflectivity) : -1.0;
   if (is_dielectric_) permittivity_ = complex_permittivity(material, frequency);
+  constant_.facet = is_dielectric_ ? facet_reflection(permittivity_) : std::abs(constant_.gamma);
   if (material.scattering) {
     constant_.diffuse = *material.scattering;
     constant_.coherent = other_share(constant_.diffuse);

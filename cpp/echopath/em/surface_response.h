@@ -1,5 +1,14 @@
 #pragma once
-// What a material makes of a wave at one hit: reflection coefficient and the split into coherent and diffuse power.
+// What a material makes of a wave at one hit: its reflection coefficients and the split into coherent and diffuse power.
+//
+// What is mirrored takes Fresnel's coefficient of the mean surface. What is scattered comes from facets: those that send power
+// back toward the radar face it, whatever the mean surface's angle, so that a rough dielectric scatters with the power
+// reflectivity of normal incidence in both polarisations. Brewster's angle belongs to the mean surface alone. Reflected are
+// s^2 |gamma|^2 + S^2 facet^2 <= 1 of the power, at every angle and in either polarisation. Toward other directions facets see
+// half the angle between both ways: below 45 degrees their reflectivity, averaged over polarisations, stays within half a
+// decibel, beyond it grows, so that the model understates what a road scatters forward at grazing incidence.
+// Sources: Kirchhoff's approximation in its limit of geometrical optics (Ulaby, Moore, Fung 1982, volume 2, chapter 12): the
+// coefficient is that of the facet that mirrors one way into the other, at normal incidence for backscatter.
 #include <complex>
 
 #include "echopath/em/material.h"
@@ -9,9 +18,10 @@ namespace echopath {
 enum class PolarizationMode { kTe, kTm };
 
 struct SurfaceResponse {
-  std::complex<double> gamma;  // field reflection coefficient; |gamma|^2 of the power is reflected in all
+  std::complex<double> gamma;  // field reflection coefficient of the mean surface
   double coherent = 1.0;       // s: field share of the specular part, s^2 + S^2 = 1
   double diffuse = 0.0;        // S: square root of the diffuse share of power
+  double facet = 1.0;          // field reflection of the facets that scatter, a magnitude
 };
 
 // Ament 1953: coherent field factor s = exp(-2 (k sigma_h cos)^2). wavenumber [rad/m], roughness_height [m] rms.

@@ -27,7 +27,7 @@ using CellTangents = std::array<Vec3, 2>;  // T_a on the surface at the hit, wor
 CellTangents cell_tangents(const LaunchCell& cell, const PosedHit& hit);
 CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTangents& tangents);
 
-// Footprint filter F of the cell, |F| <= 1.
+// Footprint filter F of the cell, |F| <= 1, on curved surfaces with the taper toward their shadow (shadow_taper).
 //   first order:  g_a = k T_a.(u - s)
 //   second order: h_ab = k [T_a.U_b + (T_a.T_b - (T_a.s)(T_b.s))/r + (cos_in + cos_out) II(T_a, T_b)]; directions in which the
 //   surface and the chain are flat keep the flat-top filter, so that plates and the axes of cylinders lose nothing.

@@ -16,8 +16,11 @@ constexpr double kLargestArea = 1e60;
 
 }  // namespace
 
+// The larger reflectivity of both lobes, so that neither gains weight as it survives.
 double RayShooter::survival_of(const SurfaceResponse& response, int num_bounces) {
-  return num_bounces < kRouletteBounce ? 1.0 : std::min(1.0, std::norm(response.gamma));
+  if (num_bounces < kRouletteBounce) return 1.0;
+  const double facet = response.diffuse > 0 ? response.facet * response.facet : 0.0;
+  return std::min(1.0, std::max(std::norm(response.gamma), facet));
 }
 
 RayShooter::Odds RayShooter::odds_of(const SurfaceModel& model, const SurfaceResponse& response) const {

@@ -39,7 +39,7 @@ ECHOPATH_INLINE void weigh_lanes(Packet* packet) {
     const double field = area * packet->hits.stretch[lane] * packet->coherent[lane] * packet->sign[lane];
     packet->field_re[lane] = static_cast<float>(-im * field);
     packet->field_im[lane] = static_cast<float>(re * field);
-    const double power = ScalarMath::root(area) * ScalarMath::root(re * re + im * im) * packet->diffuse[lane];
+    const double power = ScalarMath::root(area) * packet->facet[lane] * packet->diffuse[lane];
     packet->power_re[lane] = static_cast<float>(power * packet->chance.phase_re[lane]);
     packet->power_im[lane] = static_cast<float>(power * packet->chance.phase_im[lane]);
   }

@@ -38,13 +38,12 @@ void RayShooter::scatter_polarized(Ray& ray, const Surface& surface, const Vec3&
 FieldPair RayShooter::scattered(const Surface& surface, const FieldPair& fields, const Vec3& in,
                                 const Vec3& out) const {
   const double cos_incidence = -in.dot(surface.point.normal);
-  const ModeCoefficients modes = mode_coefficients(*surface.material, settings_.frequency, cos_incidence);
-  const double diffuse = surface.model->respond(cos_incidence, PolarizationMode::kTe).diffuse;
+  const double reflection = diffuse_coefficient(surface.model->respond(cos_incidence, PolarizationMode::kTe));
   Depolarization turn{surface.material->cross_polarization, 0.0};
   if (turn.cross_share > 0) turn.axis = kPi * surface.chance.axis_coin;
   FieldPair out_fields;
   for (size_t launch = 0; launch < 2; ++launch) {
-    out_fields[launch] = diffuse * scattered_field(fields[launch], in, surface.point.normal, out, modes, turn);
+    out_fields[launch] = scattered_field(fields[launch], in, out, reflection, turn);
   }
   return out_fields;
 }

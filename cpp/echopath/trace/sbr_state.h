@@ -39,7 +39,7 @@ struct RayShooter::Ray {
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
-  std::complex<double> coefficient = 1.0;  // product of Gamma s and |Gamma| S, without q
+  std::complex<double> coefficient = 1.0;  // product of Gamma s and of what diffuse hits scatter, without q
   FieldPair polarized;                     // likewise of vectors, where polarised
   // Of the unflagged bounces so far; tells the sign of what comes back (sbr_connect.cpp).
   bool has_dielectric_tm = false, has_odd_conductors = false;
@@ -90,7 +90,7 @@ struct RayShooter::Packet {
   std::array<Sight, kPacketSize> receiver;  // as seen from there
   std::array<const SurfaceModel*, kPacketSize> models;
   std::array<PolarizationMode, kPacketSize> modes;
-  LaneValues gamma_re, gamma_im, coherent, diffuse;  // the responses
+  LaneValues gamma_re, gamma_im, coherent, diffuse, facet;  // the responses
   LaneValues sign;                                   // of the field that comes back (sbr_connect.cpp)
   LaneValues specular_odds, diffuse_odds;            // of going on that way, if it does
   LaneVectors out;                                   // the direction in which it goes on
@@ -103,11 +103,14 @@ struct RayShooter::Packet {
     gamma_im[lane] = response.gamma.imag();
     coherent[lane] = response.coherent;
     diffuse[lane] = response.diffuse;
+    facet[lane] = response.facet;
     specular_odds[lane] = odds.specular;
     diffuse_odds[lane] = odds.diffuse;
     sign[lane] = modes[static_cast<size_t>(lane)] == PolarizationMode::kTm ? -1.0 : 1.0;
   }
-  SurfaceResponse response(int lane) const { return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane]}; }
+  SurfaceResponse response(int lane) const {
+    return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane], facet[lane]};
+  }
 };
 
 // How a ray leaves a hit.
@@ -150,10 +153,8 @@ struct RayShooter::Scratch {
   RayAtHit first;  // the ray of a packet that is followed now
 };
 
-// |Gamma| S: of the field that a diffuse hit scatters.
-inline double diffuse_coefficient(const SurfaceResponse& response) {
-  return std::sqrt(std::norm(response.gamma)) * response.diffuse;
-}
+// Of the field that a diffuse hit scatters.
+inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
 
 // Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
 double curvature_along(const RayHit& point, const Vec3& direction);

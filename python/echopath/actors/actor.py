@@ -11,6 +11,7 @@ class Part:
     mesh: echopath.Mesh. material: a name in echopath.materials, or an echopath.Material.
     motion: motion relative to the actor's root (group nodes do not move), or None.
     position: [3] place of the mesh in the actor's frame in m, which the motion adds to.
+    smooth: whether the mesh stands for a curved surface (Scene.add).
     """
 
     name: str
@@ -18,6 +19,7 @@ class Part:
     material: Any
     motion: Any = None
     position: tuple = (0.0, 0.0, 0.0)
+    smooth: bool = False
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class PartArrays:
     """A part as plain arrays.
 
     vertices [V, 3] in m, triangles [F, 3]; keyframes times [T] in s, translations [T, 3] in m and rotations [T, 4]
-    (unit quaternions w, x, y, z) of the part relative to the actor's root. times None: the part rests.
+    (unit quaternions w, x, y, z) of the part relative to the actor's root. times None: the part rests. smooth: as of Part.
     """
 
     name: str
@@ -62,6 +64,7 @@ class PartArrays:
     times: Any = None
     translations: Any = None
     rotations: Any = None
+    smooth: bool = False
 
     def build(self):
         """The Part with its Mesh and KeyframeMotion."""
@@ -70,4 +73,4 @@ class PartArrays:
         motion = None
         if self.times is not None:
             motion = _core.KeyframeMotion(times=self.times, translations=self.translations, rotations=self.rotations)
-        return Part(self.name, _core.Mesh(self.vertices, self.triangles), self.material, motion)
+        return Part(self.name, _core.Mesh(self.vertices, self.triangles), self.material, motion, smooth=self.smooth)

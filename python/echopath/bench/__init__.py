@@ -1,10 +1,12 @@
 """Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces,
 `run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases, `run_speed(folder)` of
-synthesis, frames and memory, `run_crowd(folder)` of the objects of crowded scenes."""
+synthesis, frames and memory, `run_crowd(folder)` of the objects of crowded scenes, `run_published(folder)` of levels beside
+published ones."""
 from .crowd import run_crowd
 from .labels import run_labels
 from .physics import run_physics
+from .published import run_published
 from .replay import run_replay
 from .speed import run_speed
 
-__all__ = ["run_crowd", "run_labels", "run_physics", "run_replay", "run_speed"]
+__all__ = ["run_crowd", "run_labels", "run_physics", "run_published", "run_replay", "run_speed"]

@@ -88,11 +88,12 @@ def _parser() -> argparse.ArgumentParser:
     _add_labels(commands)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd"],
+    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "targets"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
-                            "crowd: objects of a crowded scene against themselves alone")
+                            "crowd: objects of a crowded scene against themselves alone; targets: a pedestrian, a road and "
+                            "spheres beside published levels")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
@@ -220,7 +221,8 @@ def _labels(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import crowd, hard, labels, replay, report, run_crowd, run_labels, run_physics, run_replay, run_speed, speed
+    from ..bench import (crowd, hard, labels, published, replay, report, run_crowd, run_labels, run_physics, run_published,
+                         run_replay, run_speed, speed)
     from .progress import progress_bars
 
     with progress_bars() as progress:
@@ -235,6 +237,8 @@ def _bench(options) -> None:
             lines = crowd.describe(run_crowd(options.out, quick=options.quick, progress=progress))
         elif options.what == "speed":
             lines = speed.describe(run_speed(options.out, quick=options.quick, progress=progress))
+        elif options.what == "targets":
+            lines = published.describe(run_published(options.out, quick=options.quick, progress=progress))
         else:
             lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
     print("\n".join(lines))

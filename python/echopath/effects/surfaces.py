@@ -1,9 +1,13 @@
 """Effects that surfaces and the number of bounces ask for."""
 from __future__ import annotations
 
+import math
+
+from .._core import speed_of_light
 from ..tessellation import coarse_meshes
 from .rules import Case, meshes_or, named, rule
 
+VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
 ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/sbr_state.h)
 
 
@@ -42,6 +46,26 @@ def _curved_bounces(case: Case):
 def _caustics(case: Case):
     modelled, reason = _curved_bounces(case)
     return modelled, "quarter turns of the phase and a least width of tubes, behind smooth meshes" if modelled else reason
+
+
+@rule("shadow's edge of curved surfaces")
+def _shadow_edge(case: Case):
+    curved = [mesh for mesh in case.coherent if mesh in case.smooth]
+    if not curved:
+        return False, "no smooth mesh has a specular share"
+    if case.settings.footprint not in ("second_order", "edges"):
+        return False, f'footprint = "{case.settings.footprint}" leaves the edge wave of physical optics'
+    angles = [bistatic_limit_deg(radius, case.radar.waveform.start_frequency) for radius in (0.1, 1.0)]
+    return True, ("currents fade out toward it; without creeping waves and the forward lobe, so that bodies of 0.1 m and 1 m "
+                  f"radius are wrong beyond {angles[0]:.0f} and {angles[1]:.0f} degrees between both ways")
+
+
+def bistatic_limit_deg(radius: float, frequency: float) -> float:
+    """Angle in degrees between the ways to both antennas from which physical optics errs by some tenths of a decibel on a
+    sphere (`echopath bench targets`): there the cosine at the point that mirrors is twice the width (2/ka)^(1/3) of the
+    shadow's edge (Fock 1946). 0 where the sphere is too small at any angle."""
+    size = 2.0 * math.pi * frequency / speed_of_light * radius
+    return 2.0 * math.degrees(math.acos(min(1.0, VALID_FOCK * (2.0 / size) ** (1.0 / 3.0))))
 
 
 @rule("check of the tessellation")

@@ -76,6 +76,40 @@ TEST(SurfaceResponse, CoherentAndDiffusePowerAddUp) {
   EXPECT_NEAR(std::norm(respond(scattering, 77e9, 0.3, PolarizationMode::kTe).gamma), 0.34, kRounding);
 }
 
+// At Brewster's angle the mean surface reflects no TM; its facets that face the radar reflect as at normal incidence.
+TEST(SurfaceResponse, FacetsReflectAsAtNormalIncidenceInBothModes) {
+  Material road;
+  road.permittivity = std::complex<double>(4.0, 0.0);
+  road.roughness_height = 0.5e-3;
+  for (const double angle_deg : {0.0, 30.0, 63.435, 70.0, 89.0}) {
+    for (const PolarizationMode mode : {PolarizationMode::kTe, PolarizationMode::kTm}) {
+      EXPECT_NEAR(respond(road, 77e9, std::cos(angle_deg * kPi / 180.0), mode).facet, 1.0 / 3.0, kRounding);
+    }
+  }
+  EXPECT_LT(std::abs(respond(road, 77e9, std::cos(63.435 * kPi / 180.0), PolarizationMode::kTm).gamma), 1e-5);
+  Material fabric;
+  fabric.reflectivity = 0.25;
+  EXPECT_NEAR(respond(fabric, 77e9, 0.1, PolarizationMode::kTe).facet, 0.5, kRounding);
+  EXPECT_NEAR(respond(Material::metal(), 77e9, 0.1, PolarizationMode::kTm).facet, 1.0, kRounding);
+}
+
+TEST(SurfaceResponse, NoAngleReflectsMoreThanArrives) {
+  for (const double real : {1.5, 4.0, 9.0, 80.0}) {
+    for (const double height : {0.0, 0.2e-3, 1e-3}) {
+      Material rough;
+      rough.permittivity = std::complex<double>(real, -0.3 * real);
+      rough.roughness_height = height;
+      for (int angle_deg = 0; angle_deg < 90; ++angle_deg) {
+        for (const PolarizationMode mode : {PolarizationMode::kTe, PolarizationMode::kTm}) {
+          const SurfaceResponse at = respond(rough, 77e9, std::cos(angle_deg * kPi / 180.0), mode);
+          const double coherent = at.coherent * at.coherent * std::norm(at.gamma), diffuse = at.diffuse * at.facet;
+          EXPECT_LE(coherent + diffuse * diffuse, 1.0 + kRounding);
+        }
+      }
+    }
+  }
+}
+
 TEST(SurfaceResponse, ConductivityIsLossOfThePermittivity) {
   Material lossy;
   lossy.permittivity = Complex(4.0, 0.0);

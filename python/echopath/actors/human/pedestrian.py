@@ -15,9 +15,9 @@ SKIN_PARTS = ("head", "neck", "hand")
 
 
 @nearest_keywords
-def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0.0, edge=0.024, keyframe_rate=120.0,
+def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0.0, edge=0.018, keyframe_rate=120.0,
                clothing="clothing", skin="skin"):
-    """A person who walks along +x, 16 closed meshes that move by keyframes.
+    """A person who walks along +x, 16 closed smooth meshes that move by keyframes.
 
     Proportions after Drillis and Contini (anthropometry.py), motion after Boulic, Thalmann and Thalmann (boulic.py)
     with feet that are planted (steps.py): a sole that touches the floor z = 0 does not slide. Steady walking on level
@@ -32,7 +32,7 @@ def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0
     height: of the body in m, 0.5 to 2.5. speed: in m/s, 0.1 to 3 hip heights a second (where walking ends).
     start_time, duration: first time and length of the motion in s; a scene can be posed at no other time.
     phase: of the walking cycle (two steps, about 1.1 s) at time 0, in cycles; 0 is the strike of the right heel.
-    edge: length in m of the triangles' sides; about 10 000 triangles in all by default.
+    edge: length in m of the triangles' sides; about 18 000 triangles in all by default.
     keyframe_rate: in 1/s, at least 60.
     clothing, skin: materials, names in echopath.materials or objects; skin are head, neck and hands.
 
@@ -62,7 +62,7 @@ def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyfr
             surfaces[kind] = surface(name, body, edge)
         material = skin if kind in SKIN_PARTS else clothing
         parts.append(PartArrays(name, *surfaces[kind], material, times, frame.origin - start,
-                                quaternions(frame.rotation)))
+                                quaternions(frame.rotation), smooth=True))
     return parts
 
 

@@ -6,7 +6,7 @@ An antenna launches and receives along the unit part of its polarisation that li
 """
 import numpy as np
 
-from .reference import Reference
+from .reference import Reference, taper
 from .reference_cells import unit
 
 
@@ -23,13 +23,14 @@ class PolarizedReference(Reference):
             facing = np.einsum("ij,ij->i", cells.normals, one.toward)
             normals = cells.normals * np.where(facing < 0, -1.0, 1.0)[:, None]
             for two, received in ((leg, seen) for leg, seen in receive if self.is_path(one.planes, leg.planes)):
-                lit = np.einsum("ij,ij->i", normals, two.toward) > 0
+                cos_out = np.einsum("ij,ij->i", normals, two.toward)
+                seen = (cos_out > 0) * taper(cells, np.abs(facing), cos_out)
                 field = self._radiated(incident, -one.toward, normals, two.toward, cells.mesh)
-                ways = (one.gain != 0) * (two.gain != 0) * lit * cells.areas / (one.length * two.length)
+                ways = (one.gain != 0) * (two.gain != 0) * seen * cells.areas / (one.length * two.length)
                 ways = ways * np.sqrt(self.gain(0, one.leaving) * self.gain(1, two.leaving))
                 sent = 1j * np.sqrt(self.radar.transmit_power) / (4 * np.pi)
                 amplitude = sent * ways * np.einsum("ij,ij->i", field, received)
-                out.append((one.length + two.length, amplitude, np.zeros(len(lit))))
+                out.append((one.length + two.length, amplitude, np.zeros(len(seen))))
         return cells, out
 
     def _reflected(self, leg, time):

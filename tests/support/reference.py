@@ -7,7 +7,8 @@ of meshes with interpolated normals lie on the curved surface that those stand f
 the way is found by trying all triangles. Time factor e^{+jwt}; lengths in m, amplitudes in sqrt(W), fields without their
 phase.
 
-    a    = j sqrt(Pt Gt Gr)/(4 pi) Gamma s g_in g_out cos_in dS / (L_in L_out)          physical optics, obliquity cos_in
+    a    = j sqrt(Pt Gt Gr)/(4 pi) Gamma s g_in g_out cos_in dS / (L_in L_out)          physical optics, obliquity cos_in,
+           on curved surfaces times 4 cos_in cos_out/(cos_in + cos_out)^2: no edge wave where the shadow begins
     |a|^2 = Pt Gt/(4 pi) |g_in g_out|^2 |Gamma(0)|^2 S^2/pi cos_in cos_out dS lambda^2 Gr/(4 pi) / (L_in L_out)^2  diffuse
     a    = Gamma s lambda sqrt(Pt Gt Gr)/(4 pi L)                                        over flagged planes alone
     s(T + t) = sum of conj(a) exp j 2 pi (f0 tau + mu t tau - mu tau^2/2),  tau = L(T + t)/c
@@ -18,6 +19,11 @@ import numpy as np
 
 from .reference_cells import Cells
 from .reference_legs import LEG_MIRRORS, C, ReferenceLegs
+
+
+def taper(cells, cos_in, cos_out):
+    """What fades out toward the shadow of curved surfaces [M]."""
+    return np.where(cells.bent, 4 * cos_in * cos_out / np.maximum(cos_in + cos_out, 1e-12) ** 2, 1.0)
 
 
 class Reference(ReferenceLegs):
@@ -41,7 +47,7 @@ class Reference(ReferenceLegs):
                 cos_out = side * np.einsum("ij,ij->i", cells.normals, two.toward)
                 ways = one.gain * two.gain * (cos_out > 0) / (one.length * two.length)
                 ways = ways * np.sqrt(self.gain(0, one.leaving) * self.gain(1, two.leaving))
-                field = 1j * antennas * sign * gamma * coherent * cos_in * cells.areas * ways
+                field = 1j * antennas * sign * gamma * coherent * cos_in * taper(cells, cos_in, cos_out) * cells.areas * ways
                 power = np.sqrt(np.maximum(cos_in * cos_out, 0.0) * cells.areas / np.pi) * diffuse
                 out.append((one.length + two.length, field, antennas * self.wavelength * power * ways))
         return cells, out
@@ -79,7 +85,8 @@ class Reference(ReferenceLegs):
     def planes_alone(self, time):
         """(length [1], amplitude [1]) of the echo over each sequence of flagged planes by its images."""
         receiver = self.antenna(1, time)[None]
-        at = Cells(receiver, np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]), receiver)
+        at = Cells(receiver, np.ones((1, 3)), np.ones(1), np.array([-1]), np.array([-1]), receiver,
+                   np.zeros(1, bool))
         out = []
         for meshes in self.sequences(self.max_bounces)[1:] if not self.retro else ():
             leg = self.leg(at, self.antenna(0, time), time, meshes)

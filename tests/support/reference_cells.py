@@ -11,7 +11,7 @@ CLEAR = 1e-6  # m: both ends of a segment that are not looked at
 @dataclasses.dataclass
 class Cells:
     """Cells of surfaces: points [M, 3], normals [M, 3], areas [M] in m^2, mesh [M], triangle [M] among all; facets [M, 3]:
-    the points of the flat triangles below, from which shadows are looked for."""
+    the points of the flat triangles below, from which shadows are looked for; bent [M]: whether they lie on curved surfaces."""
 
     points: np.ndarray
     normals: np.ndarray
@@ -19,6 +19,7 @@ class Cells:
     mesh: np.ndarray
     triangle: np.ndarray
     facets: np.ndarray
+    bent: np.ndarray
 
 
 def cells_of(corners, normals, pieces, mesh, triangle):
@@ -32,7 +33,7 @@ def cells_of(corners, normals, pieces, mesh, triangle):
     across = np.cross(along_u, along_v)
     areas = 0.5 * np.linalg.norm(across, axis=1) / len(weights)
     return Cells(points, unit(across if normals is None else weights @ normals), areas, np.full(len(points), mesh),
-                 np.full(len(points), triangle), facets)
+                 np.full(len(points), triangle), facets, np.full(len(points), normals is not None))
 
 
 def _lifted(facets, edges, corners, normals, weights):

@@ -52,13 +52,13 @@ void bind_trace_frame(py::module_& m) {
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
       .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
                        int64_t small,
-                       int64_t false_hits, int64_t unaimed) {
-             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed};
+                       int64_t false_hits, int64_t unaimed, int64_t unfollowed) {
+             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed, unfollowed};
            }),
            py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
            py::arg("num_paths") = 0,
            py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
-           py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0)
+           py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0, py::arg("num_unfollowed_beams") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
@@ -69,7 +69,9 @@ void bind_trace_frame(py::module_& m) {
                     "rays ended behind an unflagged mirror smaller than its Fresnel zone")
       .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision")
       .def_readonly("num_unaimed", &TraceStatistics::num_unaimed,
-                    "objects and images that no rays aim at, because there are too many of them");
+                    "objects and images that no rays aim at, because there are too many of them")
+      .def_readonly("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams,
+                    "sequences of mirrors whose further mirrors were not looked for, for want of memory");
 
   py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,

@@ -1,4 +1,4 @@
-"""A remark on rays that a trace lost."""
+"""Remarks on rays and sequences of mirrors that a trace lost."""
 from __future__ import annotations
 
 import warnings
@@ -13,3 +13,17 @@ def warn_of_lost_rays(statistics, stacklevel: int = 2) -> None:
         warnings.warn(f"of {rays:,} rays, {near:,} met a surface within 1 mm of the radar and {lost:,} one that double "
                       "precision does not confirm (in the plane of an antenna, or a long sliver): their echoes are left "
                       "out. Antennas at least 1 mm off every surface see all", RuntimeWarning, stacklevel=stacklevel + 1)
+
+
+def warn_of_unfollowed_beams(statistics, stacklevel: int = 2) -> None:
+    """Warns (RuntimeWarning) where not every sequence of mirrors was tried."""
+    text = unfollowed_beams(statistics)
+    if text:
+        warnings.warn(f"{text}: echoes over more mirrors are left out. Fewer flagged mirrors or a smaller max_bounces see all",
+                      RuntimeWarning, stacklevel=stacklevel + 1)
+
+
+def unfollowed_beams(statistics) -> str:
+    """How many sequences of mirrors a trace did not follow further; "" for none."""
+    count = statistics.num_unfollowed_beams
+    return f"{count:,} sequences of mirrors were not followed further" if count else ""

@@ -10,7 +10,7 @@ import warnings
 import numpy as np
 
 from . import _core
-from .lost_rays import warn_of_lost_rays
+from .lost_rays import warn_of_lost_rays, warn_of_unfollowed_beams
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
 EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
@@ -208,6 +208,7 @@ def trace(scene, radar, **settings):
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
     paths = _core.trace(scene, radar, kept=_geometry_of(scene), **settings)
     warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
+    warn_of_unfollowed_beams(paths.frame.statistics, stacklevel=2)
     return paths
 
 
@@ -221,4 +222,4 @@ def rcs(scene, **settings):
 for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):
     _function.__doc__ = (_of_core.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB, "
                          "with the edge length in m that would do.")
-trace.__doc__ += " Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches."
+trace.__doc__ += " Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, or not every sequence of mirrors was tried."

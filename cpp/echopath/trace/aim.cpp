@@ -36,9 +36,9 @@ bool is_same(const Stratum& a, const Stratum& b) {
 
 class Aimer {
  public:
-  Aimer(const Scene& scene, const std::vector<Mirror>& mirrors, const AimSettings& settings)
+  Aimer(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const AimSettings& settings)
       : scene_(scene), mirrors_(mirrors), settings_(settings),
-        beams_(find_beams(settings.transmitter, mirrors, settings.max_mirrors)) {}
+        beams_(BeamFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).beams) {}
 
   std::optional<Aim> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
 
@@ -119,7 +119,7 @@ Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::
                     const AimSettings& settings) {
   Aims out;
   out.object_of_mesh.assign(scene.meshes().size(), -1);
-  const Aimer aimer(scene, mirrors, settings);
+  const Aimer aimer(scene, geometry, mirrors, settings);
   std::vector<Aim> objects, images;
   for (const SceneObject& object : objects_of(scene)) {
     const int index = out.num_objects++;

@@ -13,12 +13,14 @@ constexpr double kRim = 1e-3;      // m: single precision of the mirrors in the 
 
 LegFinder::LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency,
                      const Vec3& polarization)
-    : geometry_(geometry), mirrors_(mirrors), polarization_(polarization) {
+    : geometry_(geometry), mirrors_(mirrors), finder_(mirrors, &geometry), polarization_(polarization) {
   for (const Mirror& mirror : mirrors) models_.emplace_back(*mirror.material, frequency);
 }
 
-AntennaView LegFinder::view_of(const Vec3& antenna) const {
-  return {antenna, find_beams(antenna, mirrors_, kMaxLegMirrors)};
+AntennaView LegFinder::view_of(const Vec3& antenna, int max_mirrors) const {
+  Beams found = finder_.find(antenna, {.max_mirrors = max_mirrors});
+  BeamLocator locator(found.beams, kRim);
+  return {antenna, std::move(found.beams), std::move(locator), found.num_unfollowed};
 }
 
 void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
@@ -26,7 +28,8 @@ void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vec
   search.segments.clear();
   if (query.skip != kDirect && query.direct != Sight::kBlocked) add_direct(query, antenna, legs, search);
   const size_t num_known = search.segments.empty() ? legs.size() : 0;
-  for (const Beam& beam : antenna.beams) {
+  for (const int index : antenna.locator.near(query.point)) {
+    const Beam& beam = antenna.beams[static_cast<size_t>(index)];
     if (static_cast<int>(beam.mirrors.size()) > query.max_mirrors) break;
     if (beam.sequence != query.skip) add_over_mirrors(query, antenna, beam, legs, search);
   }

@@ -5,7 +5,7 @@
 
 #include "echopath/em/surface_response.h"
 #include "echopath/trace/embree_scene.h"
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/beam_locator.h"
 
 namespace echopath {
 
@@ -34,6 +34,8 @@ struct Leg {
 struct AntennaView {
   Vec3 position;             // relative to the trace origin
   std::vector<Beam> beams;
+  BeamLocator locator;       // of the beams
+  int64_t num_unfollowed = 0;  // Beams::num_unfollowed
 };
 
 enum class Sight : uint8_t { kUnknown, kOpen, kBlocked };
@@ -57,7 +59,8 @@ class LegFinder {
  public:
   LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization);
 
-  AntennaView view_of(const Vec3& antenna) const;
+  // max_mirrors: of legs, at most kMaxLegMirrors.
+  AntennaView view_of(const Vec3& antenna, int max_mirrors) const;
   // All visible legs between a point and `antenna`, direct first, then in the order of the beams.
   // Where a leg meets its mirrors follows from the images alone; shadow queries, in packets, tell whether its way is free.
   void find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
@@ -74,6 +77,7 @@ class LegFinder {
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
+  BeamFinder finder_;
   std::vector<SurfaceModel> models_;  // of the mirrors
   Vec3 polarization_;
 };

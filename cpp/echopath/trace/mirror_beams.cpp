@@ -3,59 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/parallel.h"
+
 namespace echopath {
 namespace {
 
-constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near has no direction
-constexpr double kOnPlane = 1e-4;  // m: an antenna or image this near the plane has no image in it
+constexpr double kOnPlane = 1e-4;      // m: an antenna or image this near the plane has no image in it
+constexpr double kFlatBox = 1e-4;      // m: mirrors may stray this far from their outlines
+constexpr size_t kTogether = 512;      // beams that are followed side by side
 
-// The part of a convex polygon where normal.dot(p) >= offset (Sutherland, Hodgman 1974); empty where it is a mere line.
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
-  std::vector<Vec3> inside;
-  const auto add = [&](const Vec3& corner) {
-    if (inside.empty() || (corner - inside.back()).norm() > kSameCorner) inside.push_back(corner);
-  };
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double before = normal.dot(from) - offset, behind = normal.dot(to) - offset;
-    if (before >= 0) add(from);
-    if ((before < 0) != (behind < 0)) add(from + before / (before - behind) * (to - from));
+std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const Mirror& mirror : mirrors) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& corner : mirror.outline) box.extend(corner);
+    boxes.emplace_back(box.min().array() - kFlatBox, box.max().array() + kFlatBox);
   }
-  if (inside.size() > 1 && (inside.front() - inside.back()).norm() <= kSameCorner) inside.pop_back();
-  return inside.size() < 3 ? std::vector<Vec3>() : inside;
-}
-
-std::vector<Vec3> rims_of(const std::vector<Vec3>& window, const Vec3& image) {
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& corner : window) centre += corner / static_cast<double>(window.size());
-  std::vector<Vec3> rims;
-  for (size_t i = 0; i < window.size(); ++i) {
-    const Vec3 rim = (window[i] - image).cross(window[(i + 1) % window.size()] - image);
-    rims.push_back((rim.dot(centre - image) < 0 ? -1.0 : 1.0) * rim.normalized());
-  }
-  return rims;
-}
-
-// What `mirror` shows of the beam (null: of the antenna itself) whose source appears at `source`.
-bool reflect(const Beam* beam, const Vec3& source, const std::vector<Mirror>& mirrors, int index, Beam& out) {
-  const Mirror& mirror = mirrors[static_cast<size_t>(index)];
-  const double side = mirror.signed_distance(source);
-  if (std::abs(side) < kOnPlane) return false;
-  out = beam ? *beam : Beam();
-  out.window = mirror.outline;
-  if (beam) {
-    out.window = clipped(out.window, beam->lit_normal, beam->offset);
-    for (const Vec3& rim : beam->rims) out.window = clipped(out.window, rim, rim.dot(source));
-  }
-  if (out.window.empty()) return false;
-  out.mirrors.push_back(index);
-  const bool is_long = out.mirrors.size() > kMaxLegMirrors;
-  out.sequence = is_long ? kLongSequence : extended(out.sequence, index, mirrors.size());
-  out.images.push_back(mirror.image(source));
-  out.lit_normal = side > 0 ? mirror.normal : Vec3(-mirror.normal);
-  out.offset = out.lit_normal.dot(mirror.point);
-  out.rims = rims_of(out.window, out.image());
-  return true;
+  return boxes;
 }
 
 }  // namespace
@@ -69,22 +33,86 @@ bool Beam::reaches(const Vec3& point, double radius) const {
   return true;
 }
 
-std::vector<Beam> find_beams(const Vec3& antenna, const std::vector<Mirror>& mirrors, int max_mirrors, size_t max_beams) {
-  std::vector<Beam> beams;
-  Beam next;
-  const auto extend = [&](const Beam* beam, const Vec3& source) {
-    for (int index = 0; index < static_cast<int>(mirrors.size()) && beams.size() < max_beams; ++index) {
-      if (beam && beam->mirrors.back() == index) continue;
-      if (reflect(beam, source, mirrors, index, next)) beams.push_back(next);
+std::vector<HalfSpace> Beam::region(double radius) const {
+  std::vector<HalfSpace> region = {{lit_normal, offset - radius}};
+  for (const Vec3& rim : rims) region.push_back({rim, rim.dot(image()) - radius});
+  return region;
+}
+
+BeamFinder::BeamFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry)
+    : mirrors_(mirrors), boxes_(boxes_of(mirrors)),
+      shadows_(geometry ? std::make_unique<const BeamShadows>(*geometry, mirrors) : nullptr) {}
+
+// What a mirror shows of the beam (null: of the antenna itself) whose source appears at `source`.
+bool BeamFinder::reflect(const Beam* beam, const Vec3& source, int index, double slack, Beam& out) const {
+  const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+  const double side = mirror.signed_distance(source);
+  if (std::abs(side) < kOnPlane) return false;
+  std::vector<Vec3> window = mirror.outline;
+  if (beam) {
+    window = clipped(window, beam->lit_normal, beam->offset - slack);
+    for (const Vec3& rim : beam->rims) {
+      if (window.empty()) return false;
+      window = clipped(window, rim, rim.dot(source) - slack);
     }
-  };
-  if (max_mirrors > 0) extend(nullptr, antenna);
-  for (size_t i = 0; i < beams.size(); ++i) {
-    if (static_cast<int>(beams[i].mirrors.size()) == max_mirrors) break;
-    const Beam beam = beams[i];  // the list grows
-    extend(&beam, beam.image());
   }
-  return beams;
+  if (shadows_ && !window.empty()) {
+    const BeamSource from{source, beam ? &beam->lit_normal : nullptr, beam ? beam->offset : 0.0};
+    shadows_->shrink(from, mirror, window);
+  }
+  if (window.empty()) return false;
+  out = beam ? *beam : Beam();
+  out.window = std::move(window);
+  out.mirrors.push_back(index);
+  const bool is_long = out.mirrors.size() > kMaxLegMirrors;
+  out.sequence = is_long ? kLongSequence : extended(out.sequence, index, mirrors_.size());
+  out.images.push_back(mirror.image(source));
+  out.lit_normal = side > 0 ? mirror.normal : Vec3(-mirror.normal);
+  out.offset = out.lit_normal.dot(mirror.point);
+  out.rims = rims_of(out.window, out.image());
+  return true;
+}
+
+// Appends what all mirrors show of the beam.
+void BeamFinder::extend(const Beam* beam, const Vec3& source, double slack, std::vector<Beam>& out) const {
+  std::vector<int> lit;
+  boxes_.find(beam ? beam->region(slack) : std::vector<HalfSpace>(), lit);
+  Beam next;
+  for (const int index : lit) {
+    if (beam && beam->mirrors.back() == index) continue;
+    if (reflect(beam, source, index, slack, next)) out.push_back(std::move(next));
+  }
+}
+
+// Appends what follows on the beams [begin, end) of `out`, as far as there is room.
+void BeamFinder::follow(size_t begin, size_t end, const BeamSearch& search, const Job* job, Beams& out) const {
+  for (size_t first = begin; first < end; first += kTogether) {
+    if (out.beams.size() >= search.max_beams) {
+      out.num_unfollowed += static_cast<int64_t>(end - first);
+      return;
+    }
+    std::vector<std::vector<Beam>> next(std::min(kTogether, end - first));
+    Job own(job);
+    parallel_for(std::ssize(next), [&](int64_t i) {
+      const Beam& beam = out.beams[first + static_cast<size_t>(i)];
+      extend(&beam, beam.image(), search.slack, next[static_cast<size_t>(i)]);
+    }, &own);
+    for (std::vector<Beam>& of_one : next) {
+      std::move(of_one.begin(), of_one.end(), std::back_inserter(out.beams));
+    }
+  }
+}
+
+Beams BeamFinder::find(const Vec3& antenna, const BeamSearch& search, const Job* job) const {
+  Beams out;
+  if (search.max_mirrors > 0) extend(nullptr, antenna, search.slack, out.beams);
+  size_t begin = 0;
+  for (int count = 1; count < search.max_mirrors && begin < out.beams.size(); ++count) {
+    const size_t end = out.beams.size();
+    follow(begin, end, search, job, out);
+    begin = end;
+  }
+  return out;
 }
 
 }  // namespace echopath

@@ -2,14 +2,17 @@
 // What an antenna lights over sequences of mirrors: its images, each with the window through which it is seen.
 // Source: beam tracing after Heckbert, Hanrahan 1984.
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <vector>
 
+#include "echopath/trace/beam_shadows.h"
+#include "echopath/trace/box_hierarchy.h"
 #include "echopath/trace/mirrors.h"
 
 namespace echopath {
 
 inline constexpr int kMaxLegMirrors = 2;  // mirrors between a surface point and an antenna
+inline constexpr size_t kMostBeams = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
 
 // A sequence of mirrors in travel order from the antenna to the surface, as a number. 0: none.
 using MirrorSequence = int64_t;
@@ -33,11 +36,37 @@ struct Beam {
   // A ball about `point` reaches into the beam, `radius` in m. True for all that is lit and for little else: that the mirrors
   // have no holes and nothing stands in the way is for rays to find out.
   bool reaches(const Vec3& point, double radius) const;
+  // All points that a ball of `radius` (m) reaches from, as half-spaces.
+  std::vector<HalfSpace> region(double radius) const;
 };
 
-// The beams of an antenna over sequences of at most `max_mirrors` mirrors, by number of mirrors and then by mirrors in
-// travel order; sequences that light nothing are left out, and so are the last of more than `max_beams`.
-std::vector<Beam> find_beams(const Vec3& antenna, const std::vector<Mirror>& mirrors, int max_mirrors,
-                             size_t max_beams = std::numeric_limits<size_t>::max());
+struct BeamSearch {
+  int max_mirrors = kMaxLegMirrors;
+  double slack = 0.0;  // m, by which windows are larger than what is lit
+  size_t max_beams = kMostBeams;
+};
+
+struct Beams {
+  std::vector<Beam> beams;      // by number of mirrors and then by mirrors in travel order
+  int64_t num_unfollowed = 0;   // that have fewer mirrors than asked for, and whose further ones were not looked for
+};
+
+class BeamFinder {
+ public:
+  // `geometry`: where given, sequences whose last mirror lies wholly behind other surfaces are left out. Both must outlive this.
+  explicit BeamFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry = nullptr);
+  // The beams of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing are left out.
+  // Raises Cancelled when the job is.
+  Beams find(const Vec3& antenna, const BeamSearch& search, const Job* job = nullptr) const;
+
+ private:
+  void extend(const Beam* beam, const Vec3& source, double slack, std::vector<Beam>& out) const;
+  bool reflect(const Beam* beam, const Vec3& source, int index, double slack, Beam& out) const;
+  void follow(size_t begin, size_t end, const BeamSearch& search, const Job* job, Beams& out) const;
+
+  const std::vector<Mirror>& mirrors_;
+  BoxHierarchy boxes_;  // of the mirrors
+  std::unique_ptr<const BeamShadows> shadows_;
+};
 
 }  // namespace echopath

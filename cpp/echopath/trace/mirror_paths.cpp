@@ -1,31 +1,31 @@
 #include "echopath/trace/mirror_paths.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "echopath/base/parallel.h"
 #include "echopath/trace/mirror_beams.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are at a common edge
-constexpr size_t kMaxBeams = 20000;   // sequences of mirrors tried; the longest are left out beyond
 // A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the true
 // one, and of one as far on the other side. In no direction that a scene is likely to be built along.
 constexpr double kAside = 1e-5;  // m
 const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
+constexpr size_t kBeamsPerBlock = 64;
 
-class ImageSearch {
+// Tries sequences one by one.
+class ImageMethod {
  public:
-  ImageSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, PathBlock& block)
+  ImageMethod(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, PathBlock& block)
       : geometry_(geometry), mirrors_(mirrors), settings_(settings), block_(block) {}
 
-  void run() {
-    for (const Beam& beam : find_beams(settings_.transmitter, mirrors_, settings_.max_bounces, kMaxBeams)) {
-      if (!beam.reaches(settings_.receiver, kAtEdge)) continue;
-      sequence_ = beam.mirrors;
-      try_sequence();
-    }
+  void try_sequence(std::vector<int> sequence) {
+    sequence_ = std::move(sequence);
+    try_sequence();
   }
 
  private:
@@ -44,13 +44,14 @@ class ImageSearch {
 
   // To a receiver there; sets hits_ where it gets through.
   bool follow(const Vec3& receiver) {
-    if (!find_points(receiver) || !sees_all(receiver)) return false;
+    if (!find_points(receiver)) return false;
     std::vector<Hit> hits;
     for (size_t k = 0; k < points_.size(); ++k) {
       const std::optional<Hit> hit = mirror(k).mesh.locate(points_[k]);
       if (!hit) return false;
       hits.push_back(*hit);
     }
+    if (!sees_all(receiver)) return false;
     hits_ = std::move(hits);
     return true;
   }
@@ -139,11 +140,113 @@ class ImageSearch {
   std::vector<Hit> hits_;
 };
 
+// The beams of one antenna with the same number of mirrors.
+using BeamRange = std::pair<const Beam*, const Beam*>;
+
+BeamRange with_mirrors(const std::vector<Beam>& beams, size_t count) {
+  const auto is_shorter = [](const Beam& beam, size_t wanted) { return beam.mirrors.size() < wanted; };
+  const auto begin = std::lower_bound(beams.begin(), beams.end(), count, is_shorter);
+  const auto end = std::lower_bound(begin, beams.end(), count + 1, is_shorter);
+  return {beams.data() + (begin - beams.begin()), beams.data() + (end - beams.begin())};
+}
+
+// Pairs of beams of transmitter and receiver, each of which shows the other's antenna, or its image.
+class HalfwayMeeting {
+ public:
+  HalfwayMeeting(BeamRange transmit, BeamRange receive)
+      : transmit_(transmit), receive_(receive), images_(boxes_of_images(receive)) {}
+
+  // Calls body(sequence) for every sequence that begins with the transmit beam, in the order of the mirrors.
+  template <class Body>
+  void sequences(const Beam& beam, const Body& body) const {
+    if (receive_.first == receive_.second) return;
+    std::vector<int> found;
+    images_.find(beam.region(kAtEdge), found);
+    std::vector<std::vector<int>> sequences;
+    for (const int index : found) {
+      const Beam& other = receive_.first[index];
+      if (other.mirrors.back() == beam.mirrors.back() || !shows(other, beam.image())) continue;
+      std::vector<int>& sequence = sequences.emplace_back(beam.mirrors);
+      sequence.insert(sequence.end(), other.mirrors.rbegin(), other.mirrors.rend());
+    }
+    std::sort(sequences.begin(), sequences.end());
+    for (std::vector<int>& sequence : sequences) body(std::move(sequence));
+  }
+
+  size_t size() const { return static_cast<size_t>(transmit_.second - transmit_.first); }
+  const Beam& operator[](size_t i) const { return transmit_.first[i]; }
+
+ private:
+  static std::vector<Eigen::AlignedBox3d> boxes_of_images(BeamRange beams) {
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (const Beam* beam = beams.first; beam != beams.second; ++beam) boxes.emplace_back(beam->image(), beam->image());
+    return boxes;
+  }
+
+  // Whether a beam reaches a point that may be far behind it, but for kAtEdge at its window.
+  static bool shows(const Beam& beam, const Vec3& point) {
+    const double before = beam.offset - beam.lit_normal.dot(beam.image()), behind = beam.lit_normal.dot(point) - beam.offset;
+    return behind > -kAtEdge && beam.reaches(point, kAtEdge * std::max(1.0, (before + behind) / before));
+  }
+
+  BeamRange transmit_, receive_;
+  BoxHierarchy images_;  // of the receiver
+};
+
+class MirrorPathSearch {
+ public:
+  MirrorPathSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, const Job* job)
+      : geometry_(geometry), mirrors_(mirrors), settings_(settings), job_(job) {
+    const BeamFinder finder(mirrors, &geometry);
+    const int half = settings.max_bounces / 2;
+    transmit_ = finder.find(settings.transmitter, {.max_mirrors = settings.max_bounces - half, .slack = kAtEdge}, job);
+    receive_ = finder.find(settings.receiver, {.max_mirrors = half, .slack = kAtEdge}, job);
+  }
+
+  std::vector<PathBlock> run() {
+    std::vector<PathBlock> blocks(1);
+    blocks[0].statistics.num_unfollowed_beams = transmit_.num_unfollowed + receive_.num_unfollowed;
+    add_single(blocks[0]);
+    for (int count = 2; count <= settings_.max_bounces; ++count) add_longer(static_cast<size_t>(count), blocks);
+    return blocks;
+  }
+
+ private:
+  // Paths over one mirror, whose beams show the receiver itself.
+  void add_single(PathBlock& block) const {
+    ImageMethod images(geometry_, mirrors_, settings_, block);
+    const auto [begin, end] = with_mirrors(transmit_.beams, 1);
+    for (const Beam* beam = begin; beam != end; ++beam) {
+      if (beam->reaches(settings_.receiver, kAtEdge)) images.try_sequence(beam->mirrors);
+    }
+  }
+
+  void add_longer(size_t count, std::vector<PathBlock>& blocks) const {
+    const HalfwayMeeting meeting(with_mirrors(transmit_.beams, count - count / 2), with_mirrors(receive_.beams, count / 2));
+    const size_t first = blocks.size();
+    blocks.resize(first + (meeting.size() + kBeamsPerBlock - 1) / kBeamsPerBlock);
+    Job own(job_);
+    parallel_for(std::ssize(blocks) - static_cast<int64_t>(first), [&](int64_t k) {
+      const size_t begin = static_cast<size_t>(k) * kBeamsPerBlock, end = std::min(meeting.size(), begin + kBeamsPerBlock);
+      ImageMethod images(geometry_, mirrors_, settings_, blocks[first + static_cast<size_t>(k)]);
+      for (size_t i = begin; i < end; ++i) {
+        meeting.sequences(meeting[i], [&](std::vector<int> sequence) { images.try_sequence(std::move(sequence)); });
+      }
+    }, &own);
+  }
+
+  const EmbreeScene& geometry_;
+  const std::vector<Mirror>& mirrors_;
+  const SbrSettings& settings_;
+  const Job* job_;
+  Beams transmit_, receive_;
+};
+
 }  // namespace
 
-void add_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
-                      PathBlock& block) {
-  ImageSearch(geometry, mirrors, settings, block).run();
+std::vector<PathBlock> find_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                                         const SbrSettings& settings, const Job* job) {
+  return MirrorPathSearch(geometry, mirrors, settings, job).run();
 }
 
 }  // namespace echopath

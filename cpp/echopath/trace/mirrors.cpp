@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kFlatAbsolute = 1e-4;   // m
 constexpr double kFlatRelative = 1e-6;   // of the mesh's extent
+constexpr double kFilled = 1e-6;         // of the area
 constexpr double kTeLimit = 0.70710678118654752;
 constexpr double kNormalIncidence = 1e-12;  // sine of incidence
 constexpr double kAlongTravel = 0.1;  // sine between field and direction of travel
@@ -46,12 +47,27 @@ void require_flat(const Scene& scene, const EmbreeScene& geometry, const Mirror&
           "the mesh '" + scene.node_of(mirror.mesh_id).name + "' must be flat, deviation in m", deviation);
 }
 
-// Corners of the convex hull in the plane of the mirror (Andrew 1979).
-std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& vertices) {
+// The area of the triangles, each of which counts in full, is that of the outline.
+bool fills_outline(const Scene& scene, const EmbreeScene& geometry, const Mirror& mirror) {
+  double filled = 0.0, whole = 0.0;
+  const auto num_triangles = static_cast<uint32_t>(scene.node_of(mirror.mesh_id).mesh->triangles().size());
+  for (uint32_t i = 0; i < num_triangles; ++i) {
+    const auto [a, b, c] = geometry.corners(mirror.mesh_id, i);
+    filled += (b - a).cross(c - a).norm();
+  }
+  for (size_t i = 2; i < mirror.outline.size(); ++i) {
+    whole += (mirror.outline[i - 1] - mirror.outline[0]).cross(mirror.outline[i] - mirror.outline[0]).norm();
+  }
+  return std::abs(filled - whole) <= kFilled * whole;
+}
+
+}  // namespace
+
+std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& corners) {
   const Vec3 first = mirror.normal.unitOrthogonal(), second = mirror.normal.cross(first);
   std::vector<std::pair<double, double>> points;
-  for (const Vec3& vertex : vertices) {
-    const Vec3 line = vertex - mirror.point;
+  for (const Vec3& corner : corners) {
+    const Vec3 line = corner - mirror.point;
     points.emplace_back(first.dot(line), second.dot(line));
   }
   std::sort(points.begin(), points.end());
@@ -74,8 +90,6 @@ std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& vert
   return outline;
 }
 
-}  // namespace
-
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry) {
   std::vector<Mirror> mirrors;
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
@@ -83,6 +97,7 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
     mirrors.push_back(fit_plane(scene, geometry, mesh_id));
     require_flat(scene, geometry, mirrors.back());
     mirrors.back().outline = outline_of(mirrors.back(), geometry.vertices(mesh_id));
+    mirrors.back().is_solid = fills_outline(scene, geometry, mirrors.back());
   }
   return mirrors;
 }

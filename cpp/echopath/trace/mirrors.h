@@ -14,12 +14,16 @@ struct Mirror {
   Vec3 normal;  // unit
   const Material* material = nullptr;
   std::vector<Vec3> outline;  // corners of the convex hull, in order around it
+  bool is_solid = false;      // the mesh fills its outline: it has no holes and no notches
   PlaneMesh mesh;
 
   double signed_distance(const Vec3& p) const { return normal.dot(p - point); }
   Vec3 image(const Vec3& p) const { return p - 2.0 * signed_distance(p) * normal; }
   Vec3 reflect(const Vec3& direction) const { return direction - 2.0 * normal.dot(direction) * normal; }
 };
+
+// Corners of the convex hull of points of a mirror's plane, in order around it (Andrew 1979).
+std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& points);
 
 // All mirror meshes of the scene. Raises invalid_argument naming a mesh that is not flat (0.1 mm plus 1e-6 of its size).
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry);

@@ -18,6 +18,7 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_grazing += part.num_grazing;
   total.num_small_mirrors += part.num_small_mirrors;
   total.num_false_hits += part.num_false_hits;
+  total.num_unfollowed_beams += part.num_unfollowed_beams;
 }
 
 // Where each block begins in the record, and where the last one ends.

@@ -34,8 +34,10 @@ double curvature_along(const RayHit& point, const Vec3& direction) {
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
     : scene_(scene), geometry_(geometry), mirrors_(mirrors), plan_(plan), directions_(plan.strata), settings_(settings),
-      legs_(geometry, mirrors, settings.frequency, settings.polarization), transmitter_(legs_.view_of(settings.transmitter)),
-      receiver_(legs_.view_of(settings.receiver)), mirror_of_mesh_(scene.meshes().size(), -1),
+      legs_(geometry, mirrors, settings.frequency, settings.polarization),
+      transmitter_(legs_.view_of(settings.transmitter, std::min(kMaxLegMirrors, settings.max_bounces - 1))),
+      receiver_(legs_.view_of(settings.receiver, std::min(kMaxLegMirrors, settings.max_bounces - 1))),
+      mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) models_.emplace_back(*scene.node_of(id).material, settings.frequency);

@@ -39,6 +39,8 @@ class RayShooter {
              const SbrSettings& settings);
   // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
+  // Of the antennas' beams over mirrors, those whose further mirrors were not looked for (kMostBeams).
+  int64_t num_unfollowed_beams() const { return transmitter_.num_unfollowed + receiver_.num_unfollowed; }
 
  private:
   struct Ray;      // what the ray carries

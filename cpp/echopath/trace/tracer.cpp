@@ -125,9 +125,11 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);
-  PathBlock over_mirrors;
-  add_mirror_paths(geometry_, mirrors_, sbr_, over_mirrors);
-  record.append({&over_mirrors}, job);
+  paths.frame.statistics.num_unfollowed_beams = shooter_.num_unfollowed_beams();
+  const std::vector<PathBlock> over_mirrors = find_mirror_paths(geometry_, mirrors_, sbr_, job);
+  std::vector<const PathBlock*> all_over_mirrors;
+  for (const PathBlock& block : over_mirrors) all_over_mirrors.push_back(&block);
+  record.append(all_over_mirrors, job);
   if (job) job->start(num_blocks());
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;

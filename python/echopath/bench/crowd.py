@@ -15,6 +15,7 @@ from . import crowd_scenes as scenes
 from .crowd_coverage import measure_coverage
 from .machine import machine
 from .speed_tracer import bare_share
+from .timing import processor_time
 
 RAYS, QUICK_RAYS = 300_000, 20_000
 SEEDS, QUICK_SEEDS = 3, 1
@@ -25,6 +26,9 @@ WANTED_DB, RIGHT_DB = 0.3, 0.1       # an echo errs by no more, or is flagged; o
 GROUND_RAYS, QUICK_GROUND_RAYS = (100_000, 1_000_000), (20_000,)
 PERSON_RAYS, PERSON_SEEDS = 100_000, 12
 QUICK_PERSON_RAYS, QUICK_PERSON_SEEDS = 10_000, 2
+CITIES, QUICK_CITIES = ((80, 3), (80, 4), (500, 2), (500, 3)), ((10, 2),)   # houses of five mirrors, most bounces
+CITY_SECONDS = 1.0                   # of processor time, without rays, for what CITY_ASKED asks
+CITY_ASKED = ((80, 3), (500, 2))
 PERSON_ERROR = 0.01                  # relative, standard error of his direct power
 
 
@@ -38,6 +42,7 @@ def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
     began = time.perf_counter()
     works = {"streets": lambda: [measure_street(mirrors=mirrors, quick=quick) for mirrors in (True, False)],
              "ground": lambda: measure_ground(quick=quick), "person": lambda: measure_person(quick=quick),
+             "mirrors": lambda: measure_mirrors(quick=quick),
              "coverage": lambda: measure_coverage(quick=quick)}
     results = {"machine": machine(), "quick": quick}
     for index, (name, work) in enumerate(works.items()):
@@ -158,6 +163,20 @@ def measure_person(*, quick: bool) -> dict:
             "claimed": float(np.sqrt(np.mean(np.square(claimed)))), "flagged": sum(one.flagged for one in levels)}
 
 
+# --- a city of mirrors ---
+
+def measure_mirrors(*, quick: bool) -> list[dict]:
+    """A row for each city: paths over mirrors alone by number of bounces, and processor seconds of a trace of one ray."""
+    rows = []
+    for houses, bounces in QUICK_CITIES if quick else CITIES:
+        scene, radar = scenes.mirror_city(houses)
+        seconds, paths = processor_time(lambda: ep.trace(scene, radar, num_rays=1, max_bounces=bounces))
+        counts = np.bincount(np.asarray(paths.num_bounces), minlength=bounces + 1)[1:]
+        rows.append({"houses": houses, "mirrors": len(scene.meshes), "max_bounces": bounces, "paths": counts.tolist(),
+                     "unfollowed": paths.frame.statistics.num_unfollowed_beams, "processor_s": seconds})
+    return rows
+
+
 def scene_size(scene) -> int:
     """Number of children of the scene's root."""
     return sum(node.parent < 0 for node in scene.nodes)
@@ -177,6 +196,10 @@ def verdicts(results: dict) -> list[dict]:
     rows += [_verdict(f"city ground, {row['rays']:,} rays: off by over {WANTED_DB} dB and not flagged", 0,
                       int(row["verdict"] == "MISSED")) for row in results["ground"]]
     rows.append(_verdict("person among 2400: scatter of his direct power", PERSON_ERROR, results["person"]["scatter"]))
+    rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: processor seconds", CITY_SECONDS,
+                      row["processor_s"]) for row in results["mirrors"] if (row["houses"], row["max_bounces"]) in CITY_ASKED]
+    rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: sequences not followed", 0, row["unfollowed"])
+             for row in results["mirrors"]]
     low, high = results["coverage"]["wanted"]
     for row in results["coverage"]["rows"]:
         holds = low <= row["coverage"] <= high
@@ -201,8 +224,11 @@ def describe(results: dict) -> list[str]:
     person = results["person"]
     lines += ["", f"person at 40 m among {person['objects'] - 1} flat objects, {person['rays']:,} rays, {person['seeds']} seeds: "
               f"{person['paths']:.0f} direct paths, scatter {100 * person['scatter']:.2f} %, "
-              f"claimed {100 * person['claimed']:.2f} %, flagged {person['flagged']} times",
-              "", f"coverage of the true value by two standard errors, {results['coverage']['seeds']} seeds",
+              f"claimed {100 * person['claimed']:.2f} %, flagged {person['flagged']} times", "", "paths over mirrors alone"]
+    lines += [f"  {row['mirrors']:>5} mirrors, {row['max_bounces']} bounces: {row['paths']} paths by bounces, "
+              f"{row['processor_s']:.2f} s of processor time, {row['unfollowed']} sequences not followed"
+              for row in results["mirrors"]]
+    lines += ["", f"coverage of the true value by two standard errors, {results['coverage']['seeds']} seeds",
               f"  {'':<30}{'rays':>9}{'coverage':>10}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
     lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f}{row['mean_error_db']:>+16.3f}"
               f"{row['claimed_db']:>13.3f}{row['unresolved']:>12}" for row in results["coverage"]["rows"]]

@@ -1,4 +1,5 @@
-"""Crowded scenes: a street of some twenty objects, the ground of a city, a person among thousands of flat objects.
+"""Crowded scenes: a street of some twenty objects, the ground of a city, a person among thousands of flat objects, a city of
+mirrors.
 
 In the street no object shadows another as the radar sees it, so that each, traced alone, is the truth for its direct echoes.
 """
@@ -267,3 +268,24 @@ def flat_city():
                 scene.add(tower, name=f"building_{column}_{row}_{'left' if side > 0 else 'right'}", material=concrete,
                           position=place)
     return scene, radar()
+
+
+# --- a city of mirrors ---
+
+def mirror_city(num_houses: int):
+    """(scene, radar): houses that stand askew on a grid, each wall and roof a flagged mirror, and the ground: 5 num_houses + 1
+    mirrors; transmitter and receiver in the streets, 40 m apart."""
+    scene, draw = ep.Scene(), np.random.default_rng(5)
+    mirror = ep.materials["concrete"].replace(mirror=True)
+    side = int(np.ceil(np.sqrt(num_houses)))
+    scene.add(shapes.ground(25.0 * side), name="ground", material=mirror)
+    for house in range(num_houses):
+        length, width, height = draw.uniform(8.0, 11.0), draw.uniform(8.0, 11.0), draw.uniform(6.0, 12.0)
+        place = 20.0 * (np.array([house % side, house // side]) - side // 2) + draw.uniform(0.0, 3.0, 2)
+        node = scene.add(None, name=f"house_{house}", position=(*place, 0.0), yaw=draw.uniform(0.0, 0.4))
+        for k, (across, away) in enumerate(((length, width), (width, length), (length, width), (width, length))):
+            turn = 0.5 * np.pi * k
+            scene.add(shapes.wall(across, height), name=f"wall_{k}", material=mirror, parent=node, yaw=turn,
+                      position=(0.5 * away * np.sin(turn), -0.5 * away * np.cos(turn), 0.0))
+        scene.add(shapes.ground((length, width), z=height), name="roof", material=mirror, parent=node)
+    return scene, radar((9.3, 8.7, 3.1), (11.2, -29.6, 2.3), pattern=ep.Isotropic())

@@ -28,18 +28,23 @@ def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_orde
     that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
     batches = batches or (TARGET_ERROR_BATCHES if target_error_db else 1)
-    case = Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db, replay,
-                                       evaluate, retrace, noise_seed))
+    return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
+                                                replay, evaluate, retrace, noise_seed)))
+
+
+def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
+             noise_seed: int | None = None) -> list[Effect]:
+    """The effects of a trace, from the scene, radar and settings that it recorded and what it left out; replay, evaluate,
+    retrace, noise_seed: of later stages."""
+    frame = paths.frame
+    settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
+                        frame.target_error_db or None, replay, evaluate, retrace, noise_seed)
+    return _of_case(Case(paths.scene, paths.radar, settings, frame.statistics))
+
+
+def _of_case(case: Case) -> list[Effect]:
     found = [rule(case) for rule in RULES]
     return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
-
-
-def of_paths(paths, **settings) -> list[Effect]:
-    """The effects of a trace, from the scene, radar and settings that it recorded; settings: those of later stages."""
-    frame = paths.frame
-    return effects(paths.scene, paths.radar, max_bounces=frame.max_bounces, footprint=frame.footprint,
-                   polarization=frame.polarization, sampler=frame.sampler, batches=frame.num_batches,
-                   target_error_db=frame.target_error_db or None, **settings)
 
 
 # The core knows no reports: its record of paths gets this property here.

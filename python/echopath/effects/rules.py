@@ -37,10 +37,11 @@ class Settings:
 
 
 class Case:
-    """A scene, a radar and settings, and the meshes that several rules ask for."""
+    """A scene, a radar and settings, and the meshes that several rules ask for; statistics: of the trace that was made,
+    None: none yet."""
 
-    def __init__(self, scene, radar, settings: Settings):
-        self.scene, self.radar, self.settings = scene, radar, settings
+    def __init__(self, scene, radar, settings: Settings, statistics=None):
+        self.scene, self.radar, self.settings, self.statistics = scene, radar, settings, statistics
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency
         self.meshes, self.nodes = list(scene.meshes), scene.nodes
 

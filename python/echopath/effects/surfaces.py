@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 
 from .._core import speed_of_light
+from ..lost_rays import unfollowed_beams
 from ..tessellation import coarse_meshes
 from .rules import Case, meshes_or, named, rule
 
@@ -106,7 +107,9 @@ def _roughness(case: Case):
 
 @rule("mirrors by images", "Material.mirror")
 def _mirrors(case: Case):
-    return meshes_or(case.mirrors, "no mesh is marked mirror")
+    modelled, reason = meshes_or(case.mirrors, "no mesh is marked mirror")
+    missing = unfollowed_beams(case.statistics) if case.statistics else ""
+    return modelled, f"{reason}; {missing}" if missing else reason
 
 
 @rule("legs over images")

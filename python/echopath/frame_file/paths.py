@@ -18,7 +18,7 @@ FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization
                 "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
-              "num_false_hits", "num_unaimed")
+              "num_false_hits", "num_unaimed", "num_unfollowed_beams")
 
 
 def write_paths(group, paths, min_power: float = 0.0, power=None):

@@ -13,6 +13,10 @@ namespace {
 constexpr int kMaxMirrors = 3;
 constexpr double kRim = 1e-6;  // m: a bounce this near to the rim of its mirror may count either way
 
+std::vector<Beam> find_beams(const Vec3& antenna, const std::vector<Mirror>& mirrors, int max_mirrors) {
+  return BeamFinder(mirrors).find(antenna, {.max_mirrors = max_mirrors}).beams;
+}
+
 struct Rectangle {
   Vec3 corner, a, b;
 };

@@ -1,4 +1,6 @@
+#include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <sstream>
 #include <string>
@@ -14,9 +16,17 @@ ReceivedPower power_of(const Paths& paths, int tx, int rx, const py::object& pro
   return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job, {tx, rx}); });
 }
 
+std::vector<ReceivedPower> powers_of(const Paths& paths, const py::array_t<uint32_t, py::array::c_style | py::array::forcecast>& groups,
+                                     size_t num_groups, int tx, int rx, const py::object& progress) {
+  const std::span<const uint32_t> group_of_path(groups.data(), static_cast<size_t>(groups.size()));
+  return run_job("received power", progress,
+                 [&](Job& job) { return received_powers(paths, group_of_path, num_groups, &job, {tx, rx}); });
+}
+
 std::string power_text(const ReceivedPower& self) {
   std::ostringstream text;
-  text << "ReceivedPower(" << self.power << " W, standard_error=" << self.standard_error << " W)";
+  text << "ReceivedPower(" << self.power << " W, 95 % in [" << self.low << ", " << self.high << "] W"
+       << (self.resolved() ? "" : ", not resolved") << ")";
   return text.str();
 }
 
@@ -24,10 +34,13 @@ std::string power_text(const ReceivedPower& self) {
 
 void bind_received_power(py::module_& m) {
   py::class_<ReceivedPower>(m, "ReceivedPower",
-                            R"(Mean received power of a set of paths and its Monte-Carlo error; all powers in W.
+                            R"(Mean received power of a set of paths and how well the rays know it; all powers in W.
 
 At the trace time, between two antennas, at the start frequency; the mean is over the random phases of diffuse
-hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN for one batch.)")
+hits. [low, high] is the 95 % interval, of bias and chance together: what the footprint filter takes away, told by what
+half the density of rays would take, and the spread of the batches or, of one batch, of the hits. The power is resolved if it
+reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
+and are NaN for one batch.)")
       .def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
       .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
       .def_readonly("coherent", &ReceivedPower::coherent,
@@ -36,19 +49,39 @@ hits. Errors come from the batches of a trace (`trace(batches=8)`) and are NaN f
       .def_readonly("diffuse", &ReceivedPower::diffuse,
                     "W, sum over diffuse hits of |field of all paths over that hit|^2")
       .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
-      .def_readonly("resolved", &ReceivedPower::resolved,
-                    "the power is at least twice its standard error; False for one batch")
+      .def_readonly("low", &ReceivedPower::low, "W, lower end of the 95 % interval, of bias and chance together")
+      .def_readonly("high", &ReceivedPower::high, "W, upper end of it")
+      .def_readonly("bias", &ReceivedPower::bias, "W, that finer launch cells may add to the coherent power")
+      .def_readonly("chance", &ReceivedPower::chance, "W, standard error; of one batch estimated from the record")
+      .def_readonly("field", &ReceivedPower::field, "sqrt(W), sum of the coherent paths as they arrive")
+      .def_readonly("half_density_field", &ReceivedPower::half_density_field,
+                    "sqrt(W), the same through the footprint filter of launch cells sqrt(2) wider")
+      .def_readonly("unfiltered", &ReceivedPower::unfiltered, "W, sum of |a|^2 of the coherent paths without the filter")
+      .def_readonly("num_coherent_paths", &ReceivedPower::num_coherent_paths, "number of coherent paths")
+      .def_readonly("num_diffuse_hits", &ReceivedPower::num_diffuse_hits, "number of diffuse hits")
+      .def_readonly("strongest_share", &ReceivedPower::strongest_share, "share of the diffuse power of its strongest hit")
+      .def_property_readonly("resolved", &ReceivedPower::resolved, "the interval reaches no further than 0.3 dB to either side")
+      .def_property_readonly("interval_db", &ReceivedPower::interval_db,
+                             "dB, half the interval, the larger one of its sides; infinite where it reaches down to nothing")
       .def_readonly("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors")
       .def_property_readonly("error_db", &ReceivedPower::error_db,
                              "dB, 10 log10(1 + standard_error / power); infinite where not resolved")
       .def("__repr__", &power_text);
   m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
         py::arg("progress") = py::none(),
-        R"(Mean received power of paths with its standard error, for the whole of a trace or any selection of it.
+        R"(Mean received power of paths with its interval, for the whole of a trace or any selection of it.
 
-paths: of a trace with batches for errors; progress: callable(stage, fraction) or None
+paths: of a trace, with batches for standard errors; progress: callable(stage, fraction) or None
 tx, rx: indices of the antennas
 Returns a ReceivedPower, in W. Raises IndexError for antennas that are not there, KeyboardInterrupt on Ctrl-C.)");
+  m.def("received_powers", &powers_of, py::arg("paths"), py::arg("group_of_path"), py::arg("num_groups"), py::kw_only(),
+        py::arg("tx") = 0, py::arg("rx") = 0, py::arg("progress") = py::none(),
+        R"(The same of groups of paths in one pass, each as `received_power` of its paths alone.
+
+paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the antennas
+progress: callable(stage, fraction) or None
+Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
+are not there, KeyboardInterrupt on Ctrl-C.)");
 }
 
 }  // namespace echopath::bindings

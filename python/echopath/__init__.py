@@ -17,8 +17,8 @@ from ._core import (
     Material, Mesh, Motion, Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin,
     Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray, __version__, add_noise,
     angle_fft, beamform, boltzmann, cfar, compensate_tdm, estimate_angles, first, hits, last, load_mesh, load_meshes,
-    mie_rcs, num_bounces, num_threads, power, range_azimuth, range_doppler, received_power, renew, set_num_threads,
-    speed_of_light, synthesize, validity, virtual_array,
+    mie_rcs, num_bounces, num_threads, power, range_azimuth, range_doppler, received_power, received_powers, renew,
+    set_num_threads, speed_of_light, synthesize, validity, virtual_array,
 )
 from .antennas import load_antenna
 from .materials import materials
@@ -34,6 +34,7 @@ from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, s
 from .measures import power_by_chirp
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
+from .resolution import Interval, Unresolved, unresolved
 from .simulate import Frame, simulate
 from .visibility import ObjectVisibility, Sight, visibility
 from .frame_file import load_frame, load_labels, save_frame, save_labels
@@ -68,15 +69,16 @@ def _viewer():
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
     "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families",
-    "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Isotropic", "Joint", "KeyframeMotion",
-    "Labels", "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part", "Parts", "PathCells",
-    "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight",
-    "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics", "Validity", "ValidityShares",
-    "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame", "beamform",
-    "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects",
-    "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
-    "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "power",
-    "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "renew", "save_frame", "save_label_images",
-    "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "validity", "view",
-    "virtual_array", "visibility",
+    "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint",
+    "KeyframeMotion", "Labels", "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel", "ObjectVisibility", "Part",
+    "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "Scene", "SceneFile",
+    "Selection", "Sight", "SignalProbe", "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceStatistics",
+    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft",
+    "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm",
+    "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna",
+    "load_frame", "load_labels", "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces",
+    "num_threads", "path_cells", "plot_rays", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs",
+    "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads",
+    "simulate", "speed_of_light", "synthesize", "to_xarray", "trace", "unresolved", "validity", "view", "virtual_array",
+    "visibility",
 ]

@@ -23,7 +23,7 @@ std::complex<double> coherent_factor(const LocalPath& path, const PosedHit* hits
   const double spreading = root_tube_area(path.cell, at) * out.length;
   return std::sqrt(radio.transmit_power * in.gain.power * out.gain.power) / kFourPi * at.cos_in * hit.area_ratio /
          spreading *
-         cell_filter(path.cell, at, {radio.wavenumber, radio.spread, radio.footprint});
+         cell_filter(path.cell, at, radio.filter());
 }
 
 double diffuse_factor(const LocalPath& path, const PosedHit* hits, const DiffuseInner& between, const AntennaLeg& in,

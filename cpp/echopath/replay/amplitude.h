@@ -13,7 +13,7 @@
 // In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all coefficients.
 // Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}.
 // A path whose surface is seen from opposite sides has amplitude 0. The phase of the length is not part of the amplitude.
-#include "echopath/em/footprint.h"
+#include "echopath/replay/cell_formula.h"
 #include "echopath/replay/specular_slide.h"
 
 namespace echopath {
@@ -28,6 +28,9 @@ struct RadioConstants {
   Footprint footprint = Footprint::kSecondOrder;
   double spread = 0.65;  // of a launch cell (trace/sampler.h)
   SpecularPoints specular = SpecularPoints::kMaterial;
+  double cell_side = 1.0;  // of the cells that the footprint filter takes, relative to those of the launch (CellFilter)
+
+  CellFilter filter() const { return {wavenumber, spread, footprint, cell_side}; }
 };
 
 // Those of a record played back with `radar`.

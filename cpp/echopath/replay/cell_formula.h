@@ -12,6 +12,7 @@ struct CellFilter {
   double wavenumber = 0.0;  // rad/m
   double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
   Footprint order = Footprint::kSecondOrder;
+  double side = 1.0;        // of the cells that it takes, relative to those of the launch: what finer or coarser ones would do
 };
 
 // A cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. Does not change while its mesh moves rigidly.
@@ -34,10 +35,11 @@ struct CellWaves {
   Real along_arrival[2], along_departure[2];     // of unit directions of travel, T_a.u and T_a.s, m
 };
 
-// Matrix h of the cell, in rad per cell^2.
+// Gradient g of the cell, in rad per cell, and matrix h, in rad per cell^2.
 // Shape: CellShape, or one like it for as many cells as Real has lanes.
 template <class Shape, class Real>
-ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellWaves<Real>& at, double wavenumber) {
+ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
+  const double per_side = filter.wavenumber * filter.side, per_area = per_side * filter.side;
   FootprintPhaseOf<Real> phase;
   Real* const h[3] = {&phase.h11, &phase.h12, &phase.h22};
   const Real bends = at.side * (at.cos_in + at.cos_out);
@@ -45,10 +47,10 @@ ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellW
     const int a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
     const Real on_arrival = (cell.product[i] - at.along_arrival[a] * at.along_arrival[b]) * at.inverse_in;
     const Real on_departure = (cell.product[i] - at.along_departure[a] * at.along_departure[b]) * at.inverse_out;
-    *h[i] = wavenumber * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
+    *h[i] = per_area * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
   }
-  phase.g1 = wavenumber * (at.along_arrival[0] - at.along_departure[0]);
-  phase.g2 = wavenumber * (at.along_arrival[1] - at.along_departure[1]);
+  phase.g1 = per_side * (at.along_arrival[0] - at.along_departure[0]);
+  phase.g2 = per_side * (at.along_arrival[1] - at.along_departure[1]);
   return phase;
 }
 
@@ -97,7 +99,7 @@ template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
   const Real zero = at.cos_in * 0.0;
   if (filter.order == Footprint::kNone || !cell.is_known) return {zero + 1.0, zero};
-  const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter.wavenumber);
+  const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) return {first_order_footprint_of<Math>(phase), zero};
   if (cell.flatness == Flatness::kFlat) {
     return cell.is_curved ? quadratic_footprint<Math>(phase, filter) : flat_cell_filter<Math>(phase, filter);

@@ -52,7 +52,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
   legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
            is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
-           {radio.wavenumber, radio.spread, radio.footprint}, legs_.data(), out_.data(), turned_};
+           radio.filter(), legs_.data(), out_.data(), turned_};
   const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;

@@ -162,7 +162,7 @@ ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t s
                                               const CellFilter& filter) {
   if (filter.order == Footprint::kNone) return {all(1.0), Vec{}};
   const FlatCell cell{{load(slots.product[0] + slot), load(slots.product[1] + slot), load(slots.product[2] + slot)}};
-  const FootprintPhaseOf<Vec> phase = cell_phase(cell, waves, filter.wavenumber);
+  const FootprintPhaseOf<Vec> phase = cell_phase(cell, waves, filter);
   ComplexOf<Vec> found{};
   if (filter.order == Footprint::kFirstOrder) found.re = first_order_footprint_of<LaneMath>(phase);
   else found = flat_cell_filter<LaneMath>(phase, filter);

@@ -22,7 +22,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
   kernels_ = &chain_kernels(values_.stride());
   const TraceCells cell_of(plan, localise, tables_.points);
   const double of_coherent = std::sqrt(radio.transmit_power) / (4.0 * kPi), of_diffuse = diffuse_scale(radio);
-  for (CoherentPath& path : coherent_) path.filter = {radio.wavenumber, radio.spread, radio.footprint};
+  for (CoherentPath& path : coherent_) path.filter = radio.filter();
   for (size_t first = 0; first < plan.chains.size(); first += kTogether) {
     const Chains chains(plan.chains.data() + first, std::min(kTogether, plan.chains.size() - first));
     for (size_t slot = 0; slot < chains.size(); ++slot) {

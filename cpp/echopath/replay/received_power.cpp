@@ -4,79 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
-#include "echopath/base/constants.h"
-#include "echopath/base/phasor.h"
-#include "echopath/replay/replay.h"
+#include "echopath/base/errors.h"
+#include "echopath/replay/group_sums.h"
 
 namespace echopath {
 namespace {
 
-constexpr int64_t kBlock = 1 << 18;  // paths evaluated at a time: bounds the memory
-constexpr double kResolved = 2.0;    // standard errors
-
-bool same_point(const Hit& a, const Hit& b) {
-  return a.mesh_id == b.mesh_id && a.triangle_id == b.triangle_id && a.u == b.u && a.v == b.v;
-}
-
-std::vector<Hit> diffuse_hits(const Paths& paths, int64_t path) {
-  std::vector<Hit> hits;
-  const uint64_t diffuse = paths.diffuse[static_cast<size_t>(path)];
-  for (int k = 0; k < paths.num_bounces[static_cast<size_t>(path)]; ++k) {
-    if (diffuse >> k & 1) hits.push_back(paths.hits_of(path)[k]);
-  }
-  return hits;
-}
-
-// Paths that share a random phase run over the same diffuse hits, in this or the reversed order.
-bool shares_phase(const std::vector<Hit>& a, const std::vector<Hit>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_point) ||
-         std::equal(a.begin(), a.end(), b.rbegin(), b.rend(), same_point);
-}
-
-// Sums by batch of rays; the last entry is of the paths without.
-class BatchSums {
- public:
-  explicit BatchSums(const Paths& paths)
-      : field(static_cast<size_t>(paths.frame.num_batches) + 1), power(field.size()), paths_(paths),
-        turns_per_metre_(paths.radar.waveform.start_frequency / kSpeedOfLight) {}
-
-  void add(int64_t path, double length, std::complex<double> amplitude) {
-    const Phasor phase = phasor_of_product(turns_per_metre_, length);
-    const std::complex<double> arriving = amplitude * std::complex<double>(phase.re, -phase.im);
-    const auto p = static_cast<size_t>(path);
-    const size_t batch = std::min<size_t>(paths_.batch[p], field.size() - 1);
-    if (paths_.diffuse[p] == 0) {
-      field[batch] += arriving;
-      return;
-    }
-    // A ray records the paths over one hit one after the other, and selections keep their order.
-    std::vector<Hit> hits = diffuse_hits(paths_, path);
-    if (batch != open_batch_ || !shares_phase(hits, open_hits_)) {
-      close();
-      open_batch_ = batch;
-      open_hits_ = std::move(hits);
-    }
-    open_field_ += arriving;
-  }
-
-  // Counts the field of the diffuse hit that was added to last.
-  void close() {
-    if (!open_hits_.empty()) power[open_batch_] += std::norm(open_field_);
-    open_field_ = 0.0;
-    open_hits_.clear();
-  }
-
-  std::vector<std::complex<double>> field;  // sqrt(W)
-  std::vector<double> power;                // W
-
- private:
-  const Paths& paths_;
-  double turns_per_metre_;
-  size_t open_batch_ = 0;
-  std::vector<Hit> open_hits_;
-  std::complex<double> open_field_ = 0.0;
-};
+constexpr double kStandsOut = 2.0;  // standard errors
 
 const Antenna& antenna_at(const std::vector<Antenna>& antennas, int index, const char* name) {
   if (index >= 0 && index < static_cast<int>(antennas.size())) return antennas[static_cast<size_t>(index)];
@@ -91,38 +27,19 @@ Radar one_channel(const Radar& radar, Channel channel) {
   return one;
 }
 
-BatchSums sum_batches(const Paths& paths, Channel channel, Job* job) {
-  const Radar radar = one_channel(paths.radar, channel);
-  const Replayer replayer(paths, radar);
-  BatchSums sums(paths);
-  std::vector<int64_t> indices;
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  if (job) job->start(paths.num_paths());
-  for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
-    if (job) job->throw_if_cancelled();
-    indices.resize(static_cast<size_t>(std::min(kBlock, paths.num_paths() - begin)));
-    std::iota(indices.begin(), indices.end(), begin);
-    replayer.evaluate(indices, paths.frame.trace_time, lengths, amplitudes);
-    for (size_t i = 0; i < indices.size(); ++i) sums.add(indices[i], lengths[i], amplitudes[i]);
-    if (job) job->advance(static_cast<int64_t>(indices.size()));
-  }
-  sums.close();
-  return sums;
-}
-
 // Estimates of the whole by each batch of rays alone.
 struct Estimates {
   std::vector<std::complex<double>> field;
   std::vector<double> power;
 };
 
-Estimates scaled_up(const BatchSums& sums) {
+Estimates scaled_up(const GroupSums& sums) {
   Estimates estimates;
-  const size_t num_batches = sums.field.size() - 1;
+  const std::vector<std::complex<double>>& field = sums.field[kAsLaunched];
+  const size_t num_batches = field.size() - 1;
   const auto scale = static_cast<double>(num_batches);
   for (size_t b = 0; b < num_batches; ++b) {
-    estimates.field.push_back(scale * sums.field[b] + sums.field.back());
+    estimates.field.push_back(scale * field[b] + field.back());
     estimates.power.push_back(scale * sums.power[b] + sums.power.back());
   }
   return estimates;
@@ -155,20 +72,13 @@ void add_errors(const Estimates& estimates, std::complex<double> mean, ReceivedP
   out.standard_error = std::sqrt((both + second_order) / pairs);
 }
 
-}  // namespace
-
-double ReceivedPower::error_db() const {
-  if (!resolved) return std::numeric_limits<double>::infinity();
-  return 10.0 * std::log10(1.0 + standard_error / power);
-}
-
-ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
-  const Estimates estimates = scaled_up(sum_batches(paths, channel, job));
+ReceivedPower estimate(const GroupSums& sums) {
+  const Estimates estimates = scaled_up(sums);
   const auto count = static_cast<double>(estimates.field.size());
   std::complex<double> mean = 0.0;
   for (const std::complex<double>& field : estimates.field) mean += field / count;
   ReceivedPower out;
-  out.num_batches = paths.frame.num_batches;
+  out.num_batches = static_cast<int>(estimates.field.size());
   out.coherent = std::norm(mean);
   out.diffuse = std::accumulate(estimates.power.begin(), estimates.power.end(), 0.0) / count;
   if (out.num_batches > 1) {
@@ -177,8 +87,76 @@ ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
     out.standard_error = out.coherent_error = out.diffuse_error = std::numeric_limits<double>::quiet_NaN();
   }
   out.power = out.coherent + out.diffuse;
-  out.resolved = out.power > 0 && out.power >= kResolved * out.standard_error;
   return out;
+}
+
+PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
+  PowerEvidence evidence;
+  evidence.coherent = power.coherent;
+  evidence.diffuse = power.diffuse;
+  for (size_t side = 0; side < kNumCellSides; ++side) {
+    evidence.field[side] = std::accumulate(sums.field[side].begin(), sums.field[side].end(), std::complex<double>());
+    evidence.coherent_power[side] = sums.coherent_power[side];
+  }
+  evidence.half_density_squares = sums.half_density_squares;
+  evidence.lattice_squares = sums.lattice_squares;
+  evidence.drawn_squares = sums.drawn_squares;
+  evidence.num_batches = power.num_batches;
+  evidence.standard_error = power.standard_error;
+  return evidence;
+}
+
+ReceivedPower with_interval(const GroupSums& sums) {
+  ReceivedPower out = estimate(sums);
+  const PowerEvidence evidence = evidence_of(sums, out);
+  const PowerInterval interval = power_interval(evidence);
+  out.low = interval.low;
+  out.high = interval.high;
+  out.bias = interval.bias;
+  out.chance = interval.chance;
+  out.field = evidence.field[kAsLaunched];
+  out.half_density_field = evidence.field[kHalfDensity];
+  out.unfiltered = evidence.coherent_power[kUnfiltered];
+  out.num_coherent_paths = sums.num_coherent_paths;
+  out.num_diffuse_hits = sums.num_diffuse_hits;
+  if (out.diffuse > 0) out.strongest_share = sums.strongest_hit / out.diffuse;
+  return out;
+}
+
+}  // namespace
+
+bool ReceivedPower::is_within(double db) const {
+  const double factor = std::pow(10.0, 0.1 * db);
+  return power > 0 && high <= power * factor && low * factor >= power;
+}
+
+double ReceivedPower::interval_db() const {
+  if (power <= 0 || low <= 0) return std::numeric_limits<double>::infinity();
+  return 10.0 * std::log10(std::max(high / power, power / low));
+}
+
+double ReceivedPower::error_db() const {
+  if (!(power > 0 && power >= kStandsOut * standard_error)) return std::numeric_limits<double>::infinity();
+  return 10.0 * std::log10(1.0 + standard_error / power);
+}
+
+ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
+  const std::vector<uint32_t> together(static_cast<size_t>(paths.num_paths()), 0);
+  return received_powers(paths, together, 1, job, channel).front();
+}
+
+std::vector<ReceivedPower> received_powers(const Paths& paths, std::span<const uint32_t> group_of_path, size_t num_groups,
+                                           Job* job, Channel channel) {
+  require(group_of_path.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path",
+          group_of_path.size());
+  const auto last = std::max_element(group_of_path.begin(), group_of_path.end());
+  require(last == group_of_path.end() || *last < num_groups, "group_of_path", "must lie below the number of groups",
+          last == group_of_path.end() ? 0 : *last);
+  std::vector<ReceivedPower> powers;
+  for (const GroupSums& sums : sum_groups(paths, one_channel(paths.radar, channel), group_of_path, num_groups, job)) {
+    powers.push_back(with_interval(sums));
+  }
+  return powers;
 }
 
 }  // namespace echopath

@@ -1,15 +1,22 @@
 #pragma once
 // The mean received power of a set of paths and how well the rays know it.
+#include <complex>
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "echopath/base/job.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
 
+inline constexpr double kResolvedDb = 0.3;  // how far the interval of a resolved power may reach from it, dB
+
 // At the trace time, between two antennas, at the start frequency. The mean is over the random phases of diffuse
 // hits.
 struct ReceivedPower {
   double power = 0.0;           // W, coherent + diffuse
-  double standard_error = 0.0;  // W, of `power`; NaN for less than two batches
+  double standard_error = 0.0;  // W, of `power`, by the batches; NaN for less than two
   // W: |field|^2 of the coherent paths; with batches free of the bias by noise, which can take it below zero.
   double coherent = 0.0;
   double coherent_error = 0.0;  // W
@@ -17,10 +24,27 @@ struct ReceivedPower {
   // orders of a path over a mirror, and of a chain of several diffuse hits, add as fields; different hits add as powers.
   double diffuse = 0.0;
   double diffuse_error = 0.0;   // W
-  bool resolved = false;        // the power is at least twice its standard error
   int num_batches = 1;
 
-  // Standard error in dB, 10 log10(1 + standard_error / power); infinite where it is not known or not resolved.
+  // The 95 % interval of the power, of bias and chance together (power_interval.h), W: [0, 0] where no path arrives, which
+  // tells nothing about what no ray has met.
+  double low = 0.0, high = 0.0;
+  double bias = 0.0;            // W, that finer launch cells may add to the coherent power
+  double chance = 0.0;          // W, standard error; of one batch estimated from the record
+
+  // What it is known by. The field of the coherent paths (sqrt(W), all batches): as it is, and through the footprint filter of
+  // cells of half the density of rays; sum of |a|^2 of the coherent paths without the filter, W.
+  std::complex<double> field, half_density_field;
+  double unfiltered = 0.0;
+  int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
+  double strongest_share = 0.0;  // of the diffuse power, of its strongest hit
+
+  // The interval reaches no further than `db` from the power to either side.
+  bool is_within(double db) const;
+  bool resolved() const { return is_within(kResolvedDb); }
+  // Half the interval in dB, the larger one of its two sides; infinite where it reaches down to nothing.
+  double interval_db() const;
+  // Standard error in dB, 10 log10(1 + standard_error / power); infinite where it is not known or more than half the power.
   double error_db() const;
 };
 
@@ -36,9 +60,15 @@ struct Channel {
 //   SE^2 = sum (2 Re[m* (C_b - mean C)] + P_b - mean P)^2/(B (B - 1)) + s^4/(B (B - 1)),  |m|^2 = max(coherent, 0),
 // s^2 the variance of the C_b, m in the direction of their mean. For noise that is the same in all directions the
 // coherent part is 2 |m|^2 s^2/B + s^4/(B (B - 1)), but the error of a lattice may lie along its field. Pure noise gets
-// an error up to 40 % too large. One batch: |sum a|^2 and no errors. What all batches have in common, such as the
-// coarseness of a mesh or what the footprint filter takes away, shows in no error. A job advances by paths. Raises
-// out_of_range for antennas that the radar of the trace does not have; Cancelled.
+// an error up to 40 % too large. One batch: |sum a|^2 and no standard errors. What all batches have in common, what the
+// footprint filter takes away, shows in no standard error but in the bias, and with it in the interval; the coarseness of a mesh
+// shows in none. A job advances by paths. Raises out_of_range for antennas that the radar of the trace does not have;
+// Cancelled.
 ReceivedPower received_power(const Paths& paths, Job* job = nullptr, Channel channel = {});
+
+// Of groups of paths, [num_groups], in one pass over the record: that of each group is, to the last bit, received_power of its
+// paths alone. group_of_path: [P]. Raises invalid_argument for other sizes or a group that is not there; Cancelled.
+std::vector<ReceivedPower> received_powers(const Paths& paths, std::span<const uint32_t> group_of_path, size_t num_groups,
+                                           Job* job = nullptr, Channel channel = {});
 
 }  // namespace echopath

@@ -74,6 +74,7 @@ struct Replayer::Target {
   std::vector<ChannelNodes> nodes;
   uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
   bool with_amplitudes = true;  // else only lengths are of interest
+  double cell_side = 1.0;       // RadioConstants::cell_side
 
   ChannelSpan channels() const { return {first_channel, nodes}; }
 };
@@ -131,6 +132,12 @@ std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const Nod
   return echoes;
 }
 
+RadioConstants Replayer::radio_of(const Target& target) const {
+  RadioConstants radio = radio_;
+  radio.cell_side = target.cell_side;
+  return radio;
+}
+
 void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
   if (antennas_have_phase_) {
     for (const Target& target : targets) evaluate_one_by_one(paths, all_places(paths.size()), target);
@@ -143,10 +150,11 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
     const ChainPlan& plan = workspace->plan_chains(part);
     for (Target& target : targets) {
       for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
-      workspace->evaluate_chains(plan, localise_, target.level.view(), radio_, target.channels());
+      const RadioConstants radio = radio_of(target);
+      workspace->evaluate_chains(plan, localise_, target.level.view(), radio, target.channels());
       uint8_t* const turned = target.turned ? target.turned + begin : nullptr;
       const DirectEvaluation::Wanted wanted{turned, target.with_amplitudes};
-      workspace->evaluate_direct(plan, localise_, target.level.view(), radio_, target.channels(), wanted);
+      workspace->evaluate_direct(plan, localise_, target.level.view(), radio, target.channels(), wanted);
       if (turned) workspace->evaluate_chains.mark_turned(plan, turned);
       evaluate_one_by_one(part, plan.others, target);
     }
@@ -164,9 +172,10 @@ void Replayer::evaluate_one_by_one(std::span<const int64_t> paths, std::span<con
   const size_t num_channels = instants.front().transmitters.size() * num_receivers();
   std::vector<double> length(num_channels);
   std::vector<std::complex<double>> amplitude(num_channels);
+  const RadioConstants radio = radio_of(target);
   for (size_t i = 0; i < places.size(); ++i) {
     for (size_t node = 0; node < instants.size(); ++node) {
-      evaluate_path(block.paths[i], instants[node], radio_, scratch, {length.data(), amplitude.data(), 1});
+      evaluate_path(block.paths[i], instants[node], radio, scratch, {length.data(), amplitude.data(), 1});
       for (size_t channel = 0; channel < target.nodes.size(); ++channel) {
         const size_t from = target.first_channel + channel;
         target.nodes[channel].set(node, places[i], length[from], amplitude[from]);
@@ -255,19 +264,29 @@ FailedPath Replayer::failed(int64_t path, int index, const NeededOrder& needed, 
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
                         std::vector<std::complex<double>>& amplitudes, Job* job) const {
+  const double as_launched = 1.0;
+  evaluate(indices, time, {&as_launched, 1}, lengths, amplitudes, job);
+}
+
+void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span<const double> cell_sides,
+                        std::vector<double>& lengths, std::vector<std::complex<double>>& amplitudes, Job* job) const {
   constexpr size_t kBlock = 8192;
   const NodeLevel single = levels_.single(time);
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
-  amplitudes.resize(channels * indices.size());
+  amplitudes.resize(cell_sides.size() * lengths.size());
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
-    Target target{single, 0, {}};
-    for (size_t channel = 0; channel < channels; ++channel) {
-      const size_t to = channel * indices.size() + begin;
-      target.nodes.push_back({lengths.data() + to, amplitudes.data() + to, size, 0, 1.0});
+    std::vector<Target> targets;
+    for (size_t side = 0; side < cell_sides.size(); ++side) {
+      targets.push_back({single, 0, {}});
+      targets.back().cell_side = cell_sides[side];
+      for (size_t channel = 0; channel < channels; ++channel) {
+        const size_t to = channel * indices.size() + begin;
+        targets.back().nodes.push_back({lengths.data() + to, amplitudes.data() + side * lengths.size() + to, size, 0, 1.0});
+      }
     }
-    evaluate_at(indices.subspan(begin, size), {&target, 1});
+    evaluate_at(indices.subspan(begin, size), targets);
   }, job);
 }
 

@@ -56,6 +56,10 @@ class Replayer {
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
+  // The same amplitudes [side, channel, P] as the footprint filter makes them of launch cells whose sides are that many times
+  // those of the trace: wider ones are those of fewer rays, sides of 0 switch it off.
+  void evaluate(std::span<const int64_t> paths, double time, std::span<const double> cell_sides, std::vector<double>& lengths,
+                std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
   // A level, and where what it says of some channels goes.
@@ -64,6 +68,7 @@ class Replayer {
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned = nullptr) const;
+  RadioConstants radio_of(const Target& target) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
   void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, const Target& target) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<NeededOrder>& needed) const;

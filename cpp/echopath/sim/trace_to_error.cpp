@@ -10,7 +10,7 @@ namespace echopath {
 namespace {
 
 double error_db(const ReceivedPower& power, const ReceivedPower& before) {
-  if (!power.resolved || before.power <= 0) return std::numeric_limits<double>::infinity();
+  if (before.power <= 0) return std::numeric_limits<double>::infinity();
   return std::hypot(power.error_db(), 10.0 * std::log10(power.power / before.power));
 }
 

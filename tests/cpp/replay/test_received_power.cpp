@@ -4,6 +4,7 @@
 #include <bit>
 #include <numeric>
 
+#include "echopath/replay/power_interval.h"
 #include "echopath/replay/received_power.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"
@@ -126,7 +127,7 @@ TEST(ReceivedPower, HasNoBiasWhereTheFieldIsNoise) {
 TEST(ReceivedPower, OfALambertPlateIsItsMeanLevel) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const ReceivedPower power = received_power(shot(lambert_plate(), radar, 20000, 1, 8));
-  EXPECT_TRUE(power.resolved);
+  EXPECT_TRUE(power.resolved());
   EXPECT_EQ(power.coherent, 0.0);
   EXPECT_NEAR(rcs_of(power.power, 20.0, radar.waveform.start_frequency), 1.1985, 0.005);
   EXPECT_LT(power.standard_error, 0.01 * power.power);
@@ -184,19 +185,81 @@ TEST(ReceivedPower, BatchesMakeOneEcho) {
   }
 }
 
-TEST(ReceivedPower, OfOneBatchHasNoError) {
+// Batches alone give standard errors; the interval of one batch is made of what its record shows.
+TEST(ReceivedPower, OfOneBatchHasAnInterval) {
   const Paths paths = shot(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2000, 1, 1);
   const ReceivedPower power = received_power(paths);
   EXPECT_NEAR(power.power / std::norm(coherent_sum(paths)), 1.0, kCancelled);
   EXPECT_TRUE(std::isnan(power.standard_error));
-  EXPECT_FALSE(power.resolved);
+  EXPECT_GT(power.power, power.low);
+  EXPECT_LT(power.power, power.high);
+  EXPECT_TRUE(power.resolved());
+}
+
+// A Gaussian of the phase across the cell: twice its area squares it, so that |F of half density| |no filter| = |F|^2 per path.
+TEST(ReceivedPower, HalfDensitySquaresAGaussianFilter) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const Paths paths = shot(tilted_plate(), radar, 4096, 1, 1, Footprint::kFirstOrder, 1);
+  std::vector<uint32_t> alone(static_cast<size_t>(paths.num_paths()));
+  std::iota(alone.begin(), alone.end(), 0);
+  const std::vector<ReceivedPower> powers = received_powers(paths, alone, alone.size());
+  ASSERT_GT(powers.size(), 100u);
+  for (const ReceivedPower& power : powers) {
+    EXPECT_LT(power.power, 0.99 * power.unfiltered);
+    EXPECT_NEAR(std::abs(power.half_density_field) * std::sqrt(power.unfiltered) / power.power, 1.0, kRounding);
+  }
+}
+
+TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
+  const Scene scene = [] {
+    Scene both = metal_sphere();
+    add_rectangle(both, "rough", {8, 0.5, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
+    add_rectangle(both, "wall", {-5, 3, -5}, {30, 0, 0}, {0, 0, 10}, share(Material::metal(true)));
+    return both;
+  }();
+  for (const int batches : {1, 4}) {
+    const Paths paths = shot(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), 4000, 1, batches);
+    std::vector<uint32_t> group(static_cast<size_t>(paths.num_paths()));
+    for (size_t p = 0; p < group.size(); ++p) group[p] = (paths.hits_of(static_cast<int64_t>(p))->mesh_id + paths.num_bounces[p]) % 3;
+    const std::vector<ReceivedPower> powers = received_powers(paths, group, 4);
+    for (uint32_t g = 0; g < 4; ++g) {
+      std::vector<uint8_t> keep;
+      for (const uint32_t of_path : group) keep.push_back(of_path == g);
+      const ReceivedPower alone = received_power(paths.select(keep));
+      EXPECT_EQ(powers[g].num_coherent_paths + powers[g].num_diffuse_hits == 0, g == 3);
+      EXPECT_EQ(powers[g].power, alone.power);
+      EXPECT_EQ(powers[g].low, alone.low);
+      EXPECT_EQ(powers[g].high, alone.high);
+      EXPECT_EQ(powers[g].half_density_field, alone.half_density_field);
+      EXPECT_EQ(powers[g].unfiltered, alone.unfiltered);
+    }
+  }
+  EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), {}, 1), std::invalid_argument);
+}
+
+// The sidelobe of a plate at 20 degrees is filtered away by 2048 rays, in all batches alike: its interval says so.
+TEST(ReceivedPower, IntervalHoldsWhatTheFilterTakesAway) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const double truth = received_power(shot(metal_sphere(), radar, 1 << 17, 1, 1)).power;
+  const ReceivedPower coarse = received_power(shot(metal_sphere(), radar, 64, 1, 4));
+  EXPECT_GT(std::abs(coarse.power - truth), 4.0 * coarse.standard_error);
+  EXPECT_LT(coarse.low, truth);
+  EXPECT_GT(coarse.high, truth);
+  EXPECT_FALSE(coarse.resolved());
+}
+
+// Two-sided 95 % quantiles as any table of Student's t has them.
+TEST(PowerInterval, QuantilesOfStudent) {
+  constexpr double kThreeDigits = 1e-3;
+  const std::pair<int, double> table[] = {{1, 12.706}, {3, 3.182}, {4, 2.776}, {5, 2.571}, {7, 2.365}, {10, 2.228}, {63, 1.998}};
+  for (const auto& [degrees, quantile] : table) EXPECT_NEAR(student_t95(degrees) / quantile, 1.0, kThreeDigits) << degrees;
 }
 
 TEST(ReceivedPower, OfNothingIsZero) {
   const ReceivedPower power = received_power(shot(Scene(), plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 4));
   EXPECT_EQ(power.power, 0.0);
   EXPECT_EQ(power.standard_error, 0.0);
-  EXPECT_FALSE(power.resolved);
+  EXPECT_FALSE(power.resolved());
 }
 
 }  // namespace

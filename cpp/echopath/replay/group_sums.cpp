@@ -1,0 +1,183 @@
+#include "echopath/replay/group_sums.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/base/phasor.h"
+#include "echopath/replay/replay.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kBlock = 1 << 18;  // paths evaluated at a time: bounds the memory
+constexpr int64_t kNoPath = -1;
+
+bool same_point(const Hit& a, const Hit& b) {
+  return a.mesh_id == b.mesh_id && a.triangle_id == b.triangle_id && a.u == b.u && a.v == b.v;
+}
+
+// Place of the k-th diffuse hit of a path, in travel order.
+int diffuse_hit(uint64_t diffuse, int k) {
+  for (; k > 0; --k) diffuse &= diffuse - 1;
+  return std::countr_zero(diffuse);
+}
+
+// Paths that share a random phase run over the same diffuse hits, in this or the reversed order.
+bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
+  const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)], of_second = paths.diffuse[static_cast<size_t>(second)];
+  const int count = std::popcount(of_first);
+  if (count != std::popcount(of_second)) return false;
+  const Hit *a = paths.hits_of(first), *b = paths.hits_of(second);
+  if (count == 1) return same_point(a[std::countr_zero(of_first)], b[std::countr_zero(of_second)]);
+  bool forward = true, backward = true;
+  for (int k = 0; k < count; ++k) {
+    const Hit& hit = a[diffuse_hit(of_first, k)];
+    forward = forward && same_point(hit, b[diffuse_hit(of_second, k)]);
+    backward = backward && same_point(hit, b[diffuse_hit(of_second, count - 1 - k)]);
+  }
+  return forward || backward;
+}
+
+// The diffuse hit of a group whose paths are being added up. A ray records the paths over one hit one after the other, and
+// selections keep their order.
+struct OpenHit {
+  int64_t path = kNoPath;
+  size_t batch = 0;
+  std::complex<double> field = 0.0;
+};
+
+class Sums {
+ public:
+  Sums(const Paths& paths, size_t num_groups) : paths_(paths), open_(num_groups), groups_(num_groups) {
+    const auto num_entries = static_cast<size_t>(paths.frame.num_batches) + 1;
+    for (GroupSums& group : groups_) {
+      for (auto& field : group.field) field.resize(num_entries);
+      group.power.resize(num_entries);
+    }
+  }
+
+  void add_diffuse(size_t group, int64_t path, std::complex<double> arriving) {
+    OpenHit& open = open_[group];
+    const size_t batch = batch_of(path);
+    if (open.path == kNoPath || batch != open.batch || !shares_phase(paths_, path, open.path)) {
+      close(group);
+      open = {path, batch, 0.0};
+    }
+    open.field += arriving;
+  }
+
+  // amplitudes: one for each of kCellSides, `stride` apart.
+  void add_coherent(size_t group, int64_t path, const std::complex<double>* arriving, size_t stride) {
+    GroupSums& sums = groups_[group];
+    const size_t batch = batch_of(path);
+    for (size_t side = 0; side < kNumCellSides; ++side) {
+      const std::complex<double> field = arriving[side * stride];
+      sums.field[side][batch] += field;
+      sums.coherent_power[side] += std::norm(field);
+    }
+    const double wide = std::norm(arriving[kHalfDensity * stride]);
+    sums.half_density_squares += wide * wide;
+    ++sums.num_coherent_paths;
+  }
+
+  std::vector<GroupSums> finish() {
+    for (size_t group = 0; group < groups_.size(); ++group) close(group);
+    return std::move(groups_);
+  }
+
+ private:
+  size_t batch_of(int64_t path) const {
+    return std::min<size_t>(paths_.batch[static_cast<size_t>(path)], static_cast<size_t>(paths_.frame.num_batches));
+  }
+
+  void close(size_t group) {
+    OpenHit& open = open_[group];
+    if (open.path == kNoPath) return;
+    GroupSums& sums = groups_[group];
+    const double power = std::norm(open.field);
+    sums.power[open.batch] += power;
+    // Behind a diffuse hit a ray goes where chance sends it.
+    const bool is_drawn = std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
+    (is_drawn ? sums.drawn_squares : sums.lattice_squares) += power * power;
+    sums.strongest_hit = std::max(sums.strongest_hit, power);
+    ++sums.num_diffuse_hits;
+    open.path = kNoPath;
+  }
+
+  const Paths& paths_;
+  std::vector<OpenHit> open_;
+  std::vector<GroupSums> groups_;
+};
+
+// The paths of a block and what they send back.
+class Block {
+ public:
+  Block(const Paths& paths, const Radar& radar)
+      : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight) {}
+
+  void evaluate(int64_t begin, int64_t end) {
+    diffuse_.clear();
+    coherent_.clear();
+    for (int64_t path = begin; path < end; ++path) {
+      (paths_.diffuse[static_cast<size_t>(path)] == 0 ? coherent_ : diffuse_).push_back(path);
+    }
+    replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
+    arrive(diffuse_.size(), 1, diffuse_fields_);
+    replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellSides, lengths_, coherent_fields_);
+    arrive(coherent_.size(), kNumCellSides, coherent_fields_);
+  }
+
+  void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {
+    for (size_t i = 0; i < diffuse_.size(); ++i) {
+      sums.add_diffuse(group_of_path[static_cast<size_t>(diffuse_[i])], diffuse_[i], diffuse_fields_[i]);
+    }
+    for (size_t i = 0; i < coherent_.size(); ++i) {
+      const uint32_t group = group_of_path[static_cast<size_t>(coherent_[i])];
+      sums.add_coherent(group, coherent_[i], coherent_fields_.data() + i, coherent_.size());
+    }
+  }
+
+ private:
+  // Turns amplitudes [copy, path] by the phases of the lengths.
+  void arrive(size_t num_paths, size_t num_copies, std::vector<std::complex<double>>& fields) const {
+    constexpr size_t kTogether = 8192;
+    parallel_for(static_cast<int64_t>((num_paths + kTogether - 1) / kTogether), [&](int64_t task) {
+      const size_t first = static_cast<size_t>(task) * kTogether, end = std::min(first + kTogether, num_paths);
+      for (size_t i = first; i < end; ++i) {
+        const Phasor phase = phasor_of_product(turns_per_metre_, lengths_[i]);
+        const std::complex<double> turn(phase.re, -phase.im);
+        for (size_t copy = 0; copy < num_copies; ++copy) fields[copy * num_paths + i] *= turn;
+      }
+    });
+  }
+
+  const Paths& paths_;
+  const Replayer replayer_;
+  const double turns_per_metre_;
+  std::vector<int64_t> diffuse_, coherent_;
+  std::vector<double> lengths_;
+  std::vector<std::complex<double>> diffuse_fields_, coherent_fields_;
+};
+
+}  // namespace
+
+std::vector<GroupSums> sum_groups(const Paths& paths, const Radar& radar, std::span<const uint32_t> group_of_path,
+                                  size_t num_groups, Job* job) {
+  Sums sums(paths, num_groups);
+  if (job) job->start(paths.num_paths());
+  if (paths.num_paths() == 0) return sums.finish();
+  Block block(paths, radar);
+  for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
+    if (job) job->throw_if_cancelled();
+    const int64_t end = std::min(begin + kBlock, paths.num_paths());
+    block.evaluate(begin, end);
+    block.add_to(sums, group_of_path);
+    if (job) job->advance(end - begin);
+  }
+  return sums.finish();
+}
+
+}  // namespace echopath

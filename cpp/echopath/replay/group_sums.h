@@ -1,0 +1,29 @@
+#pragma once
+// What groups of a record's paths send back, summed up in one pass: by batch of rays, and for several widths of launch cells.
+#include <span>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/replay/power_interval.h"
+#include "echopath/trace/paths.h"
+
+namespace echopath {
+
+struct GroupSums {
+  // [batches + 1] each; the last entry is of the paths that belong to no batch.
+  std::vector<std::complex<double>> field[kNumCellSides];  // sqrt(W), coherent paths as they arrive
+  std::vector<double> power;                               // W, of diffuse hits
+  double coherent_power[kNumCellSides] = {};               // W, sum of |a|^2 of coherent paths
+  double half_density_squares = 0.0;                       // W^2, of its squares at half the density
+  double lattice_squares = 0.0, drawn_squares = 0.0;       // W^2, of the powers of diffuse hits (PowerEvidence)
+  double strongest_hit = 0.0;                              // W, of a diffuse hit
+  int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
+};
+
+// [group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths over it in its
+// group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A job advances by
+// paths. group_of_path: [P], below num_groups. Raises Cancelled.
+std::vector<GroupSums> sum_groups(const Paths& paths, const Radar& radar, std::span<const uint32_t> group_of_path,
+                                  size_t num_groups, Job* job);
+
+}  // namespace echopath

@@ -1,0 +1,88 @@
+#include "echopath/replay/power_interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echopath {
+namespace {
+
+constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
+constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
+constexpr double kAliases = 0.007, kOfFiner = 4.0;
+constexpr double kOutline = 0.35, kOutlineOfFields = 0.2;
+
+double squared(double x) { return x * x; }
+
+// How far the coherent field may lie above and below, sqrt(W).
+struct FieldBias {
+  double above = 0.0, below = 0.0;
+};
+
+FieldBias field_bias(const PowerEvidence& evidence) {
+  const double size = std::abs(evidence.field[kAsLaunched]);
+  const auto change = [&](CellSide side) { return std::abs(evidence.field[side] - evidence.field[kAsLaunched]); };
+  if (size == 0.0) return {std::sqrt(evidence.coherent_power[kUnfiltered]), 0.0};
+  const double halving = change(kHalfDensity) / size;
+  const double finer = kOfFiner * std::max(0.0, change(kFiner) / size - kAliases);
+  const double all_gone = std::pow(std::min(halving, 1.0), 8.0) * std::sqrt(evidence.coherent_power[kUnfiltered]);
+  const double above = halving * std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
+  return {std::hypot(size * (above + finer), all_gone), size * (kOfHalving * halving + finer)};
+}
+
+// Number of equal values with the same sum and sum of squares.
+double effective_number(double sum, double sum_of_squares) {
+  return sum_of_squares > 0.0 ? sum * sum / sum_of_squares : 1.0;
+}
+
+// Standard error of the power of one batch, W.
+double chance_of_record(const PowerEvidence& evidence) {
+  const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
+  const double diffuse = evidence.drawn_squares + squared(kOutline) * evidence.lattice_squares / std::sqrt(num_hits);
+  const double wide = evidence.coherent_power[kHalfDensity];
+  const double num_rays = effective_number(wide, evidence.half_density_squares);
+  const double field = kOutlineOfFields * std::sqrt(wide / std::sqrt(num_rays));
+  return std::hypot(2.0 * std::abs(evidence.field[kAsLaunched]) * field + field * field, std::sqrt(diffuse));
+}
+
+struct Reach {
+  double above = 0.0, below = 0.0;  // W
+};
+
+// By chance. A power that is made of few hits is as uneven as their number: 95 % limits of a Poisson count, by its root.
+Reach chance_reach(const PowerEvidence& evidence, double power, double standard_error) {
+  if (evidence.num_batches > 1) {
+    const double reach = standard_error * student_t95(evidence.num_batches - 1);
+    return {reach, reach};
+  }
+  if (power <= 0.0) return {kNormal * standard_error, 0.0};
+  const double of_root = 0.5 * kNormal * standard_error / power;
+  return {power * (squared(1.0 + of_root) - 1.0) + squared(standard_error) / power,
+          power * (1.0 - squared(std::max(1.0 - of_root, 0.0)))};
+}
+
+}  // namespace
+
+double student_t95(int degrees_of_freedom) {
+  constexpr double kFew[] = {12.706205, 4.302653, 3.182446, 2.776445};
+  if (degrees_of_freedom <= 4) return kFew[std::max(degrees_of_freedom, 1) - 1];
+  // Cornish and Fisher's expansion, off by 1e-3 at most.
+  const double z = kNormal, per = 1.0 / degrees_of_freedom, z2 = z * z;
+  return z * (1.0 + per * ((z2 + 1.0) / 4.0 + per * ((5.0 * z2 * z2 + 16.0 * z2 + 3.0) / 96.0 +
+                                                      per * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0)));
+}
+
+PowerInterval power_interval(const PowerEvidence& evidence) {
+  const double coherent = std::max(evidence.coherent, 0.0), power = coherent + evidence.diffuse, size = std::sqrt(coherent);
+  const FieldBias bias = field_bias(evidence);
+  const bool has_batches = evidence.num_batches > 1;
+  PowerInterval out;
+  out.chance = has_batches ? evidence.standard_error : chance_of_record(evidence);
+  const Reach chance = chance_reach(evidence, power, out.chance);
+  const double above = squared(size + bias.above) - coherent, below = coherent - squared(std::max(size - bias.below, 0.0));
+  out.bias = above;
+  out.low = std::max(power - std::hypot(below, chance.below), 0.0);
+  out.high = power + std::hypot(above, chance.above);
+  return out;
+}
+
+}  // namespace echopath

@@ -33,18 +33,13 @@ def power_by_chirp(cube, *, tx=0, rx=0):
 
 
 def with_error(power) -> str:
-    """An ep.ReceivedPower in dBm +- dB; the bound of two standard errors where it is not resolved."""
+    """An ep.ReceivedPower in dBm +- dB, half its 95 % interval; the ends of the interval where it is not resolved."""
     if power.resolved:
-        return f"{in_dbm(power.power):.2f} dBm +- {power.error_db:.2f} dB"
-    bound = max(power.power, 0.0) + 2.0 * power.standard_error
-    return f"not resolved, below {in_dbm(bound):.2f} dBm" if bound > 0.0 else "nothing"
-
-
-def note_on_errors(paths) -> str:
-    """Why the levels of a trace have no standard errors and what gives them; "" where they have."""
-    if paths.frame.num_batches > 1:
-        return ""
-    return "one set of rays: no standard errors; --batches 8 or trace(batches=8) gives them"
+        return f"{in_dbm(power.power):.2f} dBm +- {power.interval_db:.2f} dB"
+    if not power.high > 0.0:
+        return "nothing"
+    ends = f"{in_dbm(power.low):.2f} to {in_dbm(power.high):.2f} dBm" if power.low > 0.0 else f"below {in_dbm(power.high):.2f} dBm"
+    return f"not resolved, {ends}"
 
 
 def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):

@@ -198,7 +198,8 @@ def _run(options) -> None:
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
-                 *report.checks(frame.checks), *report.validity(certificate), *report.files(written)]:
+                 *report.checks(frame.checks), *report.validity(certificate), *report.files(written),
+                 *report.unresolved(frame)]:
         print(text)
 
 

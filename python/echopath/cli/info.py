@@ -111,7 +111,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
         lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                  *report.checks(frame.checks)]
+                  *report.checks(frame.checks), *report.unresolved(frame)]
     return lines + chosen
 
 
@@ -130,8 +130,7 @@ def _describe_selection(frame, selection) -> list[str]:
 
 
 def _mean_power(paths) -> str:
-    power = ep.received_power(paths)
-    return f"{in_dbm(power.power):.2f} dBm" if paths.frame.num_batches == 1 else with_error(power)
+    return with_error(ep.received_power(paths))
 
 
 def _route(paths, path: int) -> str:

@@ -45,7 +45,7 @@ def _file_name(name: str) -> str:
 
 
 def _powers(frame, partition: str, selections: dict) -> dict:
-    """Mean received power of each part {part: ep.ReceivedPower}; those of a frame with errors are known."""
-    if partition in frame.part_of_path and frame.paths.frame.num_batches > 1:
+    """Mean received power of each part {part: ep.ReceivedPower}; those of a frame's partitions are known."""
+    if partition in frame.part_of_path:
         return frame.mean_part_powers[partition]
     return {name: ep.received_power(paths) for name, paths in frame.paths.partition(selections).items()}

@@ -6,11 +6,13 @@ import textwrap
 import numpy as np
 
 from ..labels.report import peak_words
-from ..measures import in_dbm, note_on_errors, power_dbm, velocity_extent, with_error
+from ..measures import in_dbm, power_dbm, velocity_extent, with_error
+from ..resolution import RESOLVED_DB
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
 MAX_LISTED = 40  # nodes or meshes named one by one
+MAX_UNRESOLVED = 20  # echoes named one by one
 ON_EACH_OTHER = "surfaces on each other"
 
 
@@ -79,27 +81,23 @@ def stages(all_stages) -> list[str]:
 
 
 def powers(whole, parts: dict) -> list[str]:
-    """Mean received power of the whole and of each part of each partition, without noise."""
-    lines = ["received power, without noise, of one realisation of the random phases",
-             line("whole", _power_text(power_dbm(whole)))]
-    for partition, cubes in parts.items():
-        lines.append(f"received power, {partition}")
-        lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
-    return lines
-
-
-def mean_powers(frame) -> list[str]:
-    """Mean received power of the whole and of each part with its standard error; without batches, what gives it."""
-    note = note_on_errors(frame.paths)
-    if note:
-        return [line("standard errors", note)]
-    num_batches = frame.paths.frame.num_batches
-    lines = [f"mean received power over the random phases, +- standard error of {num_batches} batches",
+    """Mean received power of the whole and of each part with half its 95 % interval."""
+    lines = ["mean received power over the random phases, +- half the 95 % interval of bias and chance",
              line("whole", _aligned(with_error(frame.mean_power)))]
     for partition, part_powers in frame.mean_part_powers.items():
         lines.append(f"mean received power, {partition}")
         lines += [line(name, _aligned(with_error(power))) for name, power in part_powers.items()]
     return lines
+
+
+def unresolved(frame) -> list[str]:
+    """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them."""
+    found = frame.unresolved
+    if not found:
+        return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise"]
+    lines = [line(one.title, f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]]
+    rest = [f"  and {len(found) - MAX_UNRESOLVED:,} more"] if len(found) > MAX_UNRESOLVED else []
+    return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval), strongest first", *lines, *rest]
 
 
 def _aligned(text: str) -> str:

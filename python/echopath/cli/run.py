@@ -9,7 +9,7 @@ import echopath as ep
 
 from .. import plots
 from ..frame_file import LeftOut, save_frame
-from ..measures import note_on_errors, with_error
+from ..measures import with_error
 from ..parts import parts_of_options
 from ..path_subset import power_of_strongest
 from ..scene_file import SceneFile
@@ -112,15 +112,14 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
 
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
     vmin, vmax = plots.colour_limits(frame.spectrum)
-    note = note_on_errors(frame.paths)
     title = "Everything that the radar receives" + (", with its noise" if frame.noise_seed is not None else "")
-    mean = "" if note else f"; in the mean {with_error(frame.mean_power)}".replace("+-", "±")
-    write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax, note=note))
+    mean = f"; in the mean {with_error(frame.mean_power)}".replace("+-", "±")
+    write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
-        looks = {"vmin": vmin, "vmax": vmax, "note": note, "powers": None if note else frame.mean_part_powers[partition]}
+        looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition]}
         words = "The same taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
-        words += "" if note else "; mean powers and their standard errors"
+        words += "; mean powers and their 95 % intervals"
         write(partition, plots.plot_partition(spectra, title=words, **looks))
         if index == 0:
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))

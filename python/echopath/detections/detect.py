@@ -56,12 +56,14 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
 def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
     part, share = np.full(len(cells), "", dtype=str), np.full(len(cells), np.nan)
-    families, whole, measured = [None] * len(cells), None, power
+    families, whole, measured, resolved = [None] * len(cells), None, power, set()
     if paths is not None:
         measured = echoes.measured(cells)
-        families, whole = labelling.families_of_cells(paths, ep.families(paths, objects), echoes, cells)
+        of_paths = ep.families(paths, objects)
+        families, whole = labelling.families_of_cells(paths, of_paths, echoes, cells)
+        resolved = labelling.resolved_families(paths, of_paths)
     elif labels is not None:
-        families = labelling.families_of_labels(labels, cells)
+        families, resolved = labelling.families_of_labels(labels, cells), labelling.resolved_labels(labels)
     if parts is not None or labels is not None:
         measured = power
         names, powers, whole = (labelling.label_powers(spectrum, labels, cells) if parts is None else
@@ -69,7 +71,9 @@ def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, ech
         part, share = labelling.strongest_part(names, powers)
     is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, measured)
     part, share = labelling.with_noise(part, share, is_noise)
-    return {"part": part, "share": share, "is_noise": is_noise} | labelling.as_columns(families, is_noise)
+    return {"part": part, "share": share, "is_noise": is_noise,
+            "is_resolved": np.array([family in resolved for family in families], bool) & ~is_noise,
+            } | labelling.as_columns(families, is_noise)
 
 
 def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) -> Detections:

@@ -12,7 +12,7 @@ from .echo_fields import EchoFields
 
 NOISE = "noise"  # part of a detection that no echo made
 COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
-           "class_code", "share", "is_noise", "velocity_index", "range_index", "seed", "noise_seed")
+           "class_code", "share", "is_noise", "is_resolved", "velocity_index", "range_index", "seed", "noise_seed")
 _FIELDS = COLUMNS[:COLUMNS.index("is_noise")]
 
 
@@ -27,6 +27,8 @@ class Detections:
     power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell
     part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked
     is_noise: bool [D], no echo made it
+    is_resolved: bool [D], the rays know the mean received power of the object or ghost that made it to 0.3 dB (`ep.unresolved`);
+        False where nobody knows
     share: [D] of that part in the sum of the powers of all parts, NaN without one
     object: [D] text, whose echo it is, "" for the surroundings and noise; ghost_type, order, class_code: i32 [D], as of
         `families`, 0 without an object
@@ -49,6 +51,7 @@ class Detections:
     ghost_type: np.ndarray
     order: np.ndarray
     class_code: np.ndarray
+    is_resolved: np.ndarray
     echoes: EchoFields | None = None
     centre: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
     seed: int | None = None
@@ -87,7 +90,7 @@ class Detections:
         path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds;
         unknown numbers are left empty. Raises ep.FileError.
         """
-        columns = [getattr(self, name) for name in _FIELDS] + [self.is_noise.astype(int), *self.cells.T]
+        columns = [getattr(self, name) for name in _FIELDS] + [self.is_noise.astype(int), self.is_resolved.astype(int), *self.cells.T]
         seeds = ["" if seed is None else str(seed) for seed in (self.seed, self.noise_seed)]
         with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
             writer = csv.writer(stream, lineterminator="\n")

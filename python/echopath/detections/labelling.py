@@ -5,6 +5,7 @@ import numpy as np
 
 import echopath as ep
 
+from ..resolution import family_powers
 from .detections import NOISE
 
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
@@ -82,6 +83,18 @@ def families_of_labels(labels, cells) -> list:
         return ep.Family(labels.objects[of_object].name, 0, 1, ()) if of_object >= 0 else None
 
     return [family(cell) for cell in cells]
+
+
+def resolved_families(paths, families) -> set:
+    """The families whose mean received power the rays know."""
+    return {family for family, power in zip(families.families, family_powers(paths, families)) if power.resolved}
+
+
+def resolved_labels(labels) -> set:
+    """The families of the objects and ghosts of Labels whose power the rays know."""
+    ghosts = {ep.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via): ghost.received for ghost in labels.ghosts}
+    objects = {ep.Family(label.name, 0, 1, ()): label.received for label in labels.objects}
+    return {family for family, interval in (objects | ghosts).items() if interval is not None and interval.resolved}
 
 
 def as_columns(families, is_noise) -> dict:

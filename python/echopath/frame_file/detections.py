@@ -13,6 +13,7 @@ NUMBERS = {"range": (np.float64, "m"), "velocity": (np.float64, "m/s"), "azimuth
            "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"), 
            "share": (np.float64, ""),
            "ghost_type": (np.int32, ""), "order": (np.int32, ""), "class_code": (np.int32, ""), "is_noise": (np.uint8, "")}
+RESOLVED = "is_resolved"  # u8, absent in older files
 TEXTS = ("part", "object")
 
 
@@ -22,6 +23,7 @@ def write_detections(group, detections: Detections) -> None:
     write_array(group, "centre", np.asarray(detections.centre, np.float64), unit="m")
     for name, (dtype, unit) in NUMBERS.items():
         write_array(group, name, np.asarray(getattr(detections, name), dtype), unit=unit)
+    write_array(group, RESOLVED, np.asarray(detections.is_resolved, np.uint8))
     for name in TEXTS:
         write_texts(group, name, [str(text) for text in getattr(detections, name)])
 
@@ -32,6 +34,7 @@ def read_detections(group, paths, spectrum, noise_seed) -> Detections:
     count = len(cells)
     columns = {name: read_array(group, name, dtype, (count,)) for name, (dtype, _) in NUMBERS.items()}
     columns["is_noise"] = columns["is_noise"].astype(bool)
+    columns[RESOLVED] = read_array(group, RESOLVED, np.uint8, (count,)).astype(bool) if RESOLVED in group else np.zeros(count, bool)
     columns |= {name: np.array(read_texts(group, name, count), dtype=str) for name in TEXTS}
     if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
         raise ep.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")

@@ -9,6 +9,7 @@ import echopath as ep
 
 from .. import _core
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
+from ..resolution import Interval
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
 
 
@@ -63,6 +64,7 @@ def write_labels(group, labels: Labels) -> None:
         write_array(group, "certain", np.asarray(labels.certain, np.uint8), compress=True)
         for name, unit in PART_FIELDS.items():
             write_array(group, name, getattr(labels, name), unit=unit)
+    _write_received(group, "part_received", labels.part_received)
     _write_objects(group.create_group("objects"), labels.objects)
     _write_ghosts(group.create_group("ghosts"), labels.ghosts)
 
@@ -81,7 +83,8 @@ def read_labels(group) -> Labels:
     settings = {name: read_attribute(group, name, float) for name in SETTINGS}
     settings["seed"] = read_attribute(group, "seed", int) if "seed" in group.attrs else None
     return Labels(plane=group.attrs["plane"], **axes, part_names=names, power=power, share=_core.power_shares(power),
-                  objects=objects, ghosts=ghosts, **settings, **cells, **_read_errors(group, power.shape))
+                  objects=objects, ghosts=ghosts, part_received=_read_received(group, "part_received", len(names)),
+                  **settings, **cells, **_read_errors(group, power.shape))
 
 
 def _read_plane(group) -> Plane:
@@ -160,8 +163,22 @@ def _read_ghosts(group, plane: Plane) -> list:
             for i, cells in enumerate(_read_cells(group, count, plane))]
 
 
+def _write_received(group, name: str, intervals) -> None:
+    """Writes a list of Interval; nothing where they are not known."""
+    if intervals is not None and None not in intervals:
+        write_array(group, name, np.array(intervals, np.float64).reshape(-1, 3), unit="W")
+
+
+def _read_received(group, name: str, count: int):
+    """List of Interval; None of files from before these."""
+    if name not in group:
+        return None
+    return [Interval(*map(float, row)) for row in read_array(group, name, np.float64, (count, 3))]
+
+
 def _write_cells(group, labels: list) -> None:
-    """Number of cells, power, peak and box of labels."""
+    """Number of cells, power and its interval, peak and box of labels."""
+    _write_received(group, "received", [label.received for label in labels])
     write_array(group, "cells", np.array([label.cells for label in labels], np.int64))
     write_array(group, "power", np.array([label.power for label in labels], np.float64), unit="W")
     for name, count in (("peak", 3), ("box", 4)):
@@ -173,11 +190,13 @@ def _read_cells(group, count: int, plane: Plane) -> list[dict]:
     cells, power = read_array(group, "cells", np.int64, (count,)), read_array(group, "power", np.float64, (count,))
     peaks, boxes = (read_array(group, name, np.float64, (count, size)) for name, size in (("peak", 3), ("box", 4)))
 
+    received = _read_received(group, "received", count) or [None] * count
+
     def made(kind, row):
         return None if np.isnan(row[0]) else kind(*map(float, row))
 
     return [{"cells": int(cells[i]), "power": float(power[i]), "peak": made(plane.make_peak, peaks[i]),
-             "box": made(plane.make_box, boxes[i])}
+             "box": made(plane.make_box, boxes[i]), "received": received[i]}
             for i in range(count)]
 
 

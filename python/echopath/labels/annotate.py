@@ -9,6 +9,8 @@ import echopath as ep
 
 from .. import _core, same_radar
 from ..keywords import known_keywords
+from ..path_subset import part_of_path
+from ..resolution import family_powers, interval_of
 from ..visibility import visibility_in_trace
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects
@@ -125,10 +127,11 @@ def _label_scene(request: Request, paths, families, powers, whole, progress=None
 
     powers: ViewPowers of the families; whole: power [V, R] in W; progress: callable (stage, fraction) or None
     """
-    found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane)
+    intervals = dict(zip(families.families, map(interval_of, family_powers(paths, families))))
+    found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
-    objects, object_map = label_objects(families.objects, found, visibility, request.plane)
+    objects, object_map = label_objects(families.objects, found, visibility, request.plane, paths)
     ghosts, ghost_map = label_ghosts(found, request.plane)
     return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
 
@@ -143,8 +146,15 @@ def _label_parts(request: Request, paths, powers, selections: dict, scene_labels
                     share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
                     noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
                     dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=paths.frame.seed,
-                    **scene_labels)
+                    part_received=_part_intervals(paths, selections, labels_of=names), **scene_labels)
     return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
+
+
+def _part_intervals(paths, selections: dict, labels_of: list):
+    """Interval in W of each part; None where the parts are not those of selections."""
+    if [*selections, "other"] != labels_of:
+        return None
+    return [interval_of(power) for power in ep.received_powers(paths, part_of_path(paths, selections), len(labels_of))]
 
 
 def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict,

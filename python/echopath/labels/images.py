@@ -41,12 +41,20 @@ def label_images(labels) -> dict:
     labels: Labels. The names: "parts" (the dominant part), "objects", "ghosts".
     """
     ghosts = [{"name": ghost_name(ghost), "object": ghost.object, "ghost_type": ghost.ghost_type, "order": ghost.order,
-               "via": list(ghost.via), "class_code": ghost.class_code} for ghost in labels.ghosts]
+               "via": list(ghost.via), "class_code": ghost.class_code, **_received(ghost)} for ghost in labels.ghosts]
     objects = [{"name": label.name, "status": label.status, "is_occluded": label.is_occluded,
-                "visible_share": label.visible_share, "occluders": label.occluders} for label in labels.objects]
+                "visible_share": label.visible_share, "occluders": label.occluders, **_received(label)}
+               for label in labels.objects]
     return {"parts": (labels.dominant, [{"name": name} for name in labels.part_names]),
             "objects": (labels.object_map, objects),
             "ghosts": (labels.ghost_map, ghosts)}
+
+
+def _received(label) -> dict:
+    """Mean received power in W with its interval, and whether the rays know it; {} of files from before these."""
+    if label.received is None:
+        return {}
+    return {"received": label.received._asdict() | {"resolved": label.received.resolved}}
 
 
 def ghost_name(ghost) -> str:

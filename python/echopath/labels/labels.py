@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..resolution import Interval
 from .report import text_of
 
 NONE = -1  # in a map of indices: no label
@@ -73,6 +74,8 @@ class ObjectLabel:
     box: Box or AzimuthBox about its cells, None without cells
     visible_share: of the solid angle in which the radar would see it alone, the share that nothing hides, 0 to 1
     occluders: {name: share of that solid angle which this one hides}, largest first
+    received: Interval of the mean received power of its direct echoes, over the random phases, in W, and whether the rays know
+        it; None: of a file from before these
     """
 
     name: str
@@ -83,6 +86,7 @@ class ObjectLabel:
     box: Box | AzimuthBox | None
     visible_share: float
     occluders: dict
+    received: Interval | None = None
 
     @property
     def is_occluded(self) -> bool:
@@ -104,7 +108,7 @@ class GhostLabel:
     object: full name of the object; via: names of the children of the scene root that mirrored it, tuple of str
     ghost_type: 1 (last bounce on the object) or 2 (last bounce on a mirror); order: number of bounces
     class_code: of the Radar Ghost Dataset (Kraus et al.)
-    cells, power (W), peak, box: as in ObjectLabel
+    cells, power (W), peak, box, received: as in ObjectLabel
     """
 
     object: str
@@ -116,6 +120,7 @@ class GhostLabel:
     power: float
     peak: Peak | AzimuthPeak | None
     box: Box | AzimuthBox | None
+    received: Interval | None = None
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -142,6 +147,8 @@ class Labels:
     certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;
         False outside the mask. These five are None unless asked for (`errors=True`)
     seed: of the rays that were labelled, None: not known
+    part_received: list [K] of Interval, the mean received power of each part in W and whether the rays know it; None: of cubes
+        without selections, or of a file from before these
     """
 
     plane: str
@@ -168,6 +175,7 @@ class Labels:
     share_error: np.ndarray | None = None
     certain: np.ndarray | None = None
     seed: int | None = None
+    part_received: list | None = None
 
     @property
     def shape(self) -> tuple:

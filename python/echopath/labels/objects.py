@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..resolution import unmet_interval
 from .labels import NONE, GhostLabel, ObjectLabel, is_occluded
 from .powers import parts_by_rival
 
@@ -16,7 +17,7 @@ class FamilyCells(NamedTuple):
     """The cells of all families: list of Family; received: power of each, [F] W; regions: of each, dict or None;
 
     strongest: i16 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
-    own power is above the noise in some cell.
+    own power is above the noise in some cell; intervals: of each, list [F] of Interval in W.
     """
 
     families: list
@@ -24,16 +25,18 @@ class FamilyCells(NamedTuple):
     regions: list
     strongest: np.ndarray
     is_above_noise: list
+    intervals: list
 
 
-def family_cells(powers, mask, noise_floor: float, plane) -> FamilyCells:
-    """powers: ViewPowers of the families; mask: bool [V, R]; noise_floor in W."""
+def family_cells(powers, mask, noise_floor: float, plane, intervals: dict) -> FamilyCells:
+    """powers: ViewPowers of the families; mask: bool [V, R]; noise_floor in W; intervals: {family: Interval}."""
     families = list(powers.cells)
     cells = np.stack([powers.cells[family] for family in families])
     strongest = _strongest_family(powers, families, cells, mask)
     return FamilyCells(families=families, received=[powers.received[family] for family in families],
                        regions=_core.label_regions(strongest, cells, plane.rows_wrap), strongest=strongest,
-                       is_above_noise=[bool(np.any(power > noise_floor)) for power in cells])
+                       is_above_noise=[bool(np.any(power > noise_floor)) for power in cells],
+                       intervals=[intervals.get(family) for family in families])
 
 
 def _strongest_family(powers, families: list, cells, mask):
@@ -48,10 +51,10 @@ def _strongest_family(powers, families: list, cells, mask):
     return strongest
 
 
-def label_objects(names, found: FamilyCells, visibility: dict, plane):
+def label_objects(names, found: FamilyCells, visibility: dict, plane, paths):
     """The labels of the objects and i16 [V, R], index of the object in each cell, -1: none.
 
-    names: of the objects; visibility: {name: ObjectVisibility}
+    names: of the objects; visibility: {name: ObjectVisibility}; paths: of the trace
     """
     labels, chosen = [], {}
     for index, name in enumerate(names):
@@ -59,7 +62,7 @@ def label_objects(names, found: FamilyCells, visibility: dict, plane):
         real = next((f for f in mine if not found.families[f].is_ghost), None)
         if real is not None:
             chosen[real] = index
-        labels.append(_object_label(name, real, mine, found, visibility[name], plane))
+        labels.append(_object_label(name, real, mine, found, visibility[name], plane, paths))
     return labels, _map_of(found, chosen)
 
 
@@ -70,15 +73,17 @@ def label_ghosts(found: FamilyCells, plane):
     for f in ghosts:
         family = found.families[f]
         labels.append(GhostLabel(object=family.object, ghost_type=family.ghost_type, order=family.order, via=family.via,
-                                 class_code=family.class_code, power=found.received[f], **_cells(found.regions[f], plane)))
+                                 class_code=family.class_code, power=found.received[f], received=found.intervals[f],
+                                 **_cells(found.regions[f], plane)))
     return labels, _map_of(found, {f: index for index, f in enumerate(ghosts)})
 
 
-def _object_label(name, real, mine, found: FamilyCells, seen, plane) -> ObjectLabel:
+def _object_label(name, real, mine, found: FamilyCells, seen, plane, paths) -> ObjectLabel:
     region = None if real is None else found.regions[real]
     return ObjectLabel(name=name, status=_status(real, mine, found, seen, plane),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
-                       occluders=dict(seen.occluders), **_cells(region, plane))
+                       occluders=dict(seen.occluders), **_cells(region, plane),
+                       received=unmet_interval(paths, seen) if real is None else found.intervals[real])
 
 
 def _status(real, mine, found: FamilyCells, seen, plane) -> str:

@@ -29,7 +29,7 @@ def _parts(labels) -> list[str]:
 
 
 def _object(label) -> str:
-    return f"object {label.name}: {label.status}{_occluders(label)}{_cells(label)}"
+    return f"object {label.name}: {label.status}{_occluders(label)}{_cells(label)}{_resolution(label)}"
 
 
 def _occluders(label) -> str:
@@ -42,7 +42,14 @@ def _with_cells(labels) -> list:
 
 
 def _ghost(label) -> str:
-    return f"ghost  {label.object}: type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}{_cells(label)}"
+    return f"ghost  {label.object}: type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}{_cells(label)}{_resolution(label)}"
+
+
+def _resolution(label) -> str:
+    """Of a power that the rays do not know, its interval."""
+    if label.received is None or label.received.resolved or not label.received.high > 0.0:
+        return ""
+    return f", NOT resolved ({label.received})"
 
 
 def _cells(label) -> str:

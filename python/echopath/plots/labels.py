@@ -11,6 +11,7 @@ from .style import new_figure
 AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
 FILL = 0.45                  # opacity of a label over the map
 ROOM_BELOW_DB = 6.0          # of the weakest bar
+UNRESOLVED_HATCH = "////"    # of the bar of a power that the rays do not know to 0.3 dB
 MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
 FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin
 LEGEND_LETTERS = 72          # of a line of the legend
@@ -201,7 +202,7 @@ def _row_name(label) -> str:
 # --- bars ---
 
 def plot_part_powers(powers: dict, *, title="Received power by part"):
-    """Bars of the mean received power of each part, with standard errors where the trace has batches.
+    """Bars of the mean received power of each part with its 95 % interval; hatched where it is not resolved to 0.3 dB.
 
     powers: {part: ep.ReceivedPower}. Returns a matplotlib figure: power in dBm across.
     """
@@ -221,7 +222,8 @@ def draw_part_powers(axes, powers: dict, title="Mean received power by part") ->
             axes.text(floor, place, " no paths", va="center", fontsize=8, color="0.4")
             continue
         low, high = _error_bar(shown[name])
-        axes.barh(place, levels[name] - floor, left=floor, color=colour, alpha=FILL + 0.3)
+        hatch = None if shown[name].resolved else UNRESOLVED_HATCH
+        axes.barh(place, levels[name] - floor, left=floor, color=colour, alpha=FILL + 0.3, hatch=hatch)
         if high > low:
             axes.plot([max(low, floor), high], [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
         text = with_error(shown[name]).replace("+-", "±") if high > low else f"{levels[name]:.1f} dBm"
@@ -235,9 +237,8 @@ def draw_part_powers(axes, powers: dict, title="Mean received power by part") ->
 
 
 def _error_bar(power) -> tuple[float, float]:
-    """Ends in dBm of one standard error either side; both the level where there is none."""
-    error = power.standard_error if np.isfinite(power.standard_error) else 0.0
-    return tuple(float(in_dbm(power.power + sign * error, SMALLEST_POWER)) for sign in (-1.0, 1.0))
+    """Ends in dBm of the 95 % interval."""
+    return tuple(float(in_dbm(end, SMALLEST_POWER)) for end in (power.low, power.high))
 
 
 # --- what they share ---

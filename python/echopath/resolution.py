@@ -1,0 +1,200 @@
+"""Which powers the rays of a trace know, of each object and ghost family, and what would make them know the others."""
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from . import _core
+from .families import families as families_of
+from .measures import in_dbm
+from .visibility import visibility_in_trace
+
+RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no further to either side
+MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
+UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
+FRESNEL_ZONES = 4.0     # across a plane, from which on its image is the better answer
+SURROUNDINGS = "the surroundings"  # what belongs to no object
+_FLAT = 1e-6            # of a plane, relative to its width
+
+
+class Interval(NamedTuple):
+    """A mean received power in W and the ends of its 95 % interval, of bias and chance together."""
+
+    power: float
+    low: float
+    high: float
+
+    @property
+    def resolved(self) -> bool:
+        """The interval reaches no further than 0.3 dB to either side."""
+        factor = 10.0 ** (0.1 * RESOLVED_DB)
+        return 0.0 < self.power <= factor * self.low and self.high <= factor * self.power
+
+    def __str__(self) -> str:
+        if not self.high > 0.0:
+            return "nothing"
+        if self.resolved:
+            return f"{in_dbm(self.power):.2f} dBm"
+        low = f"{in_dbm(self.low):.1f}" if self.low > 0.0 else "nothing"
+        level = f"{in_dbm(self.power):.1f} dBm" if self.power > 0.0 else "no path"
+        return f"{level}, {low} to {in_dbm(self.high):.1f} dBm"
+
+
+@dataclasses.dataclass(frozen=True)
+class Unresolved:
+    """An echo whose power the rays do not know to 0.3 dB.
+
+    name: of the object, or "the surroundings"; via: names of what mirrored it, () for the object itself; order: number of bounces
+    interval: Interval in W; advice: what would resolve it
+    """
+
+    name: str
+    via: tuple
+    order: int
+    interval: Interval
+    advice: str
+
+    @property
+    def title(self) -> str:
+        """The name, and for ghosts the way."""
+        return f"{self.name} via {', '.join(self.via)}" if self.via else self.name
+
+    def __str__(self) -> str:
+        return f"{self.title}: {self.interval}; {self.advice}"
+
+
+def interval_of(power) -> Interval:
+    """Of an ep.ReceivedPower, in W."""
+    return Interval(power.power, power.low, power.high)
+
+
+def family_powers(paths, families, progress=None) -> list:
+    """ep.ReceivedPower of each of `families` of the paths, list [F], in W."""
+    return _core.received_powers(paths, families.family_of_path, len(families.families), progress=progress)
+
+
+def unresolved(paths, families=None, *, least_power=0.0, progress=None) -> list:
+    """The objects, ghost families and surroundings whose mean received power the rays do not know to 0.3 dB, strongest first.
+
+    paths: of a trace; families: of them, None: `families(paths)`
+    least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
+    progress: callable (stage, fraction) or None
+    Returns a list of Unresolved. An object in sight of the radar that no ray has met is among them, with what three rays
+    might have brought back from it as its upper end.
+    """
+    families = families_of(paths) if families is None else families
+    powers = family_powers(paths, families, progress)
+    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power), _advice(paths, families, family, power))
+             for family, power in zip(families.families, powers)
+             if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
+    met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
+    found += _unseen(paths, [name for name in families.objects if name not in met], progress)
+    return sorted((one for one in found if one.interval.high > least_power), key=lambda one: -one.interval.high)
+
+
+def noise_power_of(radar) -> float:
+    """Noise power in W against the mean received power of an echo in its cell: of a sample over the samples of a frame."""
+    return _core.noise_power(radar) / (radar.waveform.num_samples * radar.waveform.num_chirps)
+
+
+# --- advice ---
+
+def _advice(paths, families, family, power) -> str:
+    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for."""
+    planes = [] if power.diffuse > power.coherent else _wide_planes(paths, families, family)
+    if planes:
+        return f"mirror=True for {', '.join(planes)}"
+    times = _times_the_rays(power)
+    if times > MOST_TIMES:
+        return f"more than {MOST_TIMES:g} times the rays"
+    return _rays(paths, times)
+
+
+def _rays(paths, times: float) -> str:
+    """So many times the rays of the paths, in words of two digits."""
+    rays = paths.frame.statistics.num_rays * times
+    step = 10.0 ** (math.floor(math.log10(max(rays, 10.0))) - 1)
+    return f"about {round(rays / step) * step:,.0f} rays"
+
+
+def _times_the_rays(power) -> float:
+    """Bias falls about as 1/rays, chance as their root at the latest."""
+    if not power.power > 0.0 or not power.low > 0.0:
+        return math.inf
+    wanted = 10.0 ** (0.1 * RESOLVED_DB) - 1.0
+    bias, chance = power.bias / power.power / wanted, 2.0 * power.chance / power.power / wanted
+    return max(2.0, bias, chance ** 2)
+
+
+def _belongs(mesh, name: str) -> bool:
+    return mesh.name == name or mesh.name.startswith(name + "/")
+
+
+def _wide_planes(paths, families, family) -> list:
+    """Names of unmarked meshes that a family touches and that are planes of several Fresnel zones."""
+    def is_touched(mesh):
+        if family.object:
+            return any(_belongs(mesh, name) for name in (family.object, *family.via))
+        return not any(_belongs(mesh, name) for name in families.objects)
+
+    wavelength = _core.speed_of_light / paths.radar.waveform.start_frequency
+    time, found = paths.frame.trace_time, []
+    for mesh in paths.scene.meshes:
+        if mesh.material.mirror or not is_touched(mesh):
+            continue
+        vertices = np.asarray(paths.scene.world_vertices(mesh.id, time))
+        spread = np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False) / math.sqrt(len(vertices))
+        distance = np.linalg.norm(vertices.mean(axis=0) - paths.frame.transmitter)
+        if spread[2] <= _FLAT * spread[0] and spread[1] > FRESNEL_ZONES * math.sqrt(wavelength * distance):
+            found.append(mesh.name)
+    return found
+
+
+# --- what no ray has met ---
+
+def _unseen(paths, names, progress) -> list:
+    """Unresolved for those of the objects that the radar sees."""
+    if not names:
+        return []
+    found = []
+    for seen in visibility_in_trace(paths, paths.radar, progress=progress):
+        interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
+        if interval.high > 0.0:
+            times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
+            found.append(Unresolved(seen.name, (), 1, interval, f"{_rays(paths, times)} to meet it"))
+    return found
+
+
+def unmet_interval(paths, seen) -> Interval:
+    """Of the mean power in W of an object that no ray of the paths has met. seen: its ObjectVisibility
+
+    From 0, to the power of the largest surface that the rays may have missed, facing the radar: as large as three launch cells
+    there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, and 4 A
+    (Lambert). [0, 0] where nothing of the object is in sight.
+    """
+    if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
+        return Interval(0.0, 0.0, 0.0)
+    density, radar = _ray_density(paths, seen.name), paths.radar
+    solid_angle = min(_visible_angle(seen), UNSEEN_HITS / max(density, 1e-300))
+    distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    area = solid_angle * distances[0] ** 2
+    is_rough = all(mesh.material.scattering == 1.0 for mesh in paths.scene.meshes if _belongs(mesh, seen.name))
+    cross_section = 4.0 * area + (0.0 if is_rough else 4.0 * math.pi * area ** 2 / wavelength ** 2)
+    gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
+    high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
+            / ((4.0 * math.pi) ** 3 * max(distances[0], 1e-3) ** 2 * distances[1] ** 2))
+    return Interval(0.0, 0.0, high)
+
+
+def _visible_angle(seen) -> float:
+    return seen.transmitter.solid_angle * seen.transmitter.visible_share
+
+
+def _ray_density(paths, name: str) -> float:
+    """Rays per sr of the stratum that aims at an object, or of the field of view."""
+    strata = paths.frame.strata
+    return next((stratum.ray_density for stratum in strata if stratum.name == name), strata[-1].ray_density if strata else 0.0)

@@ -89,13 +89,15 @@ def test_verdicts(error, flagged, verdict):
 @dataclasses.dataclass
 class Claim:
     power: float
-    standard_error: float
+    low: float
+    high: float
+    interval_db: float = 0.2
     resolved: bool = True
 
 
 def test_gaussian_claims_cover_as_often_as_two_sigma_do():
     draw = np.random.default_rng(3)
-    claims = [Claim(power, 0.1) for power in 5.0 + 0.1 * draw.standard_normal(20_000)]
+    claims = [Claim(power, power - 0.2, power + 0.2) for power in 5.0 + 0.1 * draw.standard_normal(20_000)]
     assert crowd_coverage.covered(claims, 5.0)["coverage"] == pytest.approx(0.9545, abs=0.005)
     assert crowd_coverage.covered(claims, 6.0)["coverage"] == 0.0
 

@@ -88,7 +88,7 @@ def test_info_tells_scenes_frames_and_meshes_apart(scene_path, tmp_path):
     call("run", scene_path, "--out", tmp_path / "out")
     assert "a plate" in call("info", scene_path).stdout
     told = call("info", tmp_path / "out" / "frame.h5").stdout
-    assert "paths" in told and "no standard errors; --batches 8" in told
+    assert "paths" in told and "95 % interval" in told
     assert "1 m^2, open" in call("info", tmp_path / "plate.obj").stdout
 
 

@@ -78,8 +78,12 @@ class Sums {
       sums.field[side][batch] += field;
       sums.coherent_power[side] += std::norm(field);
     }
-    const double wide = std::norm(arriving[kHalfDensity * stride]);
-    sums.half_density_squares += wide * wide;
+    const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
+    if (power > 0.0) {
+      const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
+      sums.steady_power += steady;
+      sums.steady_squares += steady * steady;
+    }
     ++sums.num_coherent_paths;
   }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
-constexpr double kOutline = 0.35, kOutlineOfFields = 0.2;
+constexpr double kOutline = 0.35, kOutlineOfFields = 0.17;
 
 double squared(double x) { return x * x; }
 
@@ -24,7 +24,7 @@ FieldBias field_bias(const PowerEvidence& evidence) {
   if (size == 0.0) return {std::sqrt(evidence.coherent_power[kUnfiltered]), 0.0};
   const double halving = change(kHalfDensity) / size;
   const double finer = kOfFiner * std::max(0.0, change(kFiner) / size - kAliases);
-  const double all_gone = std::pow(std::min(halving, 1.0), 8.0) * std::sqrt(evidence.coherent_power[kUnfiltered]);
+  const double all_gone = squared(squared(std::min(halving, 1.0))) * std::sqrt(evidence.coherent_power[kUnfiltered]);
   const double above = halving * std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
   return {std::hypot(size * (above + finer), all_gone), size * (kOfHalving * halving + finer)};
 }
@@ -38,9 +38,10 @@ double effective_number(double sum, double sum_of_squares) {
 double chance_of_record(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   const double diffuse = evidence.drawn_squares + squared(kOutline) * evidence.lattice_squares / std::sqrt(num_hits);
-  const double wide = evidence.coherent_power[kHalfDensity];
-  const double num_rays = effective_number(wide, evidence.half_density_squares);
-  const double field = kOutlineOfFields * std::sqrt(wide / std::sqrt(num_rays));
+  const double num_rays = effective_number(evidence.steady_power, evidence.steady_squares);
+  const double unfiltered = evidence.coherent_power[kUnfiltered];
+  const double hard = unfiltered > 0.0 ? std::min(evidence.coherent_power[kAsLaunched] / unfiltered, 1.0) : 0.0;
+  const double field = kOutlineOfFields * std::sqrt(hard * evidence.steady_power / std::sqrt(num_rays));
   return std::hypot(2.0 * std::abs(evidence.field[kAsLaunched]) * field + field * field, std::sqrt(diffuse));
 }
 
@@ -63,8 +64,8 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
 }  // namespace
 
 double student_t95(int degrees_of_freedom) {
-  constexpr double kFew[] = {12.706205, 4.302653, 3.182446, 2.776445};
-  if (degrees_of_freedom <= 4) return kFew[std::max(degrees_of_freedom, 1) - 1];
+  constexpr double kFew[] = {12.706205, 4.302653, 3.182446, 2.776445, 2.570582};
+  if (degrees_of_freedom <= 5) return kFew[std::max(degrees_of_freedom, 1) - 1];
   // Cornish and Fisher's expansion, off by 1e-3 at most.
   const double z = kNormal, per = 1.0 / degrees_of_freedom, z2 = z * z;
   return z * (1.0 + per * ((z2 + 1.0) / 4.0 + per * ((5.0 * z2 * z2 + 16.0 * z2 + 3.0) / 96.0 +

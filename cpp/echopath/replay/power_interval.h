@@ -15,7 +15,9 @@ struct PowerEvidence {
   double coherent = 0.0, diffuse = 0.0;       // W, the estimates
   std::complex<double> field[kNumCellSides];  // sqrt(W), of the coherent paths
   double coherent_power[kNumCellSides] = {};  // W, sum of |a|^2 over them
-  double half_density_squares = 0.0;          // W^2, sum of |a|^4 at half the density
+  // Of the coherent paths that hardly change at half the density, such as those of flat surfaces up to their edges: W, sum of
+  // their |a|^2, and W^2, of its squares.
+  double steady_power = 0.0, steady_squares = 0.0;
   double lattice_squares = 0.0;               // W^2, sum of squares of the powers of diffuse hits that the launch lattice found
   double drawn_squares = 0.0;                 // W^2, of those that were found by directions drawn at random
   int num_batches = 1;
@@ -35,7 +37,7 @@ struct PowerInterval {
 // for a surface without end; what is below kAliases there is the lattice showing through.
 // Chance: Student's t of the batches. Of one batch: directions drawn at random give the variance sum p^2; a lattice errs along
 // the outline of what it meets alone, so that its variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for
-// fields. The factors are fitted to the coverage of `echopath bench coverage`.
+// fields: less so where the filter takes much away, as fields of curved surfaces fade toward their outline. The factors are fitted to the coverage of `echopath bench coverage`.
 PowerInterval power_interval(const PowerEvidence& evidence);
 
 // Student's t: two-sided 95 % quantile.

@@ -98,7 +98,8 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
     evidence.field[side] = std::accumulate(sums.field[side].begin(), sums.field[side].end(), std::complex<double>());
     evidence.coherent_power[side] = sums.coherent_power[side];
   }
-  evidence.half_density_squares = sums.half_density_squares;
+  evidence.steady_power = sums.steady_power;
+  evidence.steady_squares = sums.steady_squares;
   evidence.lattice_squares = sums.lattice_squares;
   evidence.drawn_squares = sums.drawn_squares;
   evidence.num_batches = power.num_batches;

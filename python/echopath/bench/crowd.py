@@ -59,7 +59,7 @@ def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
 
 @dataclasses.dataclass(frozen=True)
 class Level:
-    """A mean power as a run reports it. power: W; error_db: dB, of two standard errors; flagged: the run says that the
+    """A mean power as a run reports it. power: W; error_db: dB, half its 95 % interval; flagged: the run says that the
     power may err by more than WANTED_DB; paths: behind it."""
 
     power: float
@@ -70,10 +70,7 @@ class Level:
 
 def level_of(paths) -> Level:
     found = ep.received_power(paths)
-    if not found.power > 0.0:
-        return Level(0.0, float("inf"), not found.resolved, paths.num_paths)
-    error_db = 10.0 * np.log10(1.0 + 2.0 * found.standard_error / found.power)
-    return Level(found.power, float(error_db), bool(not found.resolved or error_db > WANTED_DB), paths.num_paths)
+    return Level(found.power, found.interval_db, not found.resolved, paths.num_paths)
 
 
 def direct(paths, name: str):
@@ -228,7 +225,7 @@ def describe(results: dict) -> list[str]:
     lines += [f"  {row['mirrors']:>5} mirrors, {row['max_bounces']} bounces: {row['paths']} paths by bounces, "
               f"{row['processor_s']:.2f} s of processor time, {row['unfollowed']} sequences not followed"
               for row in results["mirrors"]]
-    lines += ["", f"coverage of the true value by two standard errors, {results['coverage']['seeds']} seeds",
+    lines += ["", f"coverage of the true value by the 95 % interval, {results['coverage']['seeds']} seeds",
               f"  {'':<30}{'rays':>9}{'coverage':>10}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
     lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f}{row['mean_error_db']:>+16.3f}"
               f"{row['claimed_db']:>13.3f}{row['unresolved']:>12}" for row in results["coverage"]["rows"]]

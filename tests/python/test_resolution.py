@@ -1,0 +1,141 @@
+"""Intervals of received powers hold the true value, and what the rays do not know is named, at most with what would help."""
+import csv
+
+import h5py
+import numpy as np
+import pytest
+from scipy import stats
+
+import echopath as ep
+from echopath.bench import crowd_scenes, targets
+from echopath.bench.closed_forms import WAVELENGTH
+from echopath.cli import report
+from support.radars import build_radar
+
+SEEDS = 60
+CHANCE = 1e-3              # of a test of coverage to fail although the coverage is as wanted
+WANTED = (0.90, 0.98)      # coverage of the true value
+TRANSMIT_POWER = 0.01      # W
+
+
+def power_of(rcs: float, distance: float) -> float:
+    return rcs * TRANSMIT_POWER * WAVELENGTH ** 2 / ((4 * np.pi) ** 3 * distance ** 4)
+
+
+def plates():
+    """(scene, distance in m, truth in W): metal plates in the lobe and beside it, and a Lambert plate, by closed forms."""
+    cases = [(targets.plate(angle), 2e3) for angle in (0.0, 3.0, 5.0, 8.0)]
+    cases += [(target, 20.0) for target in targets.all_targets() if target.name == "lambert_plate"]
+    return [(target.scene, power_of(target.truth, distance)) for target, distance in cases]
+
+
+@pytest.mark.parametrize("batches", [1, 4])
+def test_intervals_hold_the_truth_as_often_as_they_say(batches):
+    held = [one.low <= truth <= one.high
+            for scene, truth in plates() for seed in range(SEEDS)
+            for one in [ep.received_power(ep.trace(scene, targets.radar(), num_rays=2048, max_bounces=1, seed=seed,
+                                                   batches=batches))]]
+    assert stats.binom.cdf(sum(held), len(held), WANTED[0]) > CHANCE
+    assert stats.binom.sf(sum(held) - 1, len(held), WANTED[1]) > CHANCE or batches == 1  # a lattice errs less than it shows
+
+
+def test_a_sidelobe_that_coarse_cells_filter_away_is_not_resolved():
+    target = targets.plate(20.3)
+    truth = power_of(target.truth, 2e3)
+    for batches in (1, 4):
+        coarse, fine = (ep.received_power(ep.trace(target.scene, targets.radar(), num_rays=rays, max_bounces=1, batches=batches))
+                        for rays in (1024, 1 << 18))
+        assert coarse.power < 0.5 * truth and not coarse.resolved and coarse.low <= truth <= coarse.high
+        assert fine.resolved and fine.low <= truth <= fine.high
+
+
+def test_a_plane_that_nobody_marked_is_not_resolved_and_is_told_to_be_a_mirror():
+    scene, radar = crowd_scenes.city_ground()
+    paths = ep.trace(scene, radar, num_rays=100_000, max_bounces=1)
+    truth = crowd_scenes.ground_path_power(radar.transmit_power)
+    ground = ep.received_power(paths.select("T 'ground' R"))
+    assert abs(10 * np.log10(ground.power / truth)) > 0.3 and not ground.resolved
+    named = [one for one in ep.unresolved(paths) if "mirror=True for ground" in one.advice]
+    assert len(named) == 1 and named[0].name == "the surroundings"
+
+
+def far_patch():
+    """A Lambert patch of 5 cm beside a wide board that takes the rays of their common cone."""
+    scene = ep.Scene()
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)
+    scene.add(ep.actors.plate(0.05, 0.05), name="patch", material=rough, position=(60, 0, 0))
+    scene.add(ep.actors.plate(3, 3), name="board", material=rough, position=(60, 4, 0))
+    return scene
+
+
+def test_what_no_ray_has_met_is_not_known_to_be_nothing():
+    paths = ep.trace(far_patch(), build_radar(), num_rays=16, max_bounces=1)
+    assert ep.received_power(paths.select("T 'patch' R")).power == 0.0
+    truth = ep.received_power(ep.trace(far_patch(), build_radar(), num_rays=1 << 16, max_bounces=1).select("T 'patch' R")).power
+    patch = next(one for one in ep.unresolved(paths) if one.name == "patch")
+    assert patch.interval.low <= truth <= patch.interval.high and not patch.interval.resolved
+    assert "rays to meet it" in patch.advice
+
+
+def test_a_name_for_a_power_that_the_rays_know_is_not_given():
+    paths = ep.trace(far_patch(), build_radar(), num_rays=1 << 15, max_bounces=1)
+    assert ep.unresolved(paths) == []
+
+
+# --- what carries it ---
+
+@pytest.fixture(scope="module")
+def frame():
+    """A smooth car-like body, far too few rays for it, and a rough board that they know well."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1, 1), name="board", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(6, 1, 0))
+    scene.add(ep.actors.plate(0.5, 0.5), name="sign", material=ep.Material.metal(), position=(9, -2, 0), yaw=0.1)
+    return ep.simulate(scene, build_radar(num_chirps=8, transmit_power=1.0), num_rays=1500, max_bounces=1, labels=True,
+                       detections={"false_alarm_rate": 1e-3}, guard=False,
+                       parts={"board": "T 'board' R", "sign": "T 'sign' R"})
+
+
+def test_labels_and_detections_say_what_is_resolved(frame):
+    known = {label.name: label.received.resolved for label in frame.labels["parts"].objects}
+    assert known == {"board": True, "sign": False}
+    assert [one.resolved for one in frame.labels["parts"].part_received[:2]] == [True, False]
+    found = frame.detections
+    assert len(found) and np.array_equal(found.is_resolved, found.object == "board")
+    assert [one.name for one in frame.unresolved] == ["sign"]
+    assert "NOT resolved" in str(frame.labels["parts"])
+
+
+def test_a_report_ends_with_what_is_not_resolved(frame):
+    head, line = report.unresolved(frame)
+    assert head.startswith("NOT resolved to 0.3 dB") and line.split()[0] == "sign" and "rays" in line
+
+
+def test_files_carry_what_is_resolved(frame, tmp_path):
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    again = ep.load_frame(tmp_path / "frame.h5")
+    labels, before = again.labels["parts"], frame.labels["parts"]
+    assert [label.received for label in labels.objects] == [label.received for label in before.objects]
+    assert labels.part_received == before.part_received
+    assert np.array_equal(again.detections.is_resolved, frame.detections.is_resolved)
+    assert [str(one) for one in again.unresolved] == [str(one) for one in frame.unresolved]
+    frame.detections.to_csv(tmp_path / "detections.csv")
+    with open(tmp_path / "detections.csv", encoding="utf-8") as stream:
+        told = [row["is_resolved"] for row in csv.DictReader(stream)]
+    assert told == [str(int(known)) for known in frame.detections.is_resolved]
+
+
+def test_files_from_before_load_without(frame, tmp_path):
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    with h5py.File(tmp_path / "frame.h5", "r+") as file:
+        for name in ("labels/0/part_received", "labels/0/objects/received", "detections/is_resolved"):
+            del file[name]
+    again = ep.load_frame(tmp_path / "frame.h5")
+    assert again.labels["parts"].part_received is None and again.labels["parts"].objects[0].received is None
+    assert not again.detections.is_resolved.any()
+
+
+def test_groups_of_the_wrong_size_are_refused(frame):
+    with pytest.raises(ValueError, match="group_of_path: must have one group for each path"):
+        ep.received_powers(frame.paths, np.zeros(3, np.uint32), 1)
+    with pytest.raises(ValueError, match="group_of_path: must lie below the number of groups"):
+        ep.received_powers(frame.paths, np.ones(frame.paths.num_paths, np.uint32), 1)

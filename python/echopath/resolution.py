@@ -76,23 +76,24 @@ def family_powers(paths, families, progress=None) -> list:
     return _core.received_powers(paths, families.family_of_path, len(families.families), progress=progress)
 
 
-def unresolved(paths, families=None, *, least_power=0.0, progress=None) -> list:
-    """The objects, ghost families and surroundings whose mean received power the rays do not know to 0.3 dB, strongest first.
+def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
+    """The objects, surroundings and ghost families whose mean received power the rays do not know to 0.3 dB.
 
-    paths: of a trace; families: of them, None: `families(paths)`
+    paths: of a trace; objects: as in `families`
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
     progress: callable (stage, fraction) or None
-    Returns a list of Unresolved. An object in sight of the radar that no ray has met is among them, with what three rays
+    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar that no ray has met is among them, with what three rays
     might have brought back from it as its upper end.
     """
-    families = families_of(paths) if families is None else families
+    families = families_of(paths, objects)
     powers = family_powers(paths, families, progress)
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power), _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)
              if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
-    found += _unseen(paths, [name for name in families.objects if name not in met], progress)
-    return sorted((one for one in found if one.interval.high > least_power), key=lambda one: -one.interval.high)
+    found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
+    return sorted((one for one in found if one.interval.high > least_power),
+                  key=lambda one: (bool(one.via), -one.interval.power, -one.interval.high))
 
 
 def noise_power_of(radar) -> float:
@@ -155,12 +156,12 @@ def _wide_planes(paths, families, family) -> list:
 
 # --- what no ray has met ---
 
-def _unseen(paths, names, progress) -> list:
-    """Unresolved for those of the objects that the radar sees."""
+def _unseen(paths, objects, names, progress) -> list:
+    """Unresolved for those `names` of the objects that the radar sees."""
     if not names:
         return []
     found = []
-    for seen in visibility_in_trace(paths, paths.radar, progress=progress):
+    for seen in visibility_in_trace(paths, paths.radar, objects, progress=progress):
         interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
         if interval.high > 0.0:
             times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))

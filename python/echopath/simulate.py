@@ -105,7 +105,7 @@ class Frame:
     @cached_property
     def unresolved(self) -> list:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
-        Unresolved, strongest first, as `ep.unresolved` with the noise of the radar."""
+        Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
         return unresolved(self.paths, least_power=noise_power_of(self.radar))
 
     def __repr__(self) -> str:

@@ -71,7 +71,7 @@ def test_power_of_a_selection_is_that_of_its_definition(paths):
     some = paths.select("T .* 'rough' .* R")
     power = ep.received_power(some)
     assert (power.diffuse, power.diffuse_error) == pytest.approx(slow_power(some)[2:], rel=ROUNDING, abs=0)
-    assert power.resolved and 0 < power.error_db < 1
+    assert 0 < power.error_db < 1 and power.low < power.power < power.high
 
 
 def test_one_batch_has_an_interval_and_no_standard_error():
@@ -145,6 +145,6 @@ def test_a_report_gives_powers_with_their_errors():
     lines = report.mean_powers(frame)
     labels = [line.split()[0] for line in lines[1:]]
     assert "95 % interval" in lines[0] and labels == ["whole", "mean", "rough", "nothing", "other"]
-    assert "dBm +- 0." in lines[3] and "nothing" in lines[4].split()[-1]
+    assert "dBm" in lines[3] and "nothing" in lines[4].split()[-1]
     alone = report.mean_powers(ep.simulate(street(), make_radar(), num_rays=500))
     assert len(alone) == 2 and "dBm" in alone[1]

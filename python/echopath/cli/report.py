@@ -81,6 +81,16 @@ def stages(all_stages) -> list[str]:
 
 
 def powers(whole, parts: dict) -> list[str]:
+    """Mean received power of the whole and of each part of each partition, without noise."""
+    lines = ["received power, without noise, of one realisation of the random phases",
+             line("whole", _power_text(power_dbm(whole)))]
+    for partition, cubes in parts.items():
+        lines.append(f"received power, {partition}")
+        lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
+    return lines
+
+
+def mean_powers(frame) -> list[str]:
     """Mean received power of the whole and of each part with half its 95 % interval."""
     lines = ["mean received power over the random phases, +- half the 95 % interval of bias and chance",
              line("whole", _aligned(with_error(frame.mean_power)))]
@@ -97,7 +107,7 @@ def unresolved(frame) -> list[str]:
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise"]
     lines = [line(one.title, f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]]
     rest = [f"  and {len(found) - MAX_UNRESOLVED:,} more"] if len(found) > MAX_UNRESOLVED else []
-    return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval), strongest first", *lines, *rest]
+    return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval)", *lines, *rest]
 
 
 def _aligned(text: str) -> str:

@@ -130,8 +130,9 @@ py::object rcs_of(const Scene& scene, double frequency, const py::object& incide
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const Channels channels = channels_of(polarization);
   const RcsSettings defaults;
-  const Effort effort = effort_of(num_rays, batches, target_error_db, max_rays, defaults.num_rays,
-                                  return_error ? kTargetBatches : defaults.batches);
+  const int num_batches = batches.value_or(return_error ? kErrorBatches : defaults.batches);
+  const Effort effort = target_error_db ? toward(ErrorTarget{*target_error_db, max_rays}, num_rays, num_batches)
+                                        : Effort{num_rays.value_or(defaults.num_rays), num_batches, std::nullopt};
   require(!return_error || effort.batches > 1, "batches", "must be >= 2 for return_error", effort.batches);
   const RcsSettings settings{frequency,   channels.rows, channels.model,                 effort.num_rays,
                              max_bounces, seed,          kFootprint.value_of(footprint), kSampler.value_of(sampler),

@@ -10,18 +10,15 @@
 
 namespace echopath::bindings {
 
-// Rays and batches that were asked for, or those that a target starts with; the defaults are for calls without one.
+// Rays and batches to begin with, and the target until which rays are added, if there is one.
 struct Effort {
   int64_t num_rays;
   int batches;
   std::optional<ErrorTarget> target;
 };
 
-inline Effort effort_of(std::optional<int64_t> num_rays, std::optional<int> batches, std::optional<double> target_error_db,
-                        int64_t max_rays, int64_t default_rays, int default_batches) {
-  if (!target_error_db) return {num_rays.value_or(default_rays), batches.value_or(default_batches), std::nullopt};
-  return {num_rays.value_or(std::min(kFirstRays, max_rays)), batches.value_or(kTargetBatches),
-          ErrorTarget{*target_error_db, max_rays}};
+inline Effort toward(const ErrorTarget& target, std::optional<int64_t> num_rays, int batches) {
+  return {num_rays.value_or(std::min(kFirstRays, target.max_rays)), batches, target};
 }
 
 // A target that was not met is said aloud, and may be made an error. Called by what Python wraps once.

@@ -139,7 +139,7 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     """
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
-    request = _label_request(scene, radar, labels, _num_batches(batches, target_error_db), window, zero_pad, angle_settings)
+    request = _label_request(scene, radar, labels, 1 if batches is None else batches, window, zero_pad, angle_settings)
     detect_keywords = _detect_keywords(scene, radar, detections, request, {"window": window, "zero_pad": zero_pad})
     clock = StageClock()
     with clock("trace"):
@@ -233,11 +233,6 @@ def _detect_keywords(scene, radar, detections, request, spectrum_settings: dict)
     keywords = ({"objects": request.objects} if request else {}) | keywords
     check_keywords(scene, radar, spectrum_settings, keywords)
     return keywords
-
-
-def _num_batches(batches, target_error_db) -> int:
-    """Of a trace with these settings."""
-    return (1 if target_error_db is None else 8) if batches is None else batches
 
 
 def _as_text(partitions: dict) -> dict:

@@ -220,7 +220,7 @@ def glint_scene():
     """A dim wall and a bright little plate close by, which belong to one object and share its rays by their solid angles."""
     scene = ep.Scene()
     scene.add(None, name="site")
-    for name, width, position, level in (("wall", 10.0, (20, 0, 1), 0.1), ("glint", 0.15, (1, 0.05, 1.02), 1.0)):
+    for name, width, position, level in (("wall", 10.0, (20, 0, 1), 0.1), ("glint", 0.02, (1, 0.05, 1.02), 1.0)):
         scene.add(ep.actors.plate(width, width), name=name, parent="site", position=position,
                   material=ep.Material(reflectivity=level, scattering=1.0))
     return scene

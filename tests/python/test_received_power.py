@@ -93,15 +93,14 @@ def rough_ball():
     return scene
 
 
-def test_rays_double_until_the_error_is_met(recwarn):
+def test_rays_are_added_until_the_error_is_met(recwarn):
     loose = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=1.0)
-    tight = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=0.005)
+    tight = ep.trace(rough_ball(), make_radar(), num_rays=500, target_error_db=0.02)
     for paths in (loose, tight):
-        assert 0 < paths.frame.error_db <= paths.frame.target_error_db and paths.frame.num_batches == 8
-        assert paths.frame.error_db >= ep.received_power(paths).error_db > 0
-    assert loose.frame.statistics.num_rays == 500
-    doublings = np.log2(tight.frame.statistics.num_rays / 500)
-    assert doublings >= 1 and doublings == int(doublings)
+        assert 0 < paths.frame.error_db <= paths.frame.target_error_db
+        power = ep.received_power(paths)
+        assert 10 * np.log10(power.high / power.power) <= paths.frame.error_db + 1e-9
+    assert loose.frame.statistics.num_rays == 500 and tight.frame.statistics.num_rays >= 1000
     assert not [warning for warning in recwarn if warning.category is RuntimeWarning]
 
 
@@ -129,7 +128,6 @@ def test_without_a_target_no_error_is_looked_at(paths):
 @pytest.mark.parametrize("keywords, message", [
     ({"batches": 0}, "batches: must lie in .1, 64., got 0"),
     ({"batches": 65}, "batches: must lie in .1, 64., got 65"),
-    ({"target_error_db": 0.1, "batches": 1}, "batches: must be >= 2 for target_error_db, got 1"),
     ({"target_error_db": 0.0}, "target_error_db: must be positive, got 0"),
     ({"target_error_db": 0.1, "max_rays": 0}, "max_rays: must be >= 1, got 0"),
     ({"target_error_db": 0.1, "max_rays": 50}, "num_rays: must not exceed max_rays, got 100"),

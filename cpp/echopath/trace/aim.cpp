@@ -64,7 +64,8 @@ class Aimer {
     std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
-    Aim made{std::move(*stratum), target.object, {}, num_mirrors, target.moves};
+    stratum->num_mirrors = num_mirrors;
+    Aim made{std::move(*stratum), target.object, {}, target.moves};
     if (num_mirrors == 0) made.sequences.push_back(kDirect);
     return made;
   }
@@ -100,7 +101,7 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
 // Leaves out images over the most mirrors first, then the objects that fill least of the view.
 void limit(std::vector<Aim>& objects, std::vector<Aim>& images, Aims& out) {
   const size_t all = objects.size() + images.size();
-  std::stable_sort(images.begin(), images.end(), [](const Aim& a, const Aim& b) { return a.num_mirrors < b.num_mirrors; });
+  std::stable_sort(images.begin(), images.end(), [](const Aim& a, const Aim& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
   if (objects.size() > kMostAims) {
     const auto wider = [](const Aim& a, const Aim& b) { return a.stratum.solid_angle() > b.stratum.solid_angle(); };
     std::stable_sort(objects.begin(), objects.end(), wider);
@@ -113,7 +114,7 @@ void limit(std::vector<Aim>& objects, std::vector<Aim>& images, Aims& out) {
 
 }  // namespace
 
-double Aim::weight() const { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
+double weight_of_aim(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
 
 Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                     const AimSettings& settings) {

@@ -11,12 +11,11 @@ struct Aim {
   Stratum stratum;                        // that holds it, without rays
   int object = 0;                         // index into objects_of(scene)
   std::vector<MirrorSequence> sequences;  // over which rays find it there; planes at right angles have one image in both orders
-  int num_mirrors = 0;                    // 0: the object itself
   bool moves = false;
-
-  // Of its share of the rays, relative to others.
-  double weight() const;
 };
+
+// Of the share of the rays of an image over that many mirrors (0: of the object itself), relative to others.
+double weight_of_aim(int num_mirrors);
 
 struct AimSettings {
   Vec3 transmitter;

@@ -38,13 +38,13 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sa
 // Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
 std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
-  for (const Aim& aim : aims) (aim.moves ? moving : resting) += aim.weight();
+  for (const Aim& aim : aims) (aim.moves ? moving : resting) += weight_of_aim(aim.stratum.num_mirrors);
   const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
   const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
   std::vector<double> shares;
   for (const Aim& aim : aims) {
-    shares.push_back(aim.moves ? aimed * moving_share * aim.weight() / moving
-                               : aimed * (1.0 - moving_share) * aim.weight() / resting);
+    const double of_tier = aim.moves ? moving_share / moving : (1.0 - moving_share) / resting;
+    shares.push_back(aimed * of_tier * weight_of_aim(aim.stratum.num_mirrors));
   }
   shares.push_back(1.0 - aimed);
   return shares;

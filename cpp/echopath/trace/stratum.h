@@ -19,6 +19,7 @@ struct Stratum {
   double ray_density = 0.0;    // rays per sr inside, N_k p_k; exact, so that its integral may differ from num_rays
   std::string name;            // what it aims at
   int object = -1;             // node of the scene that it aims at (a child of the root); -1: none
+  int num_mirrors = 0;         // over which it aims there
 
   bool is_strip() const { return half_azimuth > 0.0; }
   double solid_angle() const;                  // sr

@@ -36,11 +36,17 @@ def describe_file(path, selections=()) -> list[str]:
     raise ValueError(f"{path}: must be a .toml, .h5, .obj or .ply file")
 
 
+def _rays_of(trace) -> str:
+    if trace.num_rays is not None:
+        return f"{trace.num_rays:,}"
+    return "as many as the target asks for" if trace.target_error_db is not None else "as many as 0.3 dB for each object asks for"
+
+
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
     trace_time = trace.start_time + 0.5 * scene_file.radar.frame_duration
     lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace_time),
-             *_describe_radar(scene_file.radar), "trace", report.line("rays", f"{trace.num_rays:,}"),
+             *_describe_radar(scene_file.radar), "trace", report.line("rays", _rays_of(trace)),
              report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:
         lines.append(report.line("batches", str(trace.batches)))

@@ -5,8 +5,6 @@ from .. import _core
 from . import surfaces, motion, radar, sampling  # noqa: F401, I001  each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
-TARGET_ERROR_BATCHES = 8  # of `trace` with a target unless it is told
-
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("transmission through sheets", False, "not modelled"),
@@ -27,7 +25,7 @@ def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_orde
     retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
     that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
     """
-    batches = batches or (TARGET_ERROR_BATCHES if target_error_db else 1)
+    batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
                                                 replay, evaluate, retrace, noise_seed)))
 

@@ -90,6 +90,7 @@ def _write_frame(group, frame) -> None:
     write_array(group, "stratum_ray_density", densities, unit="1/sr")
     write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
     write_array(group, "stratum_across", np.array([stratum.across for stratum in strata], np.float64).reshape(-1, 3))
+    write_array(group, "stratum_num_mirrors", np.array([stratum.num_mirrors for stratum in strata], np.int64))
     write_array(group, "stratum_object", np.array([stratum.object for stratum in strata], np.int64))
     strips = [[stratum.half_azimuth, stratum.low, stratum.high] for stratum in strata]
     write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
@@ -102,12 +103,13 @@ def _read_frame(group):
     ray_density = read_array(group, "stratum_ray_density", np.float64, (len(names),))
     num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
     across = read_array(group, "stratum_across", np.float64, (len(names), 3))
+    mirrors = read_array(group, "stratum_num_mirrors", np.int64, (len(names),))
     aimed_at = read_array(group, "stratum_object", np.int64, (len(names),))
     strip = read_array(group, "stratum_strip", np.float64, (len(names), 3))
     strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
                          ray_density=float(ray_density[i]), name=names[i], across=across[i],
                          half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
-                         object=int(aimed_at[i]))
+                         object=int(aimed_at[i]), num_mirrors=int(mirrors[i]))
               for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(

@@ -50,10 +50,7 @@ class SceneFile:
 
     def trace_settings(self) -> dict:
         """Keywords of `ep.trace`, all but progress."""
-        settings = self.trace.model_dump()
-        if self.trace.target_error_db is not None and "num_rays" not in self.trace.model_fields_set:
-            settings["num_rays"] = None  # where the search begins is then up to it
-        return settings
+        return self.trace.model_dump()
 
     def replay_settings(self) -> dict:
         """Keywords of `ep.synthesize`: replay, evaluate, retrace, keyframes."""

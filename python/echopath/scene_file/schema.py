@@ -209,7 +209,8 @@ class ObjectTable(Table):
 
 
 class TraceTable(Table):
-    num_rays: int = Field(1_000_000, ge=1, description="launched")
+    num_rays: Optional[Annotated[int, Field(ge=1)]] = Field(
+        None, description="a budget; none: as many as 0.3 dB for each object asks for, 1 000 000 at most")
     max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
@@ -219,9 +220,9 @@ class TraceTable(Table):
     sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(
         "lattice", description="how rays are spread over the cone of an object")
     batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
-        None, description="independent parts of the rays, which give standard errors; none: 1, with target_error_db 8")
+        None, description="independent parts of the rays, which give standard errors; none: 1")
     target_error_db: Optional[Positive] = Field(
-        None, description="dB, error of the received power until which the rays double, from num_rays on")
+        None, description="dB, error of each echo until which rays are added, from num_rays on")
     max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
 
 

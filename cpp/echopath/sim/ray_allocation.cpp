@@ -1,0 +1,124 @@
+#include "echopath/sim/ray_allocation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/replay/received_power.h"
+#include "echopath/signal/noise.h"
+#include "echopath/trace/aim.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kDynamicRange = 1e-6;  // of the strongest echo
+constexpr double kLeastGrowth = 0.25;
+constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
+constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
+constexpr double kImageWeight = 0.5;    // beside that of the aim
+constexpr double kServedFirst = 0.75;   // of the rays
+constexpr int64_t kPilotDivisor = 8;
+constexpr int64_t kFewestPilotRays = 2048;
+
+std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
+  const size_t num_strata = paths.frame.strata.size();
+  std::vector<uint32_t> group(paths.stratum.size());
+  std::transform(paths.stratum.begin(), paths.stratum.end(), group.begin(),
+                 [&](uint16_t stratum) { return static_cast<uint32_t>(std::min<size_t>(stratum, num_strata)); });
+  return received_powers(paths, group, num_strata + 1, job);
+}
+
+// W, of one cell of a range-Doppler map that all samples of a frame make. Maps of real samples are scaled to the same levels.
+double noise_of_cell(const Radar& radar) {
+  const double scale = radar.waveform.real ? 2.0 : 1.0;
+  return scale * noise_power(radar) / (static_cast<double>(radar.waveform.num_samples) * radar.waveform.num_chirps);
+}
+
+double strongest_of(const std::vector<ReceivedPower>& powers) {
+  double strongest = 0.0;
+  for (const ReceivedPower& power : powers) strongest = std::max(strongest, power.power);
+  return strongest;
+}
+
+// Half the interval relative to the power, in dB; what lies below the floor counts as if it were as strong as that.
+double missing_db(const ReceivedPower& power, double least) {
+  const double level = std::max(power.power, least), half = std::max(power.high - power.power, power.power - power.low);
+  return level > 0 ? 10.0 * std::log10(1.0 + half / level) : 0.0;
+}
+
+// By node: whether something below it moves.
+std::vector<bool> moving_objects(const Scene& scene) {
+  std::vector<bool> moves(scene.nodes().size());
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
+    if (scene.is_moving(mesh)) moves[static_cast<size_t>(scene.meshes()[mesh].object)] = true;
+  }
+  return moves;
+}
+
+RayNeed need_of(const Stratum& stratum, const ReceivedPower& power, double missing, double target_db) {
+  RayNeed need;
+  need.stratum = stratum.name;
+  need.weight = weight_of_aim(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
+  double growth = power.high > 0 ? std::clamp(missing / target_db, kLeastGrowth, kMostGrowth) : kUnseenGrowth;
+  // The field of view sees many surfaces, of which the strongest would speak for all.
+  if (stratum.object < 0) growth = std::max(growth, 1.0);
+  need.is_bounded = growth < kMostGrowth;
+  need.rays = growth * static_cast<double>(stratum.num_rays);
+  return need;
+}
+
+}  // namespace
+
+double RayNeeds::num_rays() const {
+  double sum = 0.0;
+  for (const RayNeed& need : strata) sum += need.rays;
+  return sum;
+}
+
+RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job) {
+  const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
+  const double least = floor == EchoFloor::kNoise ? noise_of_cell(paths.radar) : kDynamicRange * strongest_of(powers);
+  const std::vector<bool> moves = moving_objects(*paths.scene);
+  RayNeeds needs;
+  for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
+    const Stratum& stratum = paths.frame.strata[k];
+    const double missing = missing_db(powers[k], least);
+    const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
+    needs.strata.push_back(need_of(stratum, powers[k], missing, is_moving ? kMovingTarget * target_db : target_db));
+    if (powers[k].high <= least || missing <= needs.worst_db) continue;
+    needs.worst_db = missing;
+    needs.worst = stratum.name;
+  }
+  return needs;
+}
+
+RayShares share_out(const RayNeeds& needs, double num_rays) {
+  double bounded = 0.0, others = 0.0;
+  for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight * need.rays;
+  const bool is_scarce = needs.num_rays() > num_rays && others > 0;
+  const double to_bounded = is_scarce ? std::min(bounded, kServedFirst * num_rays) : bounded;
+  RayShares shares;
+  for (const RayNeed& need : needs.strata) {
+    if (!is_scarce) shares[need.stratum] = need.rays;
+    else if (need.is_bounded) shares[need.stratum] = need.rays * to_bounded / bounded;
+    else shares[need.stratum] = need.weight * need.rays * (num_rays - to_bounded) / others;
+  }
+  return shares;
+}
+
+Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
+  TraceSettings launch = settings;
+  launch.num_rays = settings.num_rays / kPilotDivisor;
+  if (!settings.shares.empty() || launch.num_rays < kFewestPilotRays) return trace(scene, radar, settings, job, kept);
+  KeptGeometry own;
+  if (!kept) kept = &own;
+  Job unseen(job);  // its progress is that of the trace
+  const Paths pilot = trace(scene, radar, launch, &unseen, kept);
+  const auto num_launched = std::count_if(pilot.frame.strata.begin(), pilot.frame.strata.end(),
+                                          [](const Stratum& stratum) { return stratum.num_rays > 0; });
+  if (num_launched < 2) return trace(scene, radar, settings, job, kept);
+  launch.num_rays = settings.num_rays;
+  launch.shares = share_out(ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), static_cast<double>(settings.num_rays));
+  return trace(scene, radar, launch, job, kept);
+}
+
+}  // namespace echopath

@@ -11,7 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr double kDynamicRange = 1e-6;  // of the strongest echo
-constexpr double kLeastGrowth = 0.25;
+constexpr double kLeastGrowth = 1.0 / 16.0;
 constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;    // beside that of the aim
@@ -95,12 +95,12 @@ RayShares share_out(const RayNeeds& needs, double num_rays) {
   double bounded = 0.0, others = 0.0;
   for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight * need.rays;
   const bool is_scarce = needs.num_rays() > num_rays && others > 0;
-  const double to_bounded = is_scarce ? std::min(bounded, kServedFirst * num_rays) : bounded;
+  const double to_bounded = std::min(bounded, kServedFirst * num_rays);
+  const double of_bounded = is_scarce && bounded > 0 ? to_bounded / bounded : 1.0;
   RayShares shares;
   for (const RayNeed& need : needs.strata) {
-    if (!is_scarce) shares[need.stratum] = need.rays;
-    else if (need.is_bounded) shares[need.stratum] = need.rays * to_bounded / bounded;
-    else shares[need.stratum] = need.weight * need.rays * (num_rays - to_bounded) / others;
+    const bool shares_rest = is_scarce && !need.is_bounded;
+    shares[need.stratum] = need.rays * (shares_rest ? need.weight * (num_rays - to_bounded) / others : of_bounded);
   }
   return shares;
 }

@@ -34,7 +34,7 @@ struct RayNeeds {
 // Every stratum whose echo may stand above the floor asks for as many rays as bring its interval
 // (replay/received_power.h) to `target_db`, those of objects that move to a quarter of it: the interval of a coherent echo falls
 // about with the rays, that of a diffuse one with their root, so that both ask in proportion to what they miss, within a factor
-// of kMostGrowth. What is known better gives rays back, down to a quarter; what no ray has met keeps a quarter. Raises Cancelled.
+// of kMostGrowth. What is known better gives rays back, down to a sixteenth; what no ray has met keeps a quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
 inline constexpr double kMostGrowth = 32.0;
 

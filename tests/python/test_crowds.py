@@ -18,10 +18,13 @@ def decibels(power, truth):
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("mirrors", [True, False])
 def test_poles_and_people_of_a_street_are_those_alone(mirrors):
-    """Metal poles of .1 x 3 m at 12 to 90 m, of 20 objects: aimed at by cones about bounding spheres they were 2 to 7 dB low."""
+    """Metal poles of .1 x 3 m at 12 to 90 m, of 20 objects: aimed at by cones about bounding spheres they were 2 to 7 dB low.
+    Rays go where the error is: from people, whose rough bodies are known after some hundred, to poles."""
     names = ["pole_12", "pole_20", "pole_40", "pole_60", "pole_90", "pedestrian_10", "pedestrian_40"]
     scene, radar = crowd_scenes.street(mirrors=mirrors), crowd_scenes.radar()
     paths = ep.trace(scene, radar, num_rays=300_000)
+    rays = {stratum.name: stratum.num_rays for stratum in paths.frame.strata}
+    assert sum(rays.values()) == 300_000 and rays["pole_60"] > 2 * rays["pedestrian_10"] > 0
     for name in names:
         alone = ep.trace(crowd_scenes.alone(name, mirrors=mirrors), radar, num_rays=2**17)
         here, truth = (ep.received_power(crowd.direct(one, name)).power for one in (paths, alone))
@@ -51,17 +54,6 @@ def test_both_orders_over_a_rough_mirror_agree(height):
         there = paths.select("T S'ground' S'ball' R"), paths.select("T S'ball' S'ground' R")
         powers = [ep.received_power(part).coherent for part in there]
         assert abs(decibels(*powers)) < ORDERS_DB
-
-
-def test_rays_go_where_the_error_is():
-    """A near rough plate is known after some thousand rays, the smooth body of a car far away is not."""
-    scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(6, -2, 1))
-    scene.add(crowd_scenes.rounded_car(), name="body", material="metal", smooth=True, position=(40, 4, 0), yaw=0.4)
-    paths = ep.trace(scene, build_radar([(0, 0, 1)], [(0, 0, 1)]), num_rays=60_000)
-    rays = {stratum.name: stratum.num_rays for stratum in paths.frame.strata}
-    assert sum(rays.values()) == 60_000 and rays["body"] > 4 * rays["rough"] > 0
-    assert not [name for name in rays if rays[name] == 0 and name != "field of view"]
 
 
 def test_the_default_asks_for_an_error_and_not_for_a_number():

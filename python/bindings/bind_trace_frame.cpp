@@ -69,7 +69,7 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_near_antenna", &TraceStatistics::num_near_antenna, "dropped: within 1 mm of an antenna")
       .def_readonly("num_grazing", &TraceStatistics::num_grazing, "dropped: cosine of incidence below 1e-3")
       .def_readonly("num_small_mirrors", &TraceStatistics::num_small_mirrors,
-                    "rays ended behind an unflagged mirror smaller than its Fresnel zone")
+                    "rays without a field ended behind an unflagged mirror of less than half its Fresnel zone")
       .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision")
       .def_readonly("num_unaimed", &TraceStatistics::num_unaimed,
                     "objects and images that no rays aim at, because there are too many of them")

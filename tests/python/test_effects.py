@@ -75,7 +75,7 @@ CASES = {
     "legs over images": (dict(scene=beside_mirror()), "two mirrors", dict(scene=make_scene(MIRROR))),
     "multiple bounces": (dict(max_bounces=2), "= 2", dict(max_bounces=1)),
     "Russian roulette behind bounce 3": (dict(max_bounces=4), "= 4", dict(max_bounces=3)),
-    "reversals behind small mirrors": ({}, "Fresnel zone", dict(scene=make_scene(ROUGH))),
+    "edges and orders of mirrors": ({}, "Fresnel zone", dict(scene=make_scene(ROUGH))),
     "both orders of diffuse chains": (dict(scene=make_scene(ROUGH)), "share their phases", {}),
     "motion over chirps": (dict(radar=make_radar(motion=MOVING)), "the radar moves", {}),
     "motion within chirps": (dict(scene=make_scene(motion=MOVING), evaluate="samples"), "at every sample", {}),

@@ -53,7 +53,7 @@ struct TraceStatistics {
   int64_t num_paths = 0;       // recorded; selections have fewer
   int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
   int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
-  int64_t num_small_mirrors = 0;  // rays ended behind an unflagged mirror smaller than its Fresnel zone
+  int64_t num_small_mirrors = 0;  // rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
   int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;       // objects and images that no rays aim at, because there are too many of them
   int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMostBeams)

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,29 +6,6 @@
 #include "echopath/trace/sbr_state.h"
 
 namespace echopath {
-namespace {
-
-// The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
-double middle_extent(const std::vector<Vec3>& vertices) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
-  Mat3 covariance = Mat3::Zero();
-  for (const Vec3& vertex : vertices) covariance += (vertex - mean) * (vertex - mean).transpose();
-  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors();
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : vertices) box.extend(Vec3(axes.transpose() * (vertex - mean)));
-  std::array<double, 3> extents = {box.sizes()[0], box.sizes()[1], box.sizes()[2]};
-  std::sort(extents.begin(), extents.end());
-  return extents[1];
-}
-
-}  // namespace
-
-double curvature_along(const RayHit& point, const Vec3& direction) {
-  if (!point.is_smooth) return 0.0;
-  const Vec3 along = (direction - point.normal.dot(direction) * point.normal).normalized();
-  return along.dot(point.curvature * along);
-}
 
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchPlan& plan, const SbrSettings& settings)
@@ -39,7 +15,7 @@ RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const st
       receiver_(legs_.view_of(settings.receiver, std::min(kMaxLegMirrors, settings.max_bounces - 1))),
       mirror_of_mesh_(scene.meshes().size(), -1),
       wavelength_(kSpeedOfLight / settings.frequency) {
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(middle_extent(geometry.vertices(id)));
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) mesh_width_.push_back(width_of_smooth(id));
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) models_.emplace_back(*scene.node_of(id).material, settings.frequency);
   for (const SurfaceModel& model : models_) constant_odds_.push_back(odds_of(model, model.constant()));
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
@@ -83,7 +59,7 @@ bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surfa
   if (!bounce(ray, surface, way, scratch)) return false;
   surface.point = met;
   surface.receiver = Sight::kUnknown;
-  if (!arrive(ray, surface, block)) return false;
+  if (!arrive(ray, surface, scratch, block)) return false;
   surface.chance = hit_chance(settings_.seed, ray.index, ray.depth);
   return true;
 }
@@ -99,13 +75,18 @@ bool RayShooter::passes(int stratum, uint32_t mesh_id) const {
 }
 
 // At the point of `surface`, if it counts as a hit.
-bool RayShooter::arrive(Ray& ray, Surface& surface, PathBlock& block) const {
+bool RayShooter::arrive(Ray& ray, Surface& surface, const Scratch& scratch, PathBlock& block) const {
   surface.cos_incidence = -surface.point.normal.dot(ray.direction);
   if (surface.cos_incidence < kGrazing) {
     ++block.statistics.num_grazing;
     return false;
   }
-  if (ray.last_was_mirror && !suffices(ray.mirror, ray.leg_length, surface.point.distance)) {
+  surface.model = &models_[surface.point.hit.mesh_id];
+  surface.mode = mode_along(*surface.model, settings_.polarization, ray.direction, surface.point.normal);
+  surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
+  if (ray.last_was_mirror) look_at_mirror(ray, surface, scratch, block);
+  const bool has_field = ray.coherent && surface.response.coherent > 0;
+  if (!ray.holds_zones && !has_field) {
     ++block.statistics.num_small_mirrors;
     return false;
   }
@@ -116,9 +97,6 @@ bool RayShooter::arrive(Ray& ray, Surface& surface, PathBlock& block) const {
     if (!passes_on && !ray.is_owned) return false;
   }
   ++block.statistics.num_hits;
-  surface.model = &models_[surface.point.hit.mesh_id];
-  surface.mode = mode_along(*surface.model, settings_.polarization, ray.direction, surface.point.normal);
-  surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
   settle(ray, surface);
   return true;
 }
@@ -134,15 +112,6 @@ void RayShooter::settle(Ray& ray, Surface& surface) const {
     ray.has_odd_conductors ^= !surface.model->is_dielectric();
   }
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
-}
-
-// A mirror must hold the first Fresnel zone between what lies `before` and `behind` it (unfolded lengths, m). A point a
-// distance x off the specular one makes the way longer by x^2/2 [cos^2 (1/before + 1/behind) + 2 cos/radius], in the plane
-// of incidence; the zone ends where that is half a wavelength.
-bool RayShooter::suffices(const MirrorBounce& mirror, double before, double behind) const {
-  const double flat = mirror.cos_incidence * mirror.cos_incidence * (1.0 / before + 1.0 / behind);
-  const double bend = std::max(std::abs(flat + 2.0 * mirror.cos_incidence * mirror.curvature), 1e-12);
-  return mesh_width_[static_cast<size_t>(mirror.mesh)] >= 2.0 * std::sqrt(wavelength_ / bend);
 }
 
 // Carries the ray tube to the surface; caustics on the way turn the phase of the field.

@@ -9,14 +9,17 @@
 // first. Flagged mirrors radiate diffusely only, by rays of the field of view; paths over mirrors alone come from
 // mirror_paths.h. A chain of diffuse hits gives both of its orders, with one phase, under the balance weight over the rays that
 // meet it from either end (sbr_diffuse.cpp).
-// A specular bounce off an unflagged surface smaller than its Fresnel zone is no mirror: the ray ends behind it. What it would
-// have carried comes from the opposite order instead: the reversal of a path is added where its last hit is diffuse, or where
-// the opposite order would have to use such a mirror.
+// A specular bounce off an unflagged surface is geometrical optics, which holds where the surface covers the Fresnel zone
+// (mirror_zone.h). What counts is the surface around the point, over whatever meshes it is spread; the edges of one narrower
+// than the zone take their part of the field. Of the two orders of a coherent path the better one stands (sbr_orders.cpp): the
+// one whose mirrors cover more of their zones, and whose rays lie denser. In its place the other one gives its reversal. A
+// diffuse echo behind a mirror that covers too little is dropped; elsewhere it gives its reversal, which no ray finds.
 // Sources: Ling, Chou, Lee 1989 (SBR); Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include "echopath/trace/chance.h"
 #include "echopath/trace/launch.h"
 #include "echopath/trace/launch_directions.h"
 #include "echopath/trace/legs.h"
+#include "echopath/trace/mirror_zone.h"
 #include "echopath/trace/path_block.h"
 
 namespace echopath {
@@ -54,6 +57,10 @@ class RayShooter {
   struct Packet;   // of neighbouring rays up to their first hits
   struct Departure;  // of a ray from a hit
   struct Chain;    // of diffuse hits
+  struct PathEnd;
+  struct OrderShares {  // of a ray's echo, in its own order and in the opposite one
+    double own = 1.0, opposite = 0.0;
+  };
   using RayHits = std::array<Hit, 64>;
 
   // sbr_packet.cpp: to the first hits, and from there as far as it can be told lane by lane.
@@ -70,17 +77,21 @@ class RayShooter {
   void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
   EmbreeScene::Verdict ask(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
   bool travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch, PathBlock& block) const;
-  bool arrive(Ray& ray, Surface& surface, PathBlock& block) const;
+  bool arrive(Ray& ray, Surface& surface, const Scratch& scratch, PathBlock& block) const;
   bool is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const;
   bool passes(int stratum, uint32_t mesh_id) const;
   void settle(Ray& ray, Surface& surface) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
-  struct MirrorBounce;
-  bool suffices(const MirrorBounce& mirror, double before, double behind) const;
-  bool opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const;
+  // sbr_orders.cpp: unflagged surfaces as mirrors, and which of a path's two orders stands.
+  double width_of_smooth(uint32_t mesh_id) const;
+  ZoneCover cover_of(const MirrorView& view, const ZoneTarget* target, PathBlock& block) const;
+  PathEnd end_at(const MirrorView& view, const ZoneCover& cover) const;
+  void look_at_mirror(Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
+  OrderShares shares_of_orders(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const;
+  double resolution_of(const Ray& ray, const Surface& surface, const Leg& leg, const PathEnd& last) const;
   void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
-              bool with_reversal, PathBlock& block) const;
+              const OrderShares& shares, PathBlock& block) const;
   static RayHits way_back_over(const Ray& ray, const Leg& leg);
   void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
@@ -98,7 +109,7 @@ class RayShooter {
   // sbr_bounce.cpp
   Departure depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const;
   bool bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
-  void bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Chain& chain) const;
+  void bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
   void bounce_diffuse(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
   Vec3 scatter_lobe(const Ray& ray, int batch) const;
@@ -141,7 +152,7 @@ class RayShooter {
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
   std::vector<SurfaceModel> models_;  // by mesh ID
   std::vector<Odds> constant_odds_;   // by mesh ID, of models that are constant
-  std::vector<double> mesh_width_;   // by mesh ID, m: the middle one of three extents
+  std::vector<double> mesh_width_;   // by mesh ID, m: of smooth ones (sbr_orders.cpp)
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then
   bool has_only_direct_legs_ = false;  // and no fields to follow

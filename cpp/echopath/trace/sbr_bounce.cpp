@@ -49,20 +49,21 @@ RayShooter::Departure RayShooter::depart(const Ray& ray, const Surface& surface,
 
 // What becomes of the ray on its way. False: nothing that counts.
 bool RayShooter::bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
-  if (way.is_specular) bounce_specular(ray, surface, way, scratch.chain);
+  if (!way.is_specular && !ray.holds_zones) return false;
+  if (way.is_specular) bounce_specular(ray, surface, way, scratch);
   else bounce_diffuse(ray, surface, way, scratch);
   ray.direction = way.direction;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }
 
-void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Chain& chain) const {
+void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
+  Chain& chain = scratch.chain;
   const SurfaceResponse& response = surface.response;
   const RayHit& point = surface.point;
   ray.field_factor /= way.probability();
   if (ray.coherent && has_smooth_) reflect_tube(ray, surface);
   if (settings_.is_polarized) reflect_polarized(ray, surface, ray.polarized);
   if (settings_.is_polarized && !ray.coherent && chain.back) reflect_polarized(ray, surface, chain.fields);
-  const MirrorBounce bounced{static_cast<int>(point.hit.mesh_id), surface.cos_incidence, curvature_along(point, ray.direction)};
   const int mirror = mirror_of_mesh_[point.hit.mesh_id];
   if (mirror >= 0) {
     ray.coefficient *= mirror_sign(*surface.material, surface.mode, settings_.polarization, ray.direction, point.normal);
@@ -74,7 +75,11 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departu
   ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
   if (is_leg) ray.is_owned = false;  // what is met next may have another owner
   ray.last_was_mirror = mirror < 0;
-  if (mirror < 0) ray.mirror = bounced;
+  if (mirror < 0) {
+    ++ray.num_mirrors;
+    scratch.mirror = point;
+    scratch.mirror_arrival = ray.direction;
+  }
   if (!ray.coherent) leave_specular(ray, surface, way.probability(), chain);
 }
 
@@ -101,7 +106,7 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, const Departur
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
   ray.coherent = false;
   ray.sequence = kOther;
-  ray.mirror = MirrorBounce{};
+  ray.num_mirrors = 0;
   ray.last_was_mirror = false;
   leave_diffuse(ray, surface, way.direction, way.probability(), scratch.chain);
   if (settings_.is_polarized) scatter_polarized(ray, surface, way.direction);

@@ -31,13 +31,6 @@ RayShooter::RayHits RayShooter::way_back_over(const Ray& ray, const Leg& leg) {
   return hits;
 }
 
-// Whether the way back, over this hit as a mirror, would have to be dropped.
-bool RayShooter::opposite_is_invalid(const Surface& surface, const Vec3& direction, double to_receiver) const {
-  const MirrorBounce mirror{static_cast<int>(surface.point.hit.mesh_id), surface.cos_incidence,
-                            curvature_along(surface.point, direction)};
-  return !suffices(mirror, to_receiver, surface.point.distance);
-}
-
 LegQuery RayShooter::legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const {
   return {surface.point.position, surface.point.normal, max_mirrors, skip, surface.receiver};
 }
@@ -53,7 +46,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
     return;
   }
   const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
-  const bool radiates_power = surface.response.diffuse > 0;
+  const bool radiates_power = surface.response.diffuse > 0 && ray.holds_zones;
   if (!radiates_field && !radiates_power) return;
   const bool in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
   // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
@@ -81,21 +74,24 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
       settings_.is_polarized ? 1.0 : ray.coefficient * surface.response.gamma * surface.response.coherent * sign;
   const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field_factor * scalar * launch_area;
   for (const Leg& leg : scratch.receive) {
-    const bool with_reversal = ray.mirror.mesh >= 0 && opposite_is_invalid(surface, ray.direction, leg.length);
-    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
+    const OrderShares shares = ray.num_mirrors > 0 ? shares_of_orders(ray, surface, leg, block) : OrderShares{};
+    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, shares, block);
   }
 }
 
-// One path over the ray's own hits and a receive leg, and its reversal.
+// One path over the ray's own hits and a receive leg, and its reversal, as far as each has a share.
 void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
-                        bool with_reversal, PathBlock& block) const {
+                        const OrderShares& shares, PathBlock& block) const {
   const int count = ray.depth + leg.num_bounces;
   if (count > settings_.max_bounces) return;
-  const std::complex<float> rounded(weight);
-  if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, rounded, ray.stratum);
-  else block.add(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
-  set_columns(ray, surface, leg, bits, block);
-  if (!with_reversal) return;
+  if (shares.own > 0) {
+    const std::complex<float> rounded(shares.own * weight);
+    if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, rounded, ray.stratum);
+    else block.add(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
+    set_columns(ray, surface, leg, bits, block);
+  }
+  if (shares.opposite == 0) return;
+  const std::complex<float> rounded(shares.opposite * weight);
   block.add_reversal(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
   set_columns(ray, surface, leg, bits, block);
 }
@@ -134,9 +130,9 @@ void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const S
       settings_.is_polarized ? 1.0 : ray.coefficient * diffuse_coefficient(surface.response);
   const std::complex<double> weight = scalar * std::sqrt(surface.area) * surface.chance.phase;
   const uint64_t bits = uint64_t{1} << (ray.depth - 1);
-  const bool with_reversal = ray.mirror.mesh >= 0;
+  const OrderShares shares{1.0, ray.num_mirrors > 0 ? 1.0 : 0.0};
   for (const Leg& leg : scratch.receive) {
-    record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, with_reversal, block);
+    record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, shares, block);
   }
 }
 

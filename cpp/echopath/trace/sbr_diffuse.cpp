@@ -82,7 +82,7 @@ void RayShooter::leave_specular(const Ray& ray, const Surface& surface, double p
   // Of several bounces in a row, whether unflagged surfaces are large enough is judged differently in the other order, which
   // is left to its own rays.
   const bool is_second = !(ray.diffuse >> (ray.depth - 2) & 1);
-  if (!is_second || ray.mirror.mesh < 0) return;
+  if (!is_second || ray.num_mirrors == 0) return;
   chain.odds = 0.0;
   chain.back.reset();
 }
@@ -121,7 +121,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
     const SurfaceResponse response = response_toward(surface, in.to_antenna);
     const double share = std::sqrt(share_of_order(surface, response, in, chain));
     const Leg* out = leg_over(scratch.receive, in.sequence);
-    if (out) record(ray, surface, *out, bits, share * weighted(natural * out->gain), false, block);
+    if (out) record(ray, surface, *out, bits, share * weighted(natural * out->gain), OrderShares{}, block);
     if (!chain.back) continue;
     const std::complex<double> reversed = in.gain * diffuse_coefficient(response) * chain.coefficient * chain.back->gain;
     record_reversed(ray, chain, in, bits, share * weighted(reversed), block);
@@ -129,7 +129,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
   }
   for (const Leg& out : scratch.receive) {
     if (leg_over(scratch.transmit, out.sequence)) continue;
-    record(ray, surface, out, bits, weighted(natural * out.gain), false, block);
+    record(ray, surface, out, bits, weighted(natural * out.gain), OrderShares{}, block);
   }
 }
 

@@ -15,13 +15,17 @@ inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
 // Rays leave this bounce and later ones by Russian roulette. Of a chain of diffuse hits its own bounces count, so that the
 // odds of its orders do not depend on how they were reached.
 inline constexpr int kRouletteBounce = 3;
+// Of the Fresnel zone: an unflagged surface that covers less is no mirror for diffuse echoes.
+inline constexpr double kHeldShare = 0.5;
 inline constexpr MirrorSequence kOther = -1;  // the transmitter was left over something else than a sequence of a leg
 
-// A specular bounce off an unflagged surface.
-struct RayShooter::MirrorBounce {
-  int mesh = -1;               // -1: none
-  double cos_incidence = 1.0;
-  double curvature = 0.0;      // 1/m, in the plane of incidence, positive where convex
+// One end of a coherent path over unflagged surfaces: a hit that is a mirror in one of the path's two orders and radiates in the
+// other (sbr_orders.cpp).
+struct RayShooter::PathEnd {
+  double cover = 1.0;       // share of the Fresnel zone that it covers as a mirror
+  double spread = 1.0;      // of the tube's area behind it, over that behind a flat mirror
+  double to_antenna = 0.0, to_next = 0.0;  // m, unfolded
+  bool is_smooth = false;
 };
 
 struct RayShooter::Ray {
@@ -47,8 +51,10 @@ struct RayShooter::Ray {
   std::complex<double> field_factor = 1.0;
   RayDifferential rays;       // regime C, where the scene has smooth meshes
   bool is_curved = false;     // some bounce so far was on a curved surface
-  MirrorBounce mirror;            // the last specular bounce off an unflagged surface since the last anchor
+  int num_mirrors = 0;            // specular bounces off unflagged surfaces since the last anchor
   bool last_was_mirror = false;   // and it was the last bounce
+  bool holds_zones = true;        // each of them covers at least kHeldShare of its Fresnel zone
+  PathEnd first_mirror;           // the first of them
   double area = 1.0;                       // product of the material areas of the diffuse anchors
 };
 
@@ -149,14 +155,13 @@ struct RayShooter::Scratch {
   std::vector<FieldPair> incident, axes;  // of these, for pairs, where polarised (sbr_polarization.cpp)
   bool has_receive = false;                     // `receive` is that of the ray's hit
   LegSearch search;
+  RayHit mirror;        // the last specular bounce off an unflagged surface
+  Vec3 mirror_arrival;  // unit, of the ray there
   Chain chain;  // of rays that have left a diffuse hit
   RayAtHit first;  // the ray of a packet that is followed now
 };
 
 // Of the field that a diffuse hit scatters.
 inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
-
-// Curvature of a hit in the plane of incidence, 1/m; 0 on facets.
-double curvature_along(const RayHit& point, const Vec3& direction);
 
 }  // namespace echopath

@@ -131,11 +131,11 @@ def _roulette(case: Case):
     return case.settings.max_bounces > ROULETTE_BOUNCE, f"max_bounces = {case.settings.max_bounces}"
 
 
-@rule("reversals behind small mirrors")
-def _reversals(case: Case):
+@rule("edges and orders of mirrors")
+def _orders(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
-    return bool(case.coherent), "surfaces below their Fresnel zone" if case.coherent else "no coherent echoes"
+    return bool(case.coherent), "edges of surfaces below their Fresnel zone, the better of two orders" if case.coherent else "no coherent echoes"
 
 
 @rule("both orders of diffuse chains")

@@ -1,0 +1,131 @@
+// Ends of surfaces against where they were put, and fields beside edges against Fresnel's integrals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "echopath/base/constants.h"
+#include "echopath/trace/mirror_zone.h"
+#include "support/scenes.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kGap = 2e-4;          // m
+constexpr double kRounding = 1e-6;     // m: hits are known in single precision
+constexpr double kRational = 2e-3;     // of the auxiliary functions
+constexpr double kWavelength = 0.004;  // m
+constexpr double kReach = 10.0;        // m
+
+// Metal rectangles, looked at from above.
+class Plates {
+ public:
+  void add(const std::string& name, const Vec3& corner, const Vec3& a, const Vec3& b) {
+    testing::add_rectangle(scene_, name, corner, a, b, testing::share(Material::metal()));
+  }
+  void look_at(double x, double y) {
+    geometry_ = std::make_unique<EmbreeScene>(scene_, Pose(scene_, 0.0), Vec3::Zero());
+    ASSERT_EQ(geometry_->intersect(Vec3(x, y, 5), -Vec3::UnitZ(), hit_), EmbreeScene::Verdict::kHit);
+  }
+  SurfaceEnd end(const Vec3& along) { return find_surface_end(*geometry_, hit_, along, kReach, kGap, num_queries_); }
+  bool reaches(const Vec3& along, double distance) {
+    return surface_reaches(*geometry_, hit_, along, distance, kGap, num_queries_);
+  }
+  ZoneCover cover(double before, double behind) {
+    const MirrorView view{hit_, -Vec3::UnitZ(), before, behind};
+    return cover_of_zone(*geometry_, view, nullptr, kWavelength, num_queries_);
+  }
+
+ private:
+  Scene scene_;
+  std::unique_ptr<EmbreeScene> geometry_;
+  RayHit hit_;
+  int64_t num_queries_ = 0;
+};
+
+TEST(MirrorZone, APlateEndsAtItsEdges) {
+  Plates plates;
+  plates.add("plate", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.look_at(0.3, 0.7);
+  EXPECT_NEAR(plates.end(Vec3::UnitX()).distance, 0.7, kRounding);
+  EXPECT_NEAR(plates.end(-Vec3::UnitX()).distance, 1.3, kRounding);
+  EXPECT_NEAR(plates.end(-Vec3::UnitY()).distance, 2.7, kRounding);
+  EXPECT_FALSE(plates.end(Vec3::UnitX()).is_wall);
+  EXPECT_TRUE(plates.reaches(Vec3::UnitX(), 0.69));
+  EXPECT_FALSE(plates.reaches(Vec3::UnitX(), 0.71));
+}
+
+TEST(MirrorZone, PlatesThatAbutAreOneSurface) {
+  Plates plates;
+  const double places[] = {-1, -0.4, 0.5, 0.502, 2};  // one is a strip
+  for (int k = 0; k < 4; ++k) {
+    // Rims in common, but no corners; the last leaves a slit.
+    const double slit = k == 3 ? 0.5 * kGap : 0.0, low = -2 - 0.1 * k;
+    plates.add("part" + std::to_string(k), Vec3(places[k] + slit, low, 0), Vec3(places[k + 1] - places[k] - slit, 0, 0),
+               Vec3(0, 4, 0));
+  }
+  plates.look_at(0.3, 0.7);
+  EXPECT_NEAR(plates.end(Vec3::UnitX()).distance, 1.7, kRounding);
+  EXPECT_NEAR(plates.end(-Vec3::UnitX()).distance, 1.3, kRounding);
+  EXPECT_TRUE(plates.reaches(Vec3::UnitX(), 1.69));
+}
+
+TEST(MirrorZone, AStepEndsASurface) {
+  Plates plates;
+  plates.add("plate", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.add("below", Vec3(1, -2, -0.01), Vec3(5, 0, 0), Vec3(0, 4, 0));
+  plates.look_at(0, 0);
+  EXPECT_NEAR(plates.end(Vec3::UnitX()).distance, 1.0, kRounding);
+  EXPECT_FALSE(plates.reaches(Vec3::UnitX(), 1.5));
+}
+
+TEST(MirrorZone, TheInsideOfACornerIsNoEdgeAndTheOutsideIsOne) {
+  Plates plates;
+  plates.add("floor", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.add("wall", Vec3(1, -2, 0), Vec3(0, 4, 0), Vec3(0, 0, 3));
+  plates.add("side", Vec3(-1, -2, -3), Vec3(0, 4, 0), Vec3(0, 0, 3));
+  plates.look_at(0.3, 0);
+  EXPECT_TRUE(plates.end(Vec3::UnitX()).is_wall);
+  EXPECT_NEAR(plates.end(Vec3::UnitX()).distance, 0.7, kRounding);
+  EXPECT_FALSE(plates.end(-Vec3::UnitX()).is_wall);
+  EXPECT_NEAR(plates.end(-Vec3::UnitX()).distance, 1.3, kRounding);
+}
+
+TEST(MirrorZone, AGentleBendGoesOn) {
+  Plates plates;
+  plates.add("flat", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.add("bent", Vec3(1, -2, 0), Vec3(2, 0, -0.2), Vec3(0, 4, 0));
+  plates.look_at(0.3, 0);
+  EXPECT_TRUE(plates.reaches(Vec3::UnitX(), 2.0));
+}
+
+// Straight down at the middle of a square: both half zones are sqrt(wavelength / (1/before + 1/behind)).
+TEST(MirrorZone, CoverIsTheShareOfTheZone) {
+  const double before = 4.0, behind = 1.0, half = std::sqrt(kWavelength / (1 / before + 1 / behind));
+  for (const double part : {0.3, 0.8, 1.0, 1.3, 3.0}) {
+    Plates plates;
+    const double side = 2.0 * part * half;
+    plates.add("plate", Vec3(-0.5 * side, -0.5 * side, 0), Vec3(side, 0, 0), Vec3(0, side, 0));
+    plates.look_at(1e-4, 2e-4);
+    const double share = std::min(1.0, part);
+    EXPECT_NEAR(plates.cover(before, behind).share, share * share, 1e-5) << part;
+    EXPECT_NEAR(plates.cover(behind, before).share, share * share, 1e-5) << part;
+  }
+}
+
+// Born and Wolf, 8.7: sqrt(j) times the integral of exp(-j pi x^2) from -infinity to the edge; here by Simpson's rule from 0.
+TEST(MirrorZone, TheFieldBesideAnEdgeIsFresnelsIntegral) {
+  const std::complex<double> root_j(std::sqrt(0.5), std::sqrt(0.5));
+  for (const double within : {0.0, 0.1, 0.5, 1.0, 1.7, 4.0}) {
+    constexpr int kSteps = 4000;
+    std::complex<double> sum = 0.0;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double x = within * k / kSteps, weight = k == 0 || k == kSteps ? 1.0 : k % 2 ? 4.0 : 2.0;
+      sum += weight * std::polar(1.0, -kPi * x * x) * (within / kSteps / 3.0);
+    }
+    EXPECT_LT(std::abs(field_beside_edge(within) - (0.5 + root_j * sum)), kRational) << within;
+  }
+}
+
+}  // namespace
+}  // namespace echopath

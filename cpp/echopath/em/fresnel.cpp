@@ -23,16 +23,25 @@ std::complex<double> transmitted_cosine(std::complex<double> permittivity, doubl
   return root.imag() > 0 ? -root : root;
 }
 
+std::complex<double> te_of(std::complex<double> q, double cos_incidence) { return (cos_incidence - q) / (cos_incidence + q); }
+
+std::complex<double> tm_of(std::complex<double> q, std::complex<double> permittivity, double cos_incidence) {
+  return (permittivity * cos_incidence - q) / (permittivity * cos_incidence + q);
+}
+
 }  // namespace
 
 std::complex<double> fresnel_te(std::complex<double> permittivity, double cos_incidence) {
-  const std::complex<double> q = transmitted_cosine(permittivity, cos_incidence);
-  return (cos_incidence - q) / (cos_incidence + q);
+  return te_of(transmitted_cosine(permittivity, cos_incidence), cos_incidence);
 }
 
 std::complex<double> fresnel_tm(std::complex<double> permittivity, double cos_incidence) {
+  return tm_of(transmitted_cosine(permittivity, cos_incidence), permittivity, cos_incidence);
+}
+
+FresnelModes fresnel_modes(std::complex<double> permittivity, double cos_incidence) {
   const std::complex<double> q = transmitted_cosine(permittivity, cos_incidence);
-  return (permittivity * cos_incidence - q) / (permittivity * cos_incidence + q);
+  return {te_of(q, cos_incidence), tm_of(q, permittivity, cos_incidence)};
 }
 
 }  // namespace echopath

@@ -9,4 +9,10 @@ namespace echopath {
 std::complex<double> fresnel_te(std::complex<double> permittivity, double cos_incidence);  // E across the plane of incidence
 std::complex<double> fresnel_tm(std::complex<double> permittivity, double cos_incidence);  // E in the plane of incidence
 
+// Both at once.
+struct FresnelModes {
+  std::complex<double> te, tm;
+};
+FresnelModes fresnel_modes(std::complex<double> permittivity, double cos_incidence);
+
 }  // namespace echopath

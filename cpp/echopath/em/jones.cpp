@@ -2,14 +2,12 @@
 
 #include <cmath>
 
+#include "echopath/em/hit_modes.h"
 #include "echopath/em/surface_response.h"
+#include "echopath/em/transverse_formula.h"
 
 namespace echopath {
 namespace {
-
-FieldVector cross(const Vec3& a, const FieldVector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // a.b without conjugation.
 std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -21,22 +19,28 @@ Vec3 plane_normal(const Vec3& direction, const Vec3& other) {
   return sine > 1e-9 ? Vec3(across / sine) : direction.unitOrthogonal();
 }
 
-// An unturned wave and one that is mirrored at the axis, in quadrature: a unitary, symmetric matrix.
-FieldVector depolarized(const FieldVector& field, const Vec3& direction, const Vec3& out, const Depolarization& by) {
-  const Vec3 first = plane_normal(direction, out), second = direction.cross(first);
-  const Vec3 axis = std::cos(by.axis) * first + std::sin(by.axis) * second;
-  const FieldVector mirrored = 2.0 * dot(axis, field) * axis.cast<std::complex<double>>() - field;
-  const double turned = 2.0 * by.cross_share;
-  return std::sqrt(1.0 - turned) * field + std::complex<double>(0.0, std::sqrt(turned)) * mirrored;
+VectorOf<double> unpacked(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vec3 packed(const VectorOf<double>& v) { return {v.x, v.y, v.z}; }
+
+HitGeometryOfModes geometry_of(const Vec3& direction, const Vec3& normal, const Vec3& out) {
+  return hit_geometry(unpacked(direction), unpacked(normal), unpacked(out));
+}
+
+// What a hit makes of a field, across its way out.
+FieldVector through(const HitGeometryOfModes& hit, const HitMatrix& matrix, const FieldVector& incident) {
+  const std::complex<double> te = dot(packed(hit.modes.te), incident), tm = dot(packed(hit.modes.tm), incident);
+  const auto along = [&](const ComplexOf<double>& of_te, const ComplexOf<double>& of_tm) {
+    return std::complex<double>(of_te.re, of_te.im) * te + std::complex<double>(of_tm.re, of_tm.im) * tm;
+  };
+  return along(matrix.h_te, matrix.h_tm) * packed(hit.across.horizontal).cast<std::complex<double>>() +
+         along(matrix.v_te, matrix.v_tm) * packed(hit.across.vertical).cast<std::complex<double>>();
 }
 
 }  // namespace
 
 TransverseBasis transverse_basis(const Vec3& direction) {
-  Vec3 horizontal = Vec3::UnitZ().cross(direction);
-  const double length = horizontal.norm();
-  horizontal = length > 1e-9 ? Vec3(horizontal / length) : Vec3::UnitX();
-  return {horizontal, direction.cross(horizontal)};
+  const BasisAcross basis = basis_across(unpacked(direction));
+  return {packed(basis.horizontal), packed(basis.vertical)};
 }
 
 FieldPair launched_fields(const Vec3& direction) {
@@ -60,17 +64,12 @@ JonesMatrix components(const FieldPair& fields, const FieldPair& axes) {
 }
 
 Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
-  const TransverseBasis basis = transverse_basis(direction);
-  const Eigen::Vector2d components(polarization.dot(basis.horizontal), polarization.dot(basis.vertical));
-  const double length = components.norm();
-  return length > 1e-9 ? Eigen::Vector2d(components / length) : Eigen::Vector2d::Zero();
+  const TransverseOf<double> components = transverse_of<ScalarMath>(unpacked(polarization), unpacked(direction));
+  return {components.horizontal, components.vertical};
 }
 
 ModeCoefficients mode_coefficients(const Material& material, double frequency, double cos_incidence) {
-  if (material.conductor) return {-1.0, 1.0};
-  if (material.reflectivity) return {-std::sqrt(*material.reflectivity), std::sqrt(*material.reflectivity)};
-  return {respond(material, frequency, cos_incidence, PolarizationMode::kTe).gamma,
-          respond(material, frequency, cos_incidence, PolarizationMode::kTm).gamma};
+  return SurfaceModel(material, frequency).modes(cos_incidence);
 }
 
 FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal,
@@ -84,19 +83,16 @@ FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, 
 
 FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
                            const ModeCoefficients& coefficients) {
-  const FieldVector reflected = reflected_field(incident, direction, normal, coefficients);
-  const Vec3 mirrored = direction - 2.0 * direction.dot(normal) * normal;
-  const FieldVector electric = cross(normal, FieldVector(incident + reflected));
-  const FieldVector magnetic = cross(normal, FieldVector(cross(direction, incident) + cross(mirrored, reflected)));
-  return -0.5 * cross(out, FieldVector(electric - cross(out, magnetic)));
+  const HitGeometryOfModes hit = geometry_of(direction, normal, out);
+  const ComplexOf<double> te{coefficients.te.real(), coefficients.te.imag()}, tm{coefficients.tm.real(), coefficients.tm.imag()};
+  return through(hit, radiated_modes(hit, te, tm), incident);
 }
 
 FieldVector scattered_field(const FieldVector& incident, const Vec3& direction, const Vec3& out, double reflection,
                             const Depolarization& depolarization) {
-  FieldVector field = reflection * incident;
-  if (depolarization.cross_share > 0) field = depolarized(field, direction, out, depolarization);
-  const Vec3 facet = (out - direction).normalized();  // finite: `out` is on the lit side, `direction` comes from there
-  return 2.0 * dot(facet, field) * facet.cast<std::complex<double>>() - field;
+  const HitGeometryOfModes hit = geometry_of(direction, -direction, out);  // both modes are scattered alike: any axes serve
+  const AxisInModes axis = scattering_axis(hit, std::cos(depolarization.axis), std::sin(depolarization.axis));
+  return through(hit, scattered_modes(hit, reflection, mixing_of(depolarization.cross_share), axis), incident);
 }
 
 }  // namespace echopath

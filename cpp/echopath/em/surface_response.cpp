@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/em/fresnel.h"
+#include "echopath/em/jones.h"
 
 namespace echopath {
 namespace {
@@ -51,6 +52,13 @@ SurfaceResponse SurfaceModel::respond_at(double cos_incidence, PolarizationMode 
     response.diffuse = other_share(response.coherent);
   }
   return response;
+}
+
+// A conductor's TM coefficient is +1 there.
+ModeCoefficients SurfaceModel::modes(double cos_incidence) const {
+  if (!is_dielectric_) return {constant_.gamma, -constant_.gamma};
+  const FresnelModes found = fresnel_modes(permittivity_, cos_incidence);
+  return {found.te, found.tm};
 }
 
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode) {

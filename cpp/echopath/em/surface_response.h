@@ -31,6 +31,8 @@ double ament_factor(double wavenumber, double roughness_height, double cos_incid
 // reflectivity rho with -sqrt(rho).
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode);
 
+struct ModeCoefficients;  // em/jones.h
+
 // A material at one frequency, with all that does not depend on the wave worked out once; `material` must outlive it.
 class SurfaceModel {
  public:
@@ -45,6 +47,8 @@ class SurfaceModel {
   SurfaceResponse respond(double cos_incidence, PolarizationMode mode) const {
     return is_constant() ? constant_ : respond_at(cos_incidence, mode);
   }
+  // Of both modes, for field vectors.
+  ModeCoefficients modes(double cos_incidence) const;
 
  private:
   SurfaceResponse respond_at(double cos_incidence, PolarizationMode mode) const;

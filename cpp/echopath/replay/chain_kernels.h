@@ -62,11 +62,30 @@ struct CoherentPath {
   double root_area;                 // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
 };
 
+// The polarisation of an antenna across a leg, as it departs: horizontal and vertical components at the antenna. Of what
+// arrives over the same leg the horizontal one is the opposite.
+struct ComponentsToFind {
+  enum AxisRow { kAxes, kNumAxisRows = 9 };          // of the world as they look over the mirrors of the image, one by one; unit
+  enum PolarizationRow { kNumPolarizationRows = 3 };  // of the antenna, in the world
+  enum Row { kHorizontal, kVertical, kNumRows };
+  const double *image, *axes, *polarization, *point;
+  double* out;
+};
+
+// What the polarisations of both ends make of a path that is combined.
+struct PathToPolarize {
+  const double *start, *end;  // ComponentsToFind::Row
+  double re[4], im[4];        // JonesMatrix
+  double* out;                // PathToCombine::Row
+};
+
 struct ChainKernels {
   void (*pose)(const PointToPose& point, size_t stride);
   void (*measure)(const LegToMeasure& leg, size_t stride);
   void (*combine)(const DiffusePath& path, size_t stride);
   void (*reflect)(const CoherentPath& path, size_t stride);
+  void (*find_components)(const ComponentsToFind& leg, size_t stride);
+  void (*polarize)(const PathToPolarize& path, size_t stride);
 };
 
 // Those of instruction_set() for rows of that many nodes.

@@ -2,6 +2,7 @@
 // ECHOPATH_LANES set (no include guard).
 #include "echopath/base/phasor.h"
 #include "echopath/base/vector_of.h"
+#include "echopath/em/transverse_formula.h"
 #include "echopath/replay/chain_formula.h"
 #include "echopath/replay/chain_kernels.h"
 #include "echopath/signal/vector.h"
@@ -206,10 +207,56 @@ void reflect(const CoherentPath& coherent, size_t stride) {
   }
 }
 
+// Of a path: (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v), the products of its ends' components (JonesMatrix).
+template <class Real>
+struct PairOfPolarizations {
+  Real product[4];
+
+  // Components of both ends as they depart: what arrives has the opposite horizontal one.
+  ECHOPATH_INLINE PairOfPolarizations(const TransverseOf<Real>& start, const TransverseOf<Real>& end)
+      : product{-end.horizontal * start.horizontal, -end.horizontal * start.vertical, end.vertical * start.horizontal,
+                end.vertical * start.vertical} {}
+  template <class Entry>
+  ECHOPATH_INLINE Real through(const Entry* matrix) const {
+    return (product[0] * matrix[0] + product[1] * matrix[1]) + (product[2] * matrix[2] + product[3] * matrix[3]);
+  }
+};
+
+template <class Math>
+void find_components(const ComponentsToFind& leg, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto line = at.vector(leg.point, PointToPose::kPosition) - at.vector(leg.image, LegToMeasure::kImagePosition);
+    const auto along = [&](int axis) { return dot(at.vector(leg.axes, ComponentsToFind::kAxes + 3 * axis), line); };
+    const VectorOf<typename Math::Real> at_antenna{along(0), along(1), along(2)};
+    const auto found = transverse_of<Math>(at.vector(leg.polarization, 0), at_antenna);
+    at.set(leg.out, ComponentsToFind::kHorizontal, found.horizontal);
+    at.set(leg.out, ComponentsToFind::kVertical, found.vertical);
+  }
+}
+
+template <class Math>
+void polarize(const PathToPolarize& path, size_t stride) {
+  using Real = typename Math::Real;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto components = [&](const double* rows) {
+      return TransverseOf<Real>{at.value(rows, ComponentsToFind::kHorizontal), at.value(rows, ComponentsToFind::kVertical)};
+    };
+    const PairOfPolarizations<Real> pairs(components(path.start), components(path.end));
+    const Real factor_re = pairs.through(path.re), factor_im = pairs.through(path.im);
+    const Real re = at.value(path.out, PathToCombine::kRe), im = at.value(path.out, PathToCombine::kIm);
+    at.set(path.out, PathToCombine::kRe, re * factor_re - im * factor_im);
+    at.set(path.out, PathToCombine::kIm, re * factor_im + im * factor_re);
+  }
+}
+
 }  // namespace
 
 extern const ChainKernels kKernels, kKernelsOfOne;
-const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, reflect<LaneMath>};
-const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, reflect<OneMath>};
+const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, reflect<LaneMath>,
+                               find_components<LaneMath>, polarize<LaneMath>};
+const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, reflect<OneMath>,
+                                    find_components<OneMath>, polarize<OneMath>};
 
 }  // namespace echopath::ECHOPATH_KERNELS

@@ -50,7 +50,7 @@ void ChainPlanner::begin(const Paths& paths, const Localiser& localise, Specular
   paths_ = &paths;
   localise_ = &localise;
   slides_ = specular != SpecularPoints::kMaterial;
-  with_direct_ = with_direct && paths.jones.empty();
+  with_direct_ = with_direct;
 }
 
 const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
@@ -118,7 +118,6 @@ bool ChainPlanner::add_direct(size_t place, int64_t path) {
 
 bool ChainPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  if (!paths_->jones.empty()) return false;
   const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], (paths_->flags[p] & kReversedPath) != 0};
   const std::optional<Ends> ends = ends_of(hits);
   if (!ends || ends->first < 0) return false;

@@ -67,8 +67,8 @@ class ChainPlanner {
   // For blocks of this record from now on. All must outlive its use.
   // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
   void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct);
-  // For the paths of these indices; valid until the next call. Paths stand among `others` that are polarised, are made of mirrors
-  // alone, have sliding hits that move, or a launch cell on a mesh that may stretch.
+  // For the paths of these indices; valid until the next call. Paths stand among `others` that are made of mirrors alone, have
+  // sliding hits that move, or a launch cell on a mesh that may stretch.
   const ChainPlan& operator()(std::span<const int64_t> indices);
 
  private:

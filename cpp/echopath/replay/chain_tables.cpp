@@ -189,6 +189,43 @@ void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const Ant
   }
 }
 
+// Axes of the world for the antennas themselves, and what each mirror makes of them.
+void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors) {
+  for (size_t image = 0; image < plan.images.size(); ++image) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
+      for (size_t node = 0; node < axes.num_nodes(); ++node) {
+        Vec3 seen = Vec3::Unit(axis);
+        if (image > 0) {
+          const Vec3 normal = load(mirrors, plan.images[image].mirror, 0, node);
+          seen = load(axes, plan.images[image].parent, row, node);
+          seen -= 2.0 * normal.dot(seen) * normal;
+        }
+        store(seen, axes, image, row, node);
+      }
+    }
+    pad(axes, image, ComponentsToFind::kNumAxisRows);
+  }
+}
+
+void LegPolarizations::find(const ChainPlan& plan, const ChainTables& tables, const LevelView& level) {
+  const size_t num_nodes = level.instants.size(), stride = tables.legs.stride;
+  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, num_nodes);
+  find_axes(plan, tables.mirrors);
+  rows.resize(plan.legs.size() * stride, ComponentsToFind::kNumRows, num_nodes);
+  const ChainKernels& kernels = chain_kernels(rows.stride());
+  for (size_t id = 0; id < plan.legs.size(); ++id) {
+    const ChainPlan::Leg& leg = plan.legs[id];
+    const AntennaImages& images = tables.images[leg.of_receivers];
+    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
+      kernels.find_components({images.rows.row(leg.image * images.num_antennas + antenna, 0), axes.row(leg.image, 0),
+                               level.poses.polarizations[leg.of_receivers].row(antenna, 0), tables.points.rows.row(leg.point, 0),
+                               rows.row(id * stride + antenna, 0)},
+                              rows.stride());
+    }
+  }
+}
+
 LocalPath path_of(const ChainPlan::Inner& inner) {
   LocalPath path;
   path.count = static_cast<int>(inner.end - inner.begin);
@@ -235,11 +272,12 @@ void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const L
   for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
   legs.find(plan, points, images[false], images[true]);
   inner.find(plan, points);
+  if (needs_polarizations(localise.paths(), level)) polarizations.find(plan, *this, level);
 }
 
 size_t ChainTables::num_bytes() const {
   return points.rows.num_bytes() + mirrors.num_bytes() + images[0].rows.num_bytes() + images[1].rows.num_bytes() +
-         legs.rows.num_bytes() + inner.rows.num_bytes();
+         legs.rows.num_bytes() + inner.rows.num_bytes() + polarizations.axes.num_bytes() + polarizations.rows.num_bytes();
 }
 
 }  // namespace echopath

@@ -49,6 +49,17 @@ struct AntennaImages {
   void find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers);
 };
 
+// Polarisations across the legs, where polarised paths ask for them.
+struct LegPolarizations {
+  NodeRows axes;  // [image], ComponentsToFind::AxisRow
+  NodeRows rows;  // of leg * stride + antenna as in ChainLegs, ComponentsToFind::Row
+
+  void find(const ChainPlan& plan, const struct ChainTables& tables, const LevelView& level);
+
+ private:
+  void find_axes(const ChainPlan& plan, const NodeRows& mirrors);
+};
+
 // All legs of a block, to each antenna of their end.
 struct ChainLegs {
   size_t stride = 0;  // antennas of the end that has more of them
@@ -77,8 +88,13 @@ struct ChainTables {
   AntennaImages images[2];  // of transmitters, of receivers
   ChainLegs legs;
   ChainInner inner;
+  LegPolarizations polarizations;
 
   void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+  // Polarisations differ from path to path or from node to node (NodePoses::is_upright).
+  static bool needs_polarizations(const Paths& paths, const LevelView& level) {
+    return !paths.jones.empty() && !level.poses.is_upright;
+  }
   size_t num_bytes() const;  // of what is kept for the next block
 };
 

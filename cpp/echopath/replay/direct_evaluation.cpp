@@ -50,9 +50,11 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
   out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
   const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
   legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
+  const bool is_polarized = ChainTables::needs_polarizations(localise.paths(), level);
+  if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
            is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
-           radio.filter(), legs_.data(), out_.data(), turned_};
+            radio.filter(), is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
   const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
@@ -62,6 +64,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
     if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
       set_mesh(mesh_id, localise);
       see_antennas(mesh_id, localise, level);
+      if (is_polarized) see_axes(mesh_id, localise, level);
     }
     set_slots(points, localise, radio);
     kernels.prepare(trace_, slots_);
@@ -94,8 +97,9 @@ void DirectEvaluation::set_antennas(const LevelView& level) {
     seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, level.instants.size());
     antennas_[of_receivers].clear();
     for (const PosedAntenna& one : posed) {
-      const double* rows = seen_[of_receivers].row(antennas_[of_receivers].size(), 0);
-      antennas_[of_receivers].push_back({rows, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
+      const size_t antenna = antennas_[of_receivers].size();
+      const double *rows = seen_[of_receivers].row(antenna, 0), *own = level.poses.polarizations[of_receivers].row(antenna, 0);
+      antennas_[of_receivers].push_back({rows, own, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
     }
   }
 }
@@ -107,6 +111,9 @@ bool DirectEvaluation::is_monostatic(const LevelView& level) const {
     if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak) return false;
     const double* rows = transmitters.row(i, 0);
     if (!std::equal(rows, rows + LegToMeasure::kNumImageRows * transmitters.stride(), receivers.row(i, 0))) return false;
+    const NodeRows* own = level.poses.polarizations;
+    const size_t count = ComponentsToFind::kNumPolarizationRows * own[0].stride();
+    if (!std::equal(own[0].row(i, 0), own[0].row(i, 0) + count, own[1].row(i, 0))) return false;
   }
   return true;
 }
@@ -125,6 +132,20 @@ void DirectEvaluation::see_antennas(uint32_t mesh_id, const Localiser& localise,
   }
 }
 
+// The rotation of the mesh since the trace undone, as in `see_antennas`.
+void DirectEvaluation::see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
+  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
+  for (size_t node = 0; node < axes_.num_nodes(); ++node) {
+    Mat3 world_from_seen = Mat3::Identity();
+    if (!is_still) world_from_seen = level.instants[node].rotation(mesh_id) * localise.mesh_from_trace(mesh_id);
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
+      store(world_from_seen.row(axis), axes_, 0, row, node);
+    }
+  }
+  pad(axes_, 0, ComponentsToFind::kNumAxisRows);
+}
+
 void DirectEvaluation::set_mesh(uint32_t mesh_id, const Localiser& localise) {
   const Instant& trace = localise.trace_instant();
   copy_matrix(trace.rotation(mesh_id), trace_.linear);
@@ -137,21 +158,38 @@ void DirectEvaluation::set_mesh(uint32_t mesh_id, const Localiser& localise) {
 void DirectEvaluation::set_slots(Points points, const Localiser& localise, const RadioConstants& radio) {
   const Paths& paths = localise.paths();
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
-  const double scale[] = {std::sqrt(radio.transmit_power) / (4.0 * kPi), diffuse_scale(radio)};
   work_.has_coherent = false;
   for (size_t slot = 0; slot < kSlots; ++slot) {
     const ChainPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
     set_triangle(*direct.hit, mesh, slot, slots_);
-    for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
-      const bool is_there = direct.path[kind] != ChainPlan::Direct::kNoPath;
-      const std::complex<double> weight = is_there ? paths.weight[static_cast<size_t>(direct.path[kind])] : 0.0f;
-      slots_.weight[kind][0][slot] = scale[kind] * weight.real();
-      slots_.weight[kind][1][slot] = scale[kind] * weight.imag();
-    }
+    set_weights(direct, slot, paths, radio);
     const int64_t coherent = direct.path[DirectSlots::kCoherent];
     const bool is_coherent = coherent != ChainPlan::Direct::kNoPath;
     work_.has_coherent |= is_coherent;
     slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
+  }
+}
+
+// Polarised paths between upright antennas have no more to them than one entry of their matrix.
+void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
+  const double scale[] = {std::sqrt(radio.transmit_power) / (4.0 * kPi), diffuse_scale(radio)};
+  for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+    const bool is_there = point.path[kind] != ChainPlan::Direct::kNoPath;
+    const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
+    const std::complex<double> weight = is_there ? scale[kind] * std::complex<double>(paths.weight[path]) : 0.0;
+    const auto set = [&](DirectSlots::Row* rows, std::complex<double> value) {
+      rows[0][slot] = value.real();
+      rows[1][slot] = value.imag();
+    };
+    if (paths.jones.empty()) {
+      set(slots_.weight[kind], weight);
+    } else if (!work_.axes) {
+      set(slots_.weight[kind], weight * std::complex<double>(paths.jones[path][3]));
+    } else {
+      for (size_t entry = 0; entry < 4; ++entry) {
+        set(slots_.matrix[kind][entry], weight * std::complex<double>(paths.jones[path][entry]));
+      }
+    }
   }
 }
 

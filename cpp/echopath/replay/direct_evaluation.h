@@ -25,8 +25,10 @@ class DirectEvaluation {
   void set_antennas(const LevelView& level);
   bool is_monostatic(const LevelView& level) const;
   void see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
+  void see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
   void set_mesh(uint32_t mesh_id, const Localiser& localise);
   void set_slots(Points points, const Localiser& localise, const RadioConstants& radio);
+  void set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
@@ -35,6 +37,7 @@ class DirectEvaluation {
   std::vector<size_t> first_of_mesh_;
   std::vector<DirectAntenna> antennas_[2];        // of transmitters, of receivers
   NodeRows seen_[2];                              // [antenna] of these, as they are seen from the mesh in hand
+  NodeRows axes_;                                 // of the world, likewise, where polarisations ask for them
   DirectTrace trace_;
   DirectSlots slots_;
   DirectToEvaluate work_;

@@ -21,6 +21,7 @@ struct DirectSlots {
   alignas(64) Row along_edge[2];
   alignas(64) Row density;
   alignas(64) Row weight[kNumKinds][2];
+  alignas(64) Row matrix[kNumKinds][4][2];  // polarised: the same times the path's JonesMatrix
 
   // Found, at the trace: m; unit; tangents of the launch cell and their products, m and m^2; 1 or 0.
   alignas(64) Row point[3];
@@ -46,13 +47,14 @@ struct AntennaToSee {
 
 struct DirectAntenna {
   const double* rows;         // AntennaToSee::out, rows of `stride` nodes
+  const double* polarization;  // ComponentsToFind::PolarizationRow, likewise
   int exponent;               // LegToMeasure::exponent, a whole one
   double root_peak;
 };
 
 struct DirectToEvaluate {
   static constexpr size_t kNodesTogether = 8;
-  enum LegRow { kLegLength, kInverse, kLegFactor, kGain, kCosine, kAlong, kNumLegRows = 7 };
+  enum LegRow { kLegLength, kInverse, kLegFactor, kGain, kCosine, kAlong, kHorizontal = 7, kVertical, kNumLegRows };
   enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
 
   const DirectSlots* slots;
@@ -63,6 +65,7 @@ struct DirectToEvaluate {
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
   size_t num_nodes, stride;
   CellFilter filter;
+  const double* axes;         // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
   double* legs;               // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
   double* out;                // [channel, node, kNumRows, slot]
   double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end in between

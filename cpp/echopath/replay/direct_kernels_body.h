@@ -134,6 +134,20 @@ ECHOPATH_INLINE Vec root_gain_of(const DirectAntenna& antenna, Vec cosine) {
   return cosine > 0.0 ? power : Vec{};
 }
 
+// ComponentsToFind of a leg along `line`.
+ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+                                                  const VectorOf<Vec>& line) {
+  const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
+  const auto along = [&](int axis) {
+    const int row = ComponentsToFind::kAxes + 3 * axis;
+    return value(paths.axes, row) * line.x + value(paths.axes, row + 1) * line.y + value(paths.axes, row + 2) * line.z;
+  };
+  const double* own = antenna.polarization;
+  return transverse_of<LaneMath>(VectorOf<Vec>{all(value(own, 0)), all(value(own, 1)), all(value(own, 2))},
+                                 VectorOf<Vec>{along(0), along(1), along(2)});
+}
+
+template <bool kIsPolarized>
 ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
                                  const PointLanes& at, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
@@ -154,6 +168,11 @@ ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAnte
   set(DirectToEvaluate::kLegFactor, distance.root < kNearAntenna ? Vec{} : factor);  // diffuse_leg
   set(DirectToEvaluate::kGain, gain);
   set(DirectToEvaluate::kCosine, cosine);
+  if constexpr (kIsPolarized) {
+    const TransverseOf<Vec> found = transverse_over(paths, antenna, node, line);
+    set(DirectToEvaluate::kHorizontal, found.horizontal);
+    set(DirectToEvaluate::kVertical, found.vertical);
+  }
   if (!paths.has_coherent) return;
   for (int a = 0; a < 2; ++a) set(DirectToEvaluate::kAlong + a, inverse * dot(at.tangent[a], line));
 }
@@ -197,10 +216,40 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const 
   return {is_lit ? size * filter.re : Vec{}, is_lit ? size * filter.im : Vec{}};
 }
 
+// Weights of both kinds, with what the polarisations of both ends make of them.
+template <bool kIsPolarized>
+struct WeightLanes;
+template <>
+struct WeightLanes<false> {
+  const DirectSlots& slots;
+  size_t slot;
+
+  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes&, const LegLanes&, size_t first) : slots(from), slot(first) {}
+  ECHOPATH_INLINE Vec operator()(int kind, int part) const { return load(slots.weight[kind][part] + slot); }
+};
+template <>
+struct WeightLanes<true> {
+  const DirectSlots& slots;
+  size_t slot;
+  PairOfPolarizations<Vec> pairs;
+
+  static ECHOPATH_INLINE TransverseOf<Vec> components(const LegLanes& leg) {
+    return {leg(DirectToEvaluate::kHorizontal), leg(DirectToEvaluate::kVertical)};
+  }
+  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes& in, const LegLanes& out, size_t first)
+      : slots(from), slot(first), pairs(components(in), components(out)) {}
+  ECHOPATH_INLINE Vec operator()(int kind, int part) const {
+    const auto entry = [&](int i) { return load(slots.matrix[kind][i][part] + slot); };
+    const Vec matrix[] = {entry(0), entry(1), entry(2), entry(3)};
+    return pairs.through(matrix);
+  }
+};
+
+template <bool kIsPolarized>
 ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
   using D = DirectToEvaluate;
   const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * DirectSlots::kSlots + slot, x); };
-  const auto weight = [&](int kind, int part) { return load(paths.slots->weight[kind][part] + slot); };
+  const WeightLanes<kIsPolarized> weight(*paths.slots, in, out, slot);
   set(D::kLength, in(D::kLegLength) + out(D::kLegLength));
   const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
   for (int part = 0; part < 2; ++part) {
@@ -230,15 +279,17 @@ ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_
   store(paths.turned + slot, turned ? all(1.0) : Vec{});
 }
 
+template <bool kIsPolarized>
 ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, size_t slot) {
   const PointLanes at = points_at(*paths.slots, slot);
   for (int end = 0; end < (paths.is_monostatic ? 1 : 2); ++end) {
     for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
-      measure_leg(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
+      measure_leg<kIsPolarized>(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
     }
   }
 }
 
+template <bool kIsPolarized>
 ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, size_t slot) {
   constexpr size_t kOfNode = DirectToEvaluate::kNumRows * DirectSlots::kSlots;
   const size_t num_receivers = paths.num_antennas[1];
@@ -246,24 +297,30 @@ ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, si
     const size_t channel = paths.first_channel + i;
     const LegLanes in{leg_of(paths, node, 0, channel / num_receivers, slot)};
     const LegLanes out{leg_of(paths, node, 1, channel % num_receivers, slot)};
-    combine_legs(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
+    combine_legs<kIsPolarized>(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
   }
 }
 
 // First the legs of some nodes, then what they make: the processor has several nodes of either in hand while each waits for
 // its own results.
-void evaluate(const DirectToEvaluate& paths) {
+template <bool kIsPolarized>
+void evaluate_all(const DirectToEvaluate& paths) {
   constexpr size_t kTogether = DirectToEvaluate::kNodesTogether;
   Mask sides[2] = {};
   for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
     for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
       const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
-      for (size_t node = first; node < end; ++node) measure_legs(paths, node, slot);
+      for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot);
       if (first == 0) see_sides(paths, 0, slot, sides);
       if (end == paths.num_nodes) see_sides(paths, end - 1, slot, sides);
-      for (size_t node = first; node < end; ++node) combine_node(paths, node, slot);
+      for (size_t node = first; node < end; ++node) combine_node<kIsPolarized>(paths, node, slot);
     }
   }
+}
+
+void evaluate(const DirectToEvaluate& paths) {
+  if (paths.axes) evaluate_all<true>(paths);
+  else evaluate_all<false>(paths);
 }
 
 }  // namespace

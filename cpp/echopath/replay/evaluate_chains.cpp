@@ -17,6 +17,8 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
                                  const ChannelSpan& channels) {
   if (plan.chains.empty()) return;
   num_receivers_ = level.instants.front().receivers.size();
+  paths_ = &localise.paths();
+  polarizes_ = ChainTables::needs_polarizations(*paths_, level);
   tables_.find(plan, localise, level);
   values_.resize(kTogether, PathToCombine::kNumRows, level.instants.size());
   kernels_ = &chain_kernels(values_.stride());
@@ -33,6 +35,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
         const Ends ends = ends_of(chains[slot], channels.first + channel);
         if (chains[slot].is_coherent) evaluate_coherent(plan, chains[slot], ends, of_coherent, slot);
         else evaluate_diffuse(chains[slot], ends, of_diffuse, slot);
+        if (polarizes_) polarize(chains[slot], ends, slot);
       }
       put(chains, channels.nodes[channel]);
     }
@@ -44,11 +47,18 @@ ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, si
   return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
 }
 
+// Between upright antennas one entry of a matrix is all that counts.
+std::complex<double> ChainEvaluation::weight_of(const ChainPlan::Chain& chain) const {
+  if (paths_->jones.empty() || polarizes_) return chain.weight;
+  return chain.weight * std::complex<double>(paths_->jones[static_cast<size_t>(chain.path)][3]);
+}
+
 PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
   const ChainLegs& legs = tables_.legs;
   const double* inner = chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
+  const std::complex<double> weight = weight_of(chain);
   return {legs.rows.row(chain.start * legs.stride + ends.start, 0), legs.rows.row(chain.end * legs.stride + ends.end, 0), inner,
-          scale * chain.weight.real(), scale * chain.weight.imag(), values_.row(slot, 0)};
+          scale * weight.real(), scale * weight.imag(), values_.row(slot, 0)};
 }
 
 const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const {
@@ -80,6 +90,19 @@ void ChainEvaluation::evaluate_diffuse(const ChainPlan::Chain& chain, const Ends
   const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
   const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
   kernels_->combine({path_of(chain, ends, scale, slot), begins_specular, is_single}, values_.stride());
+}
+
+void ChainEvaluation::polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot) {
+  const size_t stride = tables_.legs.stride;
+  const NodeRows& rows = tables_.polarizations.rows;
+  PathToPolarize path{rows.row(chain.start * stride + ends.start, 0), rows.row(chain.end * stride + ends.end, 0), {}, {},
+                      values_.row(slot, 0)};
+  const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(chain.path)];
+  for (size_t entry = 0; entry < matrix.size(); ++entry) {
+    path.re[entry] = matrix[entry].real();
+    path.im[entry] = matrix[entry].imag();
+  }
+  kernels_->polarize(path, values_.stride());
 }
 
 bool ChainEvaluation::turns(uint32_t leg) const {

@@ -57,6 +57,8 @@ class ChainEvaluation {
   void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void put(Chains chains, const ChannelNodes& to) const;
+  std::complex<double> weight_of(const ChainPlan::Chain& chain) const;
+  void polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
   bool turns(uint32_t leg) const;
 
   ChainTables tables_;
@@ -64,6 +66,8 @@ class ChainEvaluation {
   std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
   size_t num_receivers_ = 0;
   const ChainKernels* kernels_ = nullptr;
+  const Paths* paths_ = nullptr;
+  bool polarizes_ = false;  // node by node
 };
 
 // An antenna turns the phase of what it sends or receives, by direction.

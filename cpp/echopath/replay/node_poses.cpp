@@ -30,12 +30,29 @@ void store_antennas(std::span<const Instant> instants, bool of_receivers, NodeRo
   }
 }
 
+void store_polarizations(std::span<const Instant> instants, bool of_receivers, NodePoses& poses) {
+  NodeRows& rows = poses.polarizations[of_receivers];
+  const size_t num_antennas = antennas_of(instants.front(), of_receivers).size();
+  rows.resize(num_antennas, ComponentsToFind::kNumPolarizationRows, instants.size());
+  for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
+    for (size_t node = 0; node < instants.size(); ++node) {
+      const Vec3& polarization = antennas_of(instants[node], of_receivers)[antenna].polarization;
+      store(polarization, rows, antenna, 0, node);
+      poses.is_upright = poses.is_upright && polarization == Vec3::UnitZ();
+    }
+    pad(rows, antenna, ComponentsToFind::kNumPolarizationRows);
+  }
+}
+
 }  // namespace
 
 NodePoses node_poses(std::span<const Instant> instants, uint32_t num_meshes) {
   NodePoses poses;
   store_meshes(instants, num_meshes, poses.meshes);
-  for (const bool of_receivers : {false, true}) store_antennas(instants, of_receivers, poses.antennas[of_receivers]);
+  for (const bool of_receivers : {false, true}) {
+    store_antennas(instants, of_receivers, poses.antennas[of_receivers]);
+    store_polarizations(instants, of_receivers, poses);
+  }
   return poses;
 }
 

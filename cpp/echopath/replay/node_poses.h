@@ -11,6 +11,8 @@ namespace echopath {
 struct NodePoses {
   NodeRows meshes;        // of mesh IDs, PointToPose::MeshRow
   NodeRows antennas[2];   // of transmitters, of receivers; LegToMeasure::ImageRow
+  NodeRows polarizations[2];  // likewise, in the world: ComponentsToFind::PolarizationRow
+  bool is_upright = true;     // every polarisation points along z at every node: across any direction it is the vertical one
 };
 NodePoses node_poses(std::span<const Instant> instants, uint32_t num_meshes);
 

@@ -109,8 +109,9 @@ class ImageMethod {
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vec3 normal = direction.dot(mirror(k).normal) < 0 ? mirror(k).normal : Vec3(-mirror(k).normal);
       const double cos_incidence = -direction.dot(normal);
-      const ModeCoefficients modes = mode_coefficients(*mirror(k).material, settings_.frequency, cos_incidence);
-      const double coherent = respond(*mirror(k).material, settings_.frequency, cos_incidence, PolarizationMode::kTe).coherent;
+      const SurfaceModel model(*mirror(k).material, settings_.frequency);
+      const ModeCoefficients modes = model.modes(cos_incidence);
+      const double coherent = model.respond(cos_incidence, PolarizationMode::kTe).coherent;
       for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
       direction = mirror(k).reflect(direction);
     }

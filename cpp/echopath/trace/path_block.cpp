@@ -60,6 +60,7 @@ void PathBlock::clear() {
   rows.clear();
   curved_cell.clear();
   jones.clear();
+  fan_jones.clear();
   fans.clear();
   fan_legs.clear();
   fan_hits.clear();
@@ -96,14 +97,20 @@ void PathBlock::write(PathRows to, Paths& paths) const {
   to.skip_hits(hits.size());
   std::vector<int64_t> places;
   const FanLeg* legs = fan_legs.data();
+  const JonesMatrix* of_pairs = fan_jones.empty() ? nullptr : fan_jones.data();
   size_t done = 0;
   const auto write_until = [&](size_t end) {
     write_own(std::exchange(done, end), end, first_hit, static_cast<size_t>(to.offsets - first_row), to, paths);
   };
   for (const PathFan& fan : fans) {
     write_until(fan.num_before);
+    const int64_t* const before = to.offsets;
     FanPairs(fan, legs, fan_hits.data()).write(to, places);
     legs += fan.num_in + fan.num_out;
+    if (!of_pairs) continue;
+    const auto count = to.offsets - before;
+    std::copy_n(of_pairs, count, paths.jones.data() + (before - first_row));
+    of_pairs += count;
   }
   write_until(rows.size());
 }

@@ -16,6 +16,7 @@ class PathBlock {
   uint32_t current_half = 0;         // likewise: 0 or kSecondHalf
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
   std::vector<JonesMatrix> jones;  // likewise
+  std::vector<JonesMatrix> fan_jones;  // of all paths of all fans, where polarised
   TraceStatistics statistics;
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
@@ -37,6 +38,8 @@ class PathBlock {
   void add_leg_out(std::complex<double> factor) { ++fans.back().num_out; add_leg(factor); }
   // The next hit of the leg added last, in order of travel.
   void add_leg_hit(const Hit& hit);
+  // The matrix of the next pair of a polarised fan, by way in and then by way out.
+  void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();
   // Give the last path added its matrix (Paths::jones) and a launch cell of its own (Paths::curved_cell).
   void set_jones(const JonesMatrix& matrix);

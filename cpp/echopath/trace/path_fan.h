@@ -21,6 +21,9 @@ struct PathFan {
   uint8_t batch = 0;
   uint32_t flags = 0;
   uint32_t num_in = 0, num_out = 0, max_bounces = 0;
+
+  // Of a pair of legs, by the hits of their mirrors.
+  bool fits(uint32_t hits_in, uint32_t hits_out) const { return hits_in + 1 + hits_out <= max_bounces; }
 };
 
 // Where the columns of the paths and their hits are to be written (Paths).
@@ -55,7 +58,7 @@ class FanPairs {
     bool operator==(const Pair&) const = default;
   };
   uint32_t length(Pair pair) const { return in_[pair.in].num_hits + 1 + out_[pair.out].num_hits; }
-  bool fits(Pair pair) const { return length(pair) <= fan_.max_bounces; }
+  bool fits(Pair pair) const { return fan_.fits(in_[pair.in].num_hits, out_[pair.out].num_hits); }
   Pair host(Pair pair) const;  // over whose hits the path of this pair runs
   template <class Visit>
   void for_each(const Visit& visit) const;

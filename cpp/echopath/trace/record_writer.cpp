@@ -38,6 +38,10 @@ bool has(const std::vector<const PathBlock*>& blocks, Column column) {
   return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock* block) { return !(block->*column).empty(); });
 }
 
+bool has_matrices(const std::vector<const PathBlock*>& blocks) {
+  return has(blocks, &PathBlock::jones) || has(blocks, &PathBlock::fan_jones);
+}
+
 }  // namespace
 
 void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks) {
@@ -56,7 +60,7 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   paths_.batch.reserve(rows);
   paths_.flags.reserve(rows);
   if (has(blocks, &PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
-  if (has(blocks, &PathBlock::jones)) paths_.jones.reserve(rows);
+  if (has_matrices(blocks)) paths_.jones.reserve(rows);
 }
 
 // All columns at once: the first touch of their memory is what takes time. The optional ones are there from the first block that
@@ -64,7 +68,7 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
 // each of them anew, in milliseconds, and a record is walked from end to end.
 void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
   const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
-  const bool has_jones = !paths_.jones.empty() || has(blocks, &PathBlock::jones);
+  const bool has_jones = !paths_.jones.empty() || has_matrices(blocks);
   const std::function<void()> grow[] = {
       [&] { hits_->resize(num_hits); },
       [&] { paths_.offsets.resize(num_paths); },

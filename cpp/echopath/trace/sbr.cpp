@@ -19,7 +19,7 @@ RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const st
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) models_.emplace_back(*scene.node_of(id).material, settings.frequency);
   for (const SurfaceModel& model : models_) constant_odds_.push_back(odds_of(model, model.constant()));
   for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && node.smooth && !node.material->mirror);
-  has_only_direct_legs_ = transmitter_.beams.empty() && receiver_.beams.empty() && !settings.is_polarized;
+  has_only_direct_legs_ = transmitter_.beams.empty() && receiver_.beams.empty();
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 

@@ -61,6 +61,8 @@ class RayShooter {
   struct OrderShares {  // of a ray's echo, in its own order and in the opposite one
     double own = 1.0, opposite = 0.0;
   };
+  struct ModesIn;  // of a wave at a hit, where polarised
+  struct AxesOut;  // likewise, of a receiver
   using RayHits = std::array<Hit, 64>;
 
   // sbr_packet.cpp: to the first hits, and from there as far as it can be told lane by lane.
@@ -68,9 +70,10 @@ class RayShooter {
   void launch_packet(Packet& packet) const;
   void arrive_packet(Packet& packet, PathBlock& block) const;
   void look_at_surface(Packet& packet, int lane) const;
+  void look_at_modes(Packet& packet, int lane) const;
   void look_at_receiver(Packet& packet, PathBlock& block) const;
   void shoot_lane(const Packet& packet, int lane, Scratch& scratch, PathBlock& block) const;
-  static void add_echoes(const Packet& packet, int lane, PathBlock& block);
+  void add_echoes(const Packet& packet, int lane, PathBlock& block) const;
   static Departure departure_of(const Packet& packet, int lane);
   RayAtHit& start(const Packet& packet, int lane, Scratch& scratch) const;
   // One ray.
@@ -91,20 +94,18 @@ class RayShooter {
   OrderShares shares_of_orders(const Ray& ray, const Surface& surface, const Leg& leg, PathBlock& block) const;
   double resolution_of(const Ray& ray, const Surface& surface, const Leg& leg, const PathEnd& last) const;
   void record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
-              const OrderShares& shares, PathBlock& block) const;
+              const OrderShares& shares, const Scratch& scratch, PathBlock& block) const;
   static RayHits way_back_over(const Ray& ray, const Leg& leg);
-  void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, PathBlock& block) const;
+  void set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, const Scratch& scratch,
+                   PathBlock& block) const;
   void connect(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
   void connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_diffuse(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const;
   void connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
-  void record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
-                       PathBlock& block) const;
-  Leg own_leg(const Ray& ray) const;
   LegQuery legs_from(const Surface& surface, int max_mirrors, MirrorSequence skip) const;
   double density_over(uint32_t mesh_id, const Leg& leg) const;
   double material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const;
-  void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
+  void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
                   PathBlock& block) const;
   // sbr_bounce.cpp
   Departure depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const;
@@ -127,10 +128,11 @@ class RayShooter {
                        PathBlock& block) const;
   // sbr_polarization.cpp: only where polarised.
   void reflect_polarized(const Ray& ray, const Surface& surface, FieldPair& fields) const;
-  JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
-  JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg) const;
-  void follow_legs(const Ray& ray, Scratch& scratch) const;
-  JonesMatrix pair_matrix(const Surface& surface, const Scratch& scratch, size_t in, size_t out) const;
+  JonesMatrix coherent_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const FieldPair& axes) const;
+  JonesMatrix diffuse_matrix(const Ray& ray, const Surface& surface, const Leg& leg, const FieldPair& axes) const;
+  void find_receive_axes(Scratch& scratch) const;
+  void add_pair_matrices(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const;
+  ModesIn modes_in(const Surface& surface, const Vec3& arrival, const FieldPair& fields, double diffuse) const;
   void scatter_polarized(Ray& ray, const Surface& surface, const Vec3& out) const;
   FieldPair scattered(const Surface& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) const;
   FieldPair scattered_back(const Surface& surface, const FieldPair& fields, const Vec3& in,
@@ -139,7 +141,6 @@ class RayShooter {
   FieldPair incident_over(const Leg& leg) const;
   FieldPair fields_over(const Leg& leg, FieldPair fields) const;
   FieldPair axes_over(const Leg& leg) const;
-  JonesMatrix received_over(const Leg& leg, const FieldPair& fields) const;
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
@@ -155,7 +156,7 @@ class RayShooter {
   std::vector<double> mesh_width_;   // by mesh ID, m: of smooth ones (sbr_orders.cpp)
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then
-  bool has_only_direct_legs_ = false;  // and no fields to follow
+  bool has_only_direct_legs_ = false;
 };
 
 }  // namespace echopath

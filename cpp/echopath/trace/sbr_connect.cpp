@@ -7,19 +7,6 @@
 #include "echopath/trace/sbr_state.h"
 
 namespace echopath {
-namespace {
-
-// In travel order: over the transmit leg to `hit`, and over the receive leg.
-std::array<Hit, 2 * kMaxLegMirrors + 1> pair_hits(const Leg& in, const Hit& hit, const Leg& out) {
-  std::array<Hit, 2 * kMaxLegMirrors + 1> hits;
-  size_t count = 0;
-  for (int k = in.num_bounces; k-- > 0;) hits[count++] = in.bounces[static_cast<size_t>(k)].hit;
-  hits[count++] = hit;
-  for (int k = 0; k < out.num_bounces; ++k) hits[count++] = out.bounces[static_cast<size_t>(k)].hit;
-  return hits;
-}
-
-}  // namespace
 
 // The hits of a ray and then those of a receive leg.
 RayShooter::RayHits RayShooter::way_back_over(const Ray& ray, const Leg& leg) {
@@ -54,6 +41,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
              scratch.search);
   scratch.has_receive = true;
   if (scratch.receive.empty() && ray.coherent) return;
+  if (settings_.is_polarized) find_receive_axes(scratch);
   if (radiates_field) connect_coherent(ray, surface, scratch, block);
   if (!radiates_power) return;
   if (!ray.coherent) connect_chain(ray, surface, scratch, block);
@@ -75,33 +63,34 @@ void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const 
   const std::complex<double> weight = std::complex<double>(0.0, 1.0) * ray.field_factor * scalar * launch_area;
   for (const Leg& leg : scratch.receive) {
     const OrderShares shares = ray.num_mirrors > 0 ? shares_of_orders(ray, surface, leg, block) : OrderShares{};
-    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, shares, block);
+    record(ray, surface, leg, 0, settings_.is_polarized ? weight : weight * leg.gain, shares, scratch, block);
   }
 }
 
 // One path over the ray's own hits and a receive leg, and its reversal, as far as each has a share.
 void RayShooter::record(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, std::complex<double> weight,
-                        const OrderShares& shares, PathBlock& block) const {
+                        const OrderShares& shares, const Scratch& scratch, PathBlock& block) const {
   const int count = ray.depth + leg.num_bounces;
   if (count > settings_.max_bounces) return;
   if (shares.own > 0) {
     const std::complex<float> rounded(shares.own * weight);
     if (leg.num_bounces == 0) block.add_prefix(ray.depth, bits, rounded, ray.stratum);
     else block.add(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
-    set_columns(ray, surface, leg, bits, block);
+    set_columns(ray, surface, leg, bits, scratch, block);
   }
   if (shares.opposite == 0) return;
   const std::complex<float> rounded(shares.opposite * weight);
   block.add_reversal(way_back_over(ray, leg).data(), count, bits, rounded, ray.stratum);
-  set_columns(ray, surface, leg, bits, block);
+  set_columns(ray, surface, leg, bits, scratch, block);
 }
 
-// What the last path needs beside its weight, if the scene asks for it.
-void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits,
+// What the last path needs beside its weight, if the scene asks for it. `leg`: one of scratch.receive.
+void RayShooter::set_columns(const Ray& ray, const Surface& surface, const Leg& leg, uint64_t bits, const Scratch& scratch,
                              PathBlock& block) const {
   if (bits == 0 && ray.is_curved) block.set_curved_cell(cell_behind_curves(ray, surface));
   if (!settings_.is_polarized) return;
-  block.set_jones(bits == 0 ? coherent_matrix(ray, surface, leg) : diffuse_matrix(ray, surface, leg));
+  const FieldPair& axes = scratch.axes[static_cast<size_t>(&leg - scratch.receive.data())];
+  block.set_jones(bits == 0 ? coherent_matrix(ray, surface, leg, axes) : diffuse_matrix(ray, surface, leg, axes));
 }
 
 // The launch cell of the ray's own stratum on the triangle that was hit (Paths::curved_cell).
@@ -132,22 +121,8 @@ void RayShooter::connect_diffuse(const Ray& ray, const Surface& surface, const S
   const uint64_t bits = uint64_t{1} << (ray.depth - 1);
   const OrderShares shares{1.0, ray.num_mirrors > 0 ? 1.0 : 0.0};
   for (const Leg& leg : scratch.receive) {
-    record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, shares, block);
+    record(ray, surface, leg, bits, settings_.is_polarized ? weight : weight * leg.gain, shares, scratch, block);
   }
-}
-
-Leg RayShooter::own_leg(const Ray& ray) const {
-  Leg leg;
-  leg.sequence = ray.sequence;
-  leg.length = ray.leg_length;
-  leg.to_antenna = -ray.direction;
-  leg.at_antenna = ray.launch_direction;
-  leg.gain = ray.coefficient;
-  leg.specular_share = ray.chain_share;
-  for (int k = ray.depth - 1; k-- > 0;) {
-    leg.bounces[static_cast<size_t>(leg.num_bounces++)].hit = ray.hits[static_cast<size_t>(k)];
-  }
-  return leg;
 }
 
 // Rays per sr at the antenna's end of a transmit leg that come over it to a first hit on a mesh, and go on at all its mirrors:
@@ -170,46 +145,32 @@ double RayShooter::material_area(const Ray& ray, const Surface& surface, const s
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {
   find_transmit_legs(surface, settings_.max_bounces - 1, ray.sequence, scratch);
   const std::complex<double> weight = std::sqrt(material_area(ray, surface, scratch.transmit)) * surface.chance.phase;
-  if (settings_.is_polarized) return record_matrices(ray, surface, weight, scratch, block);
   if (!scratch.transmit.empty() || scratch.receive.size() > 1 || scratch.receive[0].num_bounces > 0) {
     return record_fan(ray, surface, weight, scratch, block);
   }
-  const std::complex<double> own = weight * diffuse_coefficient(surface.response) * ray.coefficient;
-  block.add_prefix(ray.depth, uint64_t{1} << (ray.depth - 1), std::complex<float>(own), ray.stratum);
+  const std::complex<double> own =
+      settings_.is_polarized ? weight : weight * diffuse_coefficient(surface.response) * ray.coefficient;
+  const uint64_t bits = uint64_t{1} << (ray.depth - 1);
+  block.add_prefix(ray.depth, bits, std::complex<float>(own), ray.stratum);
+  set_columns(ray, surface, scratch.receive[0], bits, scratch, block);
 }
 
-void RayShooter::record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, const Scratch& scratch,
+// Polarised, all coefficients are in the matrices of the pairs.
+void RayShooter::record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
                             PathBlock& block) const {
   block.begin_fan(surface.point.hit, ray.stratum, settings_.max_bounces);
   for (const Leg& in : scratch.transmit) {
-    block.add_leg_in(weight * diffuse_coefficient(response_toward(surface, in.to_antenna)) * in.gain);
+    block.add_leg_in(settings_.is_polarized ? weight : weight * diffuse_coefficient(response_toward(surface, in.to_antenna)) * in.gain);
     for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[static_cast<size_t>(k)].hit);
   }
-  block.add_leg_in(weight * diffuse_coefficient(surface.response) * ray.coefficient);
+  block.add_leg_in(settings_.is_polarized ? weight : weight * diffuse_coefficient(surface.response) * ray.coefficient);
   for (int k = 0; k < ray.depth - 1; ++k) block.add_leg_hit(ray.hits[static_cast<size_t>(k)]);
   for (const Leg& out : scratch.receive) {
-    block.add_leg_out(out.gain);
+    block.add_leg_out(settings_.is_polarized ? 1.0 : out.gain);
     for (int k = 0; k < out.num_bounces; ++k) block.add_leg_hit(out.bounces[static_cast<size_t>(k)].hit);
   }
+  if (settings_.is_polarized) add_pair_matrices(ray, surface, scratch, block);
   block.end_fan();
-}
-
-// A path over each pair of legs with its matrix, where polarised.
-void RayShooter::record_matrices(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
-                                 PathBlock& block) const {
-  scratch.transmit.push_back(own_leg(ray));
-  follow_legs(ray, scratch);
-  for (size_t i = 0; i < scratch.transmit.size(); ++i) {
-    const Leg& in = scratch.transmit[i];
-    for (size_t j = 0; j < scratch.receive.size(); ++j) {
-      const Leg& out = scratch.receive[j];
-      const int count = in.num_bounces + 1 + out.num_bounces;
-      if (count > settings_.max_bounces) continue;
-      const auto hits = pair_hits(in, surface.point.hit, out);
-      block.add(hits.data(), count, uint64_t{1} << in.num_bounces, std::complex<float>(weight), ray.stratum);
-      block.set_jones(pair_matrix(surface, scratch, i, j));
-    }
-  }
 }
 
 }  // namespace echopath

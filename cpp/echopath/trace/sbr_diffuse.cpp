@@ -121,7 +121,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
     const SurfaceResponse response = response_toward(surface, in.to_antenna);
     const double share = std::sqrt(share_of_order(surface, response, in, chain));
     const Leg* out = leg_over(scratch.receive, in.sequence);
-    if (out) record(ray, surface, *out, bits, share * weighted(natural * out->gain), OrderShares{}, block);
+    if (out) record(ray, surface, *out, bits, share * weighted(natural * out->gain), OrderShares{}, scratch, block);
     if (!chain.back) continue;
     const std::complex<double> reversed = in.gain * diffuse_coefficient(response) * chain.coefficient * chain.back->gain;
     record_reversed(ray, chain, in, bits, share * weighted(reversed), block);
@@ -129,7 +129,7 @@ void RayShooter::connect_chain(const Ray& ray, const Surface& surface, Scratch& 
   }
   for (const Leg& out : scratch.receive) {
     if (leg_over(scratch.transmit, out.sequence)) continue;
-    record(ray, surface, out, bits, weighted(natural * out.gain), OrderShares{}, block);
+    record(ray, surface, out, bits, weighted(natural * out.gain), OrderShares{}, scratch, block);
   }
 }
 

@@ -1,9 +1,11 @@
 // Neighbouring rays up to their first hits, and from there as far as it can be told lane by lane.
 //
-// Where a hit has no other legs than straight ones and fields need not be followed, what it sends to the receiver comes from
+// Where a hit has no other legs than straight ones, what it sends to the receiver comes from
 // its lane, and a ray is made only of what meets something behind it.
+#include <cmath>
 #include <memory>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/simd.h"
 #include "echopath/trace/sbr_state.h"
 
@@ -45,6 +47,45 @@ ECHOPATH_INLINE void weigh_lanes(Packet* packet) {
   }
 }
 
+// The matrix of a hit between a launch, whose horizontal field is (x, y) of TE and TM and whose vertical one is (y, -x), and
+// straight ways on: re and im of each entry of a JonesMatrix.
+ECHOPATH_INLINE void set_entries(const BasisAcross& launched, const ModeAxes& modes, const HitMatrix& hit, double scale,
+                                 LanesOf<float> (*to)[2], int lane) {
+  const double x = scale * dot(launched.horizontal, modes.te), y = scale * dot(launched.vertical, modes.te);
+  const auto set = [&](int entry, const ComplexOf<double>& te, const ComplexOf<double>& tm) {
+    to[entry][0][lane] = static_cast<float>(x * te.re + y * tm.re);
+    to[entry][1][lane] = static_cast<float>(x * te.im + y * tm.im);
+    to[entry + 1][0][lane] = static_cast<float>(y * te.re - x * tm.re);
+    to[entry + 1][1][lane] = static_cast<float>(y * te.im - x * tm.im);
+  };
+  set(0, hit.h_te, hit.h_tm);
+  set(2, hit.v_te, hit.v_tm);
+}
+
+// Likewise of field vectors (coherent_matrix and diffuse_matrix).
+template <class Packet>
+ECHOPATH_INLINE void polarize_lanes(Packet* packet, VectorOf<double> receiver) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const double distance = packet->hits.distance[lane], cos_incidence = packet->cos_incidence[lane];
+    const double area = distance * distance / (packet->densities[lane] * cos_incidence), root_area = ScalarMath::root(area);
+    packet->field_re[lane] = 0.0f;
+    packet->field_im[lane] = static_cast<float>(area * packet->hits.stretch[lane]);
+    packet->power_re[lane] = static_cast<float>(root_area * packet->chance.phase_re[lane]);
+    packet->power_im[lane] = static_cast<float>(root_area * packet->chance.phase_im[lane]);
+    const VectorOf<double> line = receiver - packet->hits.position.at(lane), direction = packet->directions.at(lane);
+    const double inverse = 1.0 / ScalarMath::root(dot(line, line));
+    const HitGeometryOfModes hit = hit_geometry(direction, packet->hits.normal.at(lane), inverse * line);
+    const ComplexOf<double> te{packet->te_re[lane], packet->te_im[lane]}, tm{packet->tm_re[lane], packet->tm_im[lane]};
+    const double scale = packet->coherent[lane] * polarized_scale(cos_incidence, inverse * packet->cos_receiver[lane]);
+    const BasisAcross launched = basis_across(direction);
+    set_entries(launched, hit.modes, radiated_modes(hit, te, tm), scale, packet->field_jones, lane);
+    const AxisInModes axis = scattering_axis(hit, packet->axis_cosine[lane], packet->axis_sine[lane]);
+    set_entries(launched, hit.modes, scattered_modes(hit, packet->facet[lane], mixing_of(packet->cross_share[lane]), axis),
+                packet->diffuse[lane], packet->power_jones, lane);
+  }
+}
+
 template <class Packet>
 ECHOPATH_INLINE void leave_lanes(Packet* packet) {
   ECHOPATH_SIDE_BY_SIDE
@@ -67,7 +108,11 @@ void RayShooter::shoot_packet(Packet& packet, Scratch& scratch, PathBlock& block
   block.statistics.num_queries += packet.count;
   arrive_packet(packet, block);
   look_at_receiver(packet, block);
-  run_simd<&weigh_lanes<Packet>>(&packet);
+  if (settings_.is_polarized && has_only_direct_legs_) {
+    run_simd<&polarize_lanes<Packet>>(&packet, unpacked(settings_.receiver));
+  } else {
+    run_simd<&weigh_lanes<Packet>>(&packet);
+  }
   run_simd<&leave_lanes<Packet>>(&packet);
   for (int lane = 0; lane < packet.count; ++lane) {
     if (packet.arrives[static_cast<size_t>(lane)]) shoot_lane(packet, lane, scratch, block);
@@ -118,8 +163,23 @@ void RayShooter::look_at_surface(Packet& packet, int lane) const {
   const SurfaceResponse response = model.respond(packet.cos_incidence[lane], packet.modes[k]);
   const Odds odds = !packet.is_owned[k] ? kPassingOn : is_constant ? constant_odds_[mesh] : odds_of(model, response);
   packet.set_response(lane, response, odds);
+  if (settings_.is_polarized && has_only_direct_legs_) look_at_modes(packet, lane);
   packet.goes_on[k] = settings_.max_bounces > 1 && response.gamma != 0.0;
   packet.is_plain[k] = has_only_direct_legs_ && !model.material().mirror && !is_near;
+}
+
+// What a surface makes of field vectors.
+void RayShooter::look_at_modes(Packet& packet, int lane) const {
+  const SurfaceModel& model = *packet.models[static_cast<size_t>(lane)];
+  const ModeCoefficients modes = model.modes(packet.cos_incidence[lane]);
+  packet.te_re[lane] = modes.te.real();
+  packet.te_im[lane] = modes.te.imag();
+  packet.tm_re[lane] = modes.tm.real();
+  packet.tm_im[lane] = modes.tm.imag();
+  const double share = packet.cross_share[lane] = model.material().cross_polarization;
+  const double axis = share > 0 ? kPi * packet.chance.axis_coin[lane] : 0.0;
+  packet.axis_cosine[lane] = share > 0 ? std::cos(axis) : 1.0;
+  packet.axis_sine[lane] = share > 0 ? std::sin(axis) : 0.0;
 }
 
 // From all first hits together: they lie beside each other. What a mirror needs depends on more.
@@ -150,13 +210,28 @@ void RayShooter::shoot_lane(const Packet& packet, int lane, Scratch& scratch, Pa
   block.end_ray(ray.hits.data());
 }
 
+namespace {
+
+JonesMatrix entries_of(const LanesOf<float> (*from)[2], int lane) {
+  const auto entry = [&](size_t i) { return std::complex<float>(from[i][0][lane], from[i][1][lane]); };
+  return {entry(0), entry(1), entry(2), entry(3)};
+}
+
+}  // namespace
+
 // What a plain hit sends to the receiver, over the first hit of the current ray.
-void RayShooter::add_echoes(const Packet& packet, int lane, PathBlock& block) {
+void RayShooter::add_echoes(const Packet& packet, int lane, PathBlock& block) const {
   const auto k = static_cast<size_t>(lane);
   if (packet.receiver[k] != Sight::kOpen) return;
   const int stratum = packet.places.strata[k];
-  if (packet.coherent[lane] > 0) block.add_prefix(1, 0, {packet.field_re[lane], packet.field_im[lane]}, stratum);
-  if (packet.diffuse[lane] > 0) block.add_prefix(1, 1, {packet.power_re[lane], packet.power_im[lane]}, stratum);
+  if (packet.coherent[lane] > 0) {
+    block.add_prefix(1, 0, {packet.field_re[lane], packet.field_im[lane]}, stratum);
+    if (settings_.is_polarized) block.set_jones(entries_of(packet.field_jones, lane));
+  }
+  if (packet.diffuse[lane] > 0) {
+    block.add_prefix(1, 1, {packet.power_re[lane], packet.power_im[lane]}, stratum);
+    if (settings_.is_polarized) block.set_jones(entries_of(packet.power_jones, lane));
+  }
 }
 
 RayShooter::Departure RayShooter::departure_of(const Packet& packet, int lane) {

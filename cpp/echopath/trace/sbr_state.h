@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "echopath/em/hit_modes.h"
 #include "echopath/em/jones.h"
 #include "echopath/trace/ray_differential.h"
 #include "echopath/trace/sbr.h"
@@ -101,8 +102,12 @@ struct RayShooter::Packet {
   LaneValues specular_odds, diffuse_odds;            // of going on that way, if it does
   LaneVectors out;                                   // the direction in which it goes on
   std::array<bool, kPacketSize> goes_on;             // whether anything does
-  std::array<bool, kPacketSize> is_plain;            // no legs but straight ones, and no field to follow
+  std::array<bool, kPacketSize> is_plain;            // no legs but straight ones
   LanesOf<float> field_re, field_im, power_re, power_im;  // weights of the coherent and the diffuse echo to the receiver
+  // Where polarised: the same without coefficients, which are in the matrices of both echoes.
+  LaneValues te_re, te_im, tm_re, tm_im;     // of reflection
+  LaneValues cross_share, axis_cosine, axis_sine;  // of diffuse hits
+  LanesOf<float> field_jones[4][2], power_jones[4][2];  // [entry][re, im]
 
   void set_response(int lane, const SurfaceResponse& response, const Odds& odds) {
     gamma_re[lane] = response.gamma.real();
@@ -150,9 +155,25 @@ struct RayShooter::Chain {
   }
 };
 
+// The modes of launches that arrive at a diffuse hit, as far as it keeps them.
+struct RayShooter::ModesIn {
+  VectorOf<double> direction;
+  ModeAxes axes;
+  std::complex<double> te[2], tm[2];  // [launch]
+};
+
+// Along which fields that leave a hit a receiver sees its two components, in parts across the way out.
+struct RayShooter::AxesOut {
+  VectorOf<double> direction;
+  BasisAcross across;
+  std::complex<double> horizontal[2], vertical[2];  // [component]
+};
+
 struct RayShooter::Scratch {
   std::vector<Leg> transmit, receive;
-  std::vector<FieldPair> incident, axes;  // of these, for pairs, where polarised (sbr_polarization.cpp)
+  std::vector<FieldPair> axes;   // of `receive`, where polarised (sbr_polarization.cpp)
+  std::vector<ModesIn> modes_in;  // of pairs, likewise
+  std::vector<AxesOut> axes_out;
   bool has_receive = false;                     // `receive` is that of the ray's hit
   LegSearch search;
   RayHit mirror;        // the last specular bounce off an unflagged surface
@@ -160,6 +181,13 @@ struct RayShooter::Scratch {
   Chain chain;  // of rays that have left a diffuse hit
   RayAtHit first;  // the ray of a packet that is followed now
 };
+
+// Replay multiplies the matrix of a coherent path by cos_i; a conductor's TM part goes with the cosine of radiation instead, so the
+// quotient is bounded where cos_i is small beside that.
+ECHOPATH_INLINE double polarized_scale(double cos_incidence, double cos_radiation) {
+  constexpr double kPolarizedGrazing = 0.05;
+  return 1.0 / ScalarMath::larger(cos_incidence, kPolarizedGrazing * cos_radiation);
+}
 
 // Of the field that a diffuse hit scatters.
 inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }

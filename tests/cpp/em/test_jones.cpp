@@ -93,6 +93,32 @@ TEST(Jones, ComponentsAreThoseAcrossTheDirection) {
   EXPECT_EQ(transverse_components(Vec3::UnitX(), Vec3::UnitX()), Eigen::Vector2d::Zero());
 }
 
+// The horizontal axis turns round with the direction of travel and the vertical one does not, along z too: what an antenna sends
+// along a direction is what it receives from there, but for the sign of one component.
+TEST(Jones, ComponentsOfTheOppositeDirectionDifferInOneSign) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Case at = random_case(random);
+    const Vec3 direction = i == 0 ? Vec3::UnitZ() : at.direction;
+    const TransverseBasis there = transverse_basis(direction), back = transverse_basis(-direction);
+    EXPECT_LT((there.horizontal + back.horizontal).norm() + (there.vertical - back.vertical).norm(), kRounding);
+    EXPECT_LT((there.horizontal.cross(there.vertical) - direction).norm(), kRounding);
+    const Vec3 across = at.out - at.out.dot(direction) * direction;
+    const Eigen::Vector2d found = transverse_components(at.out, direction);
+    EXPECT_NEAR(found[0], across.normalized().dot(there.horizontal), 1e3 * kRounding);  // of vectors that may all but meet
+    EXPECT_NEAR(found[1], across.normalized().dot(there.vertical), 1e3 * kRounding);
+    EXPECT_EQ(transverse_components(at.out, -direction), Eigen::Vector2d(-found[0], found[1]));
+  }
+}
+
+TEST(Fresnel, BothModesAtOnceAreEachOfThem) {
+  for (const double cosine : {1.0, 0.7, 0.1}) {
+    const FresnelModes both = fresnel_modes({4.0, -0.2}, cosine);
+    EXPECT_EQ(both.te, fresnel_te({4.0, -0.2}, cosine));
+    EXPECT_EQ(both.tm, fresnel_tm({4.0, -0.2}, cosine));
+  }
+}
+
 // --- Diffuse hits ---
 
 TEST(Scattering, MetalWithoutDepolarisationIsAFacetThatMirrors) {

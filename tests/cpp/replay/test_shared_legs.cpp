@@ -70,8 +70,9 @@ Radar array() {
   return radar;
 }
 
-Paths record(const Radar& radar, bool has_mirrors = true) {
+Paths record(const Radar& radar, bool has_mirrors = true, PolarizationModel polarization = PolarizationModel::kScalar) {
   TraceSettings settings;
+  settings.polarization = polarization;
   settings.num_rays = 3000;
   settings.max_bounces = 4;
   return trace(scene_of_all_kinds(has_mirrors), radar, settings);
@@ -81,6 +82,24 @@ std::vector<int64_t> all_of(const Paths& paths) {
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   for (size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<int64_t>(i);
   return indices;
+}
+
+// What field vectors that agree in polarisation make of a path at most.
+double largest_factor(const JonesMatrix& matrix) {
+  double sum = 0.0;
+  for (const std::complex<float> entry : matrix) sum += std::norm(std::complex<double>(entry));
+  return std::sqrt(sum);
+}
+
+// Amplitudes without what polarisations make of them, which may cross.
+double size_of(LocalPath path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch, size_t channel,
+               size_t channels) {
+  std::vector<double> length(channels);
+  std::vector<std::complex<double>> amplitude(channels);
+  const double factor = path.jones ? largest_factor(*path.jones) : 1.0;
+  path.jones = nullptr;
+  evaluate_path(path, instant, radio, scratch, {length.data(), amplitude.data(), 1});
+  return factor * std::abs(amplitude[channel]);
 }
 
 // Largest differences to paths evaluated one by one, relative to each value, over all channels.
@@ -106,7 +125,8 @@ Differences differences(const Paths& paths, const Radar& radar, double time) {
     for (size_t channel = 0; channel < channels; ++channel) {
       const size_t at = channel * indices.size() + p;
       largest.length = std::max(largest.length, std::abs(lengths[at] / length[channel] - 1.0));
-      const double difference = std::abs(amplitudes[at] - amplitude[channel]), size = std::abs(amplitude[channel]);
+      const double difference = std::abs(amplitudes[at] - amplitude[channel]);
+      const double size = size_of(block.paths[p], instant, radio_constants(paths, radar), scratch, channel, channels);
       if (paths.diffuse[p] != 0) largest.diffuse = std::max(largest.diffuse, size > 0.0 ? difference / size : difference);
       else largest.coherent = std::max(largest.coherent, difference / std::max(size, kFaintest));
     }
@@ -169,8 +189,26 @@ TEST(SharedLegs, AntennasOfBothEndsMayBeTheSame) {
   }
 }
 
+// Upright antennas on a radar that turns about the vertical; others that tilt with it, one of them of horizontal polarisation.
+TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
+  for (const bool is_upright : {true, false}) {
+    Radar radar = array_of_powers();
+    if (!is_upright) {
+      radar.motion = std::make_shared<LinearMotion>(Vec3(5, 0, 0), Vec3(2.0, 3.0, 0.4));
+      radar.receivers[1].polarization = Vec3::UnitY();
+      radar.transmitters[0].polarization = Vec3(0.0, 0.6, 0.8);
+    }
+    for (const bool has_mirrors : {true, false}) {
+      const Paths paths = record(radar, has_mirrors, PolarizationModel::kJones);
+      ASSERT_EQ(paths.jones.size(), static_cast<size_t>(paths.num_paths()));
+      expect_equal(differences(paths, radar, paths.frame.trace_time), kGrazingFilterRounding);
+      expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02), kGrazingFilterRounding);
+    }
+  }
+}
+
 struct DirectCounts {
-  size_t paths = 0, pairs = 0, others = 0;
+  size_t paths = 0, pairs = 0, others = 0, one_by_one = 0;  // of the others
   std::vector<int> of_mesh;
 };
 
@@ -181,6 +219,7 @@ DirectCounts direct_counts(const Paths& paths) {
   const ChainPlan& plan = planner(all_of(paths));
   DirectCounts counts;
   counts.others = plan.chains.size() + plan.others.size();
+  counts.one_by_one = plan.others.size();
   counts.of_mesh.resize(paths.scene->meshes().size());
   for (const ChainPlan::Direct& point : plan.direct) {
     const auto has = [&](size_t kind) { return size_t{point.path[kind] != ChainPlan::Direct::kNoPath}; };
@@ -189,6 +228,14 @@ DirectCounts direct_counts(const Paths& paths) {
     ++counts.of_mesh[point.hit->mesh_id];
   }
   return counts;
+}
+
+TEST(SharedLegs, PolarizedPathsAreSharedAsScalarOnes) {
+  const Paths scalar = record(array_of_powers()), polarized = record(array_of_powers(), true, PolarizationModel::kJones);
+  ASSERT_EQ(scalar.num_paths(), polarized.num_paths());
+  EXPECT_EQ(scalar.hits->size(), polarized.hits->size());
+  EXPECT_EQ(direct_counts(scalar).paths, direct_counts(polarized).paths);
+  EXPECT_EQ(direct_counts(scalar).one_by_one, direct_counts(polarized).one_by_one);
 }
 
 TEST(SharedLegs, PathsOfOnePointStandApart) {

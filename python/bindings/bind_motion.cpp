@@ -58,6 +58,16 @@ std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const p
   return std::make_shared<VertexSequence>(std::move(seconds), std::move(frames), kind);
 }
 
+constexpr const char* kTurnRateDoc = R"(Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
+
+That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
+next: the larger. 0: it goes straight on.)";
+
+template <class Moving>
+double turn_rate_of(const Moving& self, double begin, double end) {
+  return self.turn_rate({begin, end});
+}
+
 void bind_motions(py::module_& m) {
   py::class_<Motion, std::shared_ptr<Motion>>(
       m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.")
@@ -66,7 +76,8 @@ void bind_motions(py::module_& m) {
       .def_property_readonly("breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
                              "Times [N] in s, ascending, where the motion is not smooth.")
       .def_property_readonly("span", [](const Motion& self) { return as_tuple(self.span()); },
-                             "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+                             "(begin, end) in s of the times it is defined on; infinite where unlimited.")
+      .def("turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
 
   py::class_<LinearMotion, Motion, std::shared_ptr<LinearMotion>>(m, "LinearMotion", R"(Constant velocity and rotation.
 
@@ -121,7 +132,8 @@ void bind_deformation(py::module_& m) {
       .def_property_readonly("breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
                              "Times [N] in s, ascending, where it is not smooth.")
       .def_property_readonly("span", [](const Deformation& self) { return as_tuple(self.span()); },
-                             "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+                             "(begin, end) in s of the times it is defined on; infinite where unlimited.")
+      .def("turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
 }
 
 void bind_sequence(py::module_& m) {

@@ -64,12 +64,35 @@ void bind_shares(py::module_& m) {
       });
 }
 
+void bind_objects(py::module_& m) {
+  py::class_<ObjectValidity, ValidityShares>(m, "ObjectValidity",
+                                             "What one trace does not serve of an object: of the paths that scattered on it last.")
+      .def_readonly("name", &ObjectValidity::name, "of the object")
+      .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
+      .def_readonly("disappears", &ObjectValidity::disappears, "share of its power that is lost, mean over the times of the check")
+      .def_readonly("error_db", &ObjectValidity::error_db,
+                    "dB, of its power over the frame: the replay over what is there with new surface; 0: not known")
+      .def_readonly("seen_power", &ObjectValidity::seen_power, "W, largest power with which the times of the check see it")
+      .def_readonly("turn", &ObjectValidity::turn, "rad, how far it turns within the frame at most")
+      .def_readonly("has_paths", &ObjectValidity::has_paths, "False: it has no path that carries power")
+      .def_readonly("in_range", &ObjectValidity::is_in_range,
+                    "at most 60 dB below the strongest object, and above the noise of a range-Doppler cell")
+      .def("__repr__", [](const ObjectValidity& self) {
+        std::ostringstream text;
+        text << "<ObjectValidity " << self.name << (self.ok() ? ": ok" : ": not served") << ", new_surface=" << self.new_surface
+             << ", disappears=" << self.disappears << ", error_db=" << self.error_db << ">";
+        return text.str();
+      });
+}
+
 void bind_report(py::module_& m) {
   py::class_<Validity, ValidityPtr>(m, "Validity",
                                     R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
 
 Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
-the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band.)")
+the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band. An object
+within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
+over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
       .def_readonly("num_paths", &Validity::num_paths, "P, their number")
       .def_readonly("times", &Validity::times, "[T] s, of the check")
       .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
@@ -93,12 +116,12 @@ the trace time and the times of the check; physical-optics paths are scaled to t
       .def_property_readonly("keyframes", &Validity::keyframes,
                              "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
       .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
-      .def_property_readonly("ok", [](const Validity& self) { return self.warnings().empty(); }, "no warnings")
+      .def_property_readonly("ok", [](const Validity& self) { return self.warnings().empty(); }, "no warnings: every object in the dynamic range is served")
       .def_property_readonly("objects", [](const Validity& self) {
         py::dict out;
-        for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object.shares;
+        for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object;
         return out;
-      }, "{name: ValidityShares} by the object that a path scattered on last (mirrors by images apart), by strength")
+      }, "{name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength")
       .def_property_readonly("power", array_column(&ValidityArrays::power), "[P] W")
       .def_property_readonly("phase_error", array_column(&ValidityArrays::phase_error),
                              "[P] rad, largest where no point of reflection has left its surface")
@@ -142,7 +165,7 @@ void bind_renewal(py::module_& m) {
         R"(A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
 
 Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view
-has no paths.
+has no paths here; `synthesize(retrace="invalid")` adds it.
 
 paths: of a trace
 radar: whose motion carries the antennas of the trace along, or None: that of the trace
@@ -156,22 +179,25 @@ Returns a Renewal. Raises ValueError when a motion does not cover the time.)");
 void bind_replay(py::module_& m) {
   bind_renewal(m);
   bind_shares(m);
+  bind_objects(m);
   bind_report(m);
   m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
         py::arg("progress") = py::none(),
-        R"(Whether one trace serves the whole frame and the whole array: a report with warnings.
+        R"(Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
 
-Checks all paths at the ends of the frame, for the antennas of the trace and those at the rim of the array: phase errors of
-points of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and looks for
-surface that was hidden from the trace with rays of its own. Exact parts of the replay (single bounces, images in mirrors)
-have no phase error.
+Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two for
+each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points of
+reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene at these
+times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase
+error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256
+times would have to follow is a warning.
 
 paths: of a trace, all or a selection of them, which asks about these alone
 radar: another waveform, array or motion than that of the trace, or None
 replay: of the replay that is to be certified, as in synthesize
-times: [T] s, of the check, or None: the centres of the first and the last chirp
-arrays: keep what is found of each path, [P] each
+times: [T] s, of the check, or None: as above
+arrays: keep what is found of each path, [P] each; then all are looked at
 progress: callable(stage, fraction) or None
 Returns a Validity. Raises ValueError for motions that do not cover the times, KeyboardInterrupt on Ctrl-C.)");
 }

@@ -8,6 +8,10 @@ from .families import named_globs
 from .keywords import known_keywords
 
 
+HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
+FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
+
+
 @dataclasses.dataclass(frozen=True)
 class Sight:
     """An object as one end of the radar sees it, from the mean position of its antennas.
@@ -97,6 +101,22 @@ def visibility_in_trace(paths, radar, objects=None, *, progress=None) -> list:
     paths: of `trace`; radar: whose antennas look, not necessarily that of the trace; progress: as in `visibility`
     """
     return _as_objects(_core.visibility_in_trace(paths, radar, named_globs(objects), progress))
+
+
+def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> set:
+    """Which of the objects that are hidden at the time of a trace are not at others of its frame: both ends and places between.
+
+    hidden: names of objects; paths, radar, objects, progress: as in `visibility_in_trace`
+    """
+    scene = paths.scene
+    moves = radar.motion is not None or any(scene.is_moving(mesh.id) for mesh in scene.meshes)
+    appearing, hidden = set(), set(hidden)
+    for share in FRAME_PLACES if moves else ():
+        rest = {name: objects[name] if isinstance(objects, dict) else name for name in sorted(hidden - appearing)}
+        if rest:
+            seen = visibility(scene, radar, rest, time=paths.frame.start_time + share * radar.frame_duration, progress=progress)
+            appearing |= {one.name for one in seen if one.visible_share > HIDDEN_SHARE}
+    return appearing
 
 
 def _as_objects(found) -> list:

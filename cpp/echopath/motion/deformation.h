@@ -21,6 +21,8 @@ class Deformation {
   // Times (s) where it is not smooth, ascending, ends of the span excluded.
   virtual std::vector<double> breakpoints() const = 0;
   virtual TimeSpan span() const = 0;
+  // As Motion::turn_rate, of all vertices.
+  virtual double turn_rate(const TimeSpan& during) const = 0;
 };
 
 // Sampled vertices: T frames of V vertices each, [T][V] in m. Interpolation as in KeyframeMotion; cubic ones keep the
@@ -35,6 +37,7 @@ class VertexSequence : public Deformation {
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints() const override;
   TimeSpan span() const override;
+  double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;
   const std::vector<std::vector<Vec3>>& vertices() const;
   Interpolation interpolation() const;

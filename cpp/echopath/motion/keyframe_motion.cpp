@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -63,6 +64,19 @@ struct KeyframeMotion::Data {
     return value;
   }
 
+  // Bound of the angular speed between knots k and k + 1, rad/s: twice the speed of the unit quaternion, whose spline has the
+  // derivative of the line and at most h / 3 times the second derivatives at its ends. It stays longer than the chord.
+  double angular_speed(size_t k) const {
+    constexpr double kShortestChord = 0.7071;  // between rotations less than 180 degrees apart
+    const double step = knots.times()[k + 1] - knots.times()[k];
+    if (knots.interpolation() == Interpolation::kLinear) return rotations[k].angularDistance(rotations[k + 1]) / step;
+    double speed = (rotations[k + 1].coeffs() - rotations[k].coeffs()).norm() / step;
+    if (knots.has_curvature()) {
+      speed += step / 3.0 * (rotation_curvature[k].coeffs().norm() + rotation_curvature[k + 1].coeffs().norm());
+    }
+    return 2.0 * speed / kShortestChord;
+  }
+
   Quaternion rotation(const SplineKnots::Weights& w) const {
     if (rotations.empty()) return Quaternion::Identity();
     const Quaternion &first = rotations[w.k], &second = rotations[w.k + 1];
@@ -101,6 +115,17 @@ Transform KeyframeMotion::at(double time) const {
 
 std::vector<double> KeyframeMotion::breakpoints() const { return data_->knots.breakpoints(); }
 TimeSpan KeyframeMotion::span() const { return data_->knots.span(); }
+
+double KeyframeMotion::turn_rate(const TimeSpan& during) const {
+  const std::vector<double>& times = data_->knots.times();
+  const auto [first, last] = knots_around(times, during);
+  TurningPoints turns;
+  for (size_t k = first; k <= last && !data_->translations.empty(); ++k) turns.add(times[k], data_->translations[k]);
+  double fastest = turns.rate();
+  for (size_t k = first; k < last && !data_->rotations.empty(); ++k) fastest = std::max(fastest, data_->angular_speed(k));
+  return fastest;
+}
+
 const std::vector<double>& KeyframeMotion::times() const { return data_->knots.times(); }
 const std::vector<Vec3>& KeyframeMotion::translations() const { return data_->translations; }
 const std::vector<Quaternion>& KeyframeMotion::rotations() const { return data_->rotations; }

@@ -20,4 +20,6 @@ Transform LinearMotion::at(double time) const {
   return transform;
 }
 
+double LinearMotion::turn_rate(const TimeSpan&) const { return angular_velocity_.norm(); }
+
 }  // namespace echopath

@@ -26,6 +26,9 @@ class Motion {
   // Times (s) where the motion is not smooth, ascending, ends of the span excluded.
   virtual std::vector<double> breakpoints() const { return {}; }
   virtual TimeSpan span() const { return {}; }
+  // How fast what it does comes and goes within `during`, a bound in rad/s: its angular speed or, where it goes to and fro
+  // between samples, pi by the shortest time from one turning point to the next; the larger. 0: it goes straight on.
+  virtual double turn_rate(const TimeSpan& during) const = 0;
 };
 
 // Constant velocity and constant rotation: at(t) = Translation(velocity t) * Rotation(angular_velocity t).
@@ -34,6 +37,7 @@ class LinearMotion : public Motion {
   // velocity [m/s]; angular_velocity [rad/s], right-handed about its own direction. Values must be finite.
   explicit LinearMotion(const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
   Transform at(double time) const override;
+  double turn_rate(const TimeSpan& during) const override;
   const Vec3& velocity() const { return velocity_; }
   const Vec3& angular_velocity() const { return angular_velocity_; }
 
@@ -55,6 +59,7 @@ class KeyframeMotion : public Motion {
   Transform at(double time) const override;
   std::vector<double> breakpoints() const override;
   TimeSpan span() const override;
+  double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;
   const std::vector<Vec3>& translations() const;
   const std::vector<Quaternion>& rotations() const;

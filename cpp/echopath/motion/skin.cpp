@@ -161,6 +161,17 @@ TimeSpan Skin::span() const {
   return common;
 }
 
+double Skin::turn_rate(const TimeSpan& during) const {
+  std::vector<double> rates;  // by joint
+  double fastest = 0.0;
+  for (const Joint& joint : data_->joints) {
+    const double above = joint.parent < 0 ? 0.0 : rates[static_cast<size_t>(joint.parent)];
+    rates.push_back(above + (joint.motion ? joint.motion->turn_rate(during) : 0.0));
+    fastest = std::max(fastest, rates.back());
+  }
+  return fastest;
+}
+
 SkinWeights Skin::weights() const {
   SkinWeights out;
   out.per_vertex = data_->longest_row();

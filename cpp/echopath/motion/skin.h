@@ -41,6 +41,7 @@ class Skin : public Deformation {
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints() const override;  // of all joints
   TimeSpan span() const override;                    // common to all joints; empty (begin > end) where there is none
+  double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, those above it added
 
   const std::vector<Vec3>& vertices() const;
   const std::vector<Joint>& joints() const;  // all with inverse_bind

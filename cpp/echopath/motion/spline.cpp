@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 // Times are sums of intervals, so the last chirp may pass the last key by a few units in the last place.
 constexpr double kTimeRounding = 1e-12;
+constexpr double kLeastWay = 1e-9;  // m
 constexpr int64_t kColumnsPerTask = 2048;  // keeps three rows of a block in the first-level cache
 
 void check_times(const std::vector<double>& times) {
@@ -33,6 +35,37 @@ double time_inside(double time, const TimeSpan& span) {
     require(false, "time", rule.str(), time);
   }
   return std::clamp(time, span.begin, span.end);
+}
+
+KnotRange knots_around(const std::vector<double>& times, const TimeSpan& during) {
+  const auto after_begin = std::upper_bound(times.begin() + 1, times.end() - 1, during.begin);
+  const auto from_end = std::lower_bound(after_begin, times.end() - 1, during.end);
+  return {static_cast<size_t>(after_begin - times.begin()) - 1, static_cast<size_t>(from_end - times.begin())};
+}
+
+void TurningPoints::add(double time, const Vec3& position) {
+  for (int i = 0; i < 3; ++i) {
+    if (is_empty_) axes_[i] = {position[i], time};
+    else add(time, position[i], axes_[i]);
+  }
+  is_empty_ = false;
+}
+
+// The extreme goes along with what travels on; a way back of more than rounding makes it a turning point.
+void TurningPoints::add(double time, double value, Axis& axis) {
+  const double way = value - axis.extreme;
+  if (axis.direction != 0 && way * axis.direction >= 0.0) {
+    axis.extreme = value, axis.time = time;
+    return;
+  }
+  if (std::abs(way) <= kLeastWay) return;
+  if (axis.direction != 0) {
+    if (axis.has_turned) rate_ = std::max(rate_, kPi / (axis.time - axis.last_turn));
+    axis.has_turned = true;
+    axis.last_turn = axis.time;
+  }
+  axis.direction = way > 0.0 ? 1 : -1;
+  axis.extreme = value, axis.time = time;
 }
 
 SplineKnots::SplineKnots(std::vector<double> times, Interpolation interpolation)

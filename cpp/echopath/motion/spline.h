@@ -48,6 +48,33 @@ class SplineKnots {
   std::vector<double> lower_, inverse_, upper_;     // [T] rows 1..T-2 of the factored tridiagonal matrix
 };
 
+// Indices [first, last] of the knots between which a span of time lies, as far as there are knots.
+struct KnotRange {
+  size_t first = 0, last = 0;
+};
+KnotRange knots_around(const std::vector<double>& times, const TimeSpan& during);
+
+// pi by the shortest time between two turning points of a sampled position, rad/s; 0 where it has fewer than two. Ways of less
+// than a nanometre are rounding.
+class TurningPoints {
+ public:
+  void add(double time, const Vec3& position);
+  double rate() const { return rate_; }
+
+ private:
+  struct Axis {
+    double extreme = 0.0, time = 0.0;     // the farthest point in the direction of travel, m, s
+    int direction = 0;
+    double last_turn = 0.0;               // s
+    bool has_turned = false;
+  };
+  void add(double time, double value, Axis& axis);
+
+  Axis axes_[3];
+  bool is_empty_ = true;
+  double rate_ = 0.0;
+};
+
 // Raises invalid_argument unless `time` is inside `span` up to rounding; returns it moved into the span.
 double time_inside(double time, const TimeSpan& span);
 

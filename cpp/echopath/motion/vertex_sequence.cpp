@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -75,6 +76,19 @@ void VertexSequence::at(double time, const std::vector<uint32_t>& indices, std::
 
 std::vector<double> VertexSequence::breakpoints() const { return data_->knots.breakpoints(); }
 TimeSpan VertexSequence::span() const { return data_->knots.span(); }
+
+double VertexSequence::turn_rate(const TimeSpan& during) const {
+  const std::vector<double>& times = data_->knots.times();
+  const auto [first, last] = knots_around(times, during);
+  double fastest = 0.0;
+  for (size_t vertex = 0; last > first + 2 && vertex < data_->frames.front().size(); ++vertex) {
+    TurningPoints turns;
+    for (size_t k = first; k <= last; ++k) turns.add(times[k], data_->frames[k][vertex]);
+    fastest = std::max(fastest, turns.rate());
+  }
+  return fastest;
+}
+
 const std::vector<double>& VertexSequence::times() const { return data_->knots.times(); }
 const Frames& VertexSequence::vertices() const { return data_->frames; }
 Interpolation VertexSequence::interpolation() const { return data_->knots.interpolation(); }

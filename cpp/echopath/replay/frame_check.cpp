@@ -33,6 +33,21 @@ void merge(const PathState& at, PathState& worst) {
   worst.cosine_change = std::max(worst.cosine_change, at.cosine_change);
 }
 
+bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
+
+double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
+  const Vec3 along = to - from;
+  const double length = along.squaredNorm(), at = length > 0 ? std::clamp(along.dot(point - from) / length, 0.0, 1.0) : 0.0;
+  return (from + at * along - point).norm();
+}
+
+// Of a mesh at one time, in the world.
+std::pair<Vec3, double> ball_of(const Pose& pose, uint32_t mesh_id) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
+  return {box.center(), 0.5 * box.diagonal().norm()};
+}
+
 }  // namespace
 
 FrameCheck::Scratch::Scratch(int longest) : probe(longest), evaluation(longest) {}
@@ -51,64 +66,124 @@ struct FrameCheck::View {
         probe(check.localise_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
-FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times, SpecularPoints specular, Job* job)
-    : paths_(paths), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
+// A ball that a mesh does not leave within the frame, relative to the origin.
+struct FrameCheck::Sweep {
+  Vec3 centre;
+  double radius;
+  int num_times;
+};
+
+FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
+    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
       localise_(paths, whole_patches(*paths.scene)),
       walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)),
       mesh_moves_(moving_meshes(*paths.scene)) {
   radio_.specular = specular;
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
-  if (is_still_ && times.size() > 1) times.erase(times.begin() + 1, times.end());
   const Pose pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
-  const auto traced = std::make_shared<const EmbreeScene>(*paths.scene, pose, origin_, job);
-  trace_view_ = std::make_unique<const View>(*this, traced, paths.frame.trace_time);
-  for (const double time : times) {
-    auto posed = traced;
-    if (!is_geometry_still_) posed = std::make_shared<const EmbreeScene>(*paths.scene, Pose(*paths.scene, time), origin_, job);
-    views_.push_back(std::make_unique<const View>(*this, posed, time));
-  }
+  traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
+  trace_view_ = std::make_unique<const View>(*this, traced_, paths.frame.trace_time);
+  find_sweeps();
 }
 
 FrameCheck::~FrameCheck() = default;
+
+void FrameCheck::find_sweeps() {
+  std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
+  std::vector<double> radii(times_.of_mesh.size());
+  for (int k = times_.num_base; k < std::ssize(times_.times); ++k) {
+    const Pose pose(*paths_.scene, times_.times[static_cast<size_t>(k)]);
+    for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
+      if (times_.of_mesh[id] <= k) continue;
+      const auto [centre, radius] = ball_of(pose, id);
+      centres[id].extend(centre);
+      radii[id] = std::max(radii[id], radius);
+    }
+  }
+  for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
+    if (times_.of_mesh[id] <= times_.num_base) continue;
+    sweeps_.push_back({centres[id].center() - origin_, 0.5 * centres[id].diagonal().norm() + radii[id], times_.of_mesh[id]});
+  }
+}
+
+int FrameCheck::times_of(const LocalPath& path) const {
+  int needed = times_.num_base;
+  if (sweeps_.empty()) return needed;
+  for (int k = 0; k < path.count; ++k) needed = std::max(needed, times_.of_mesh[path.hits[k].mesh_id]);
+  const auto& from = trace_view_->first_antennas.transmitters.front(), & to = trace_view_->first_antennas.receivers.front();
+  for (const Sweep& sweep : sweeps_) {
+    if (sweep.num_times <= needed) continue;
+    Vec3 last = from.position;
+    double nearest = 1e300;
+    for (int k = 0; k <= path.count; ++k) {
+      const int hit = path.is_reversed ? path.count - 1 - k : k;
+      Vec3 next = to.position;
+      if (k < path.count) {
+        PosedHit posed;
+        pose_facet(path.hits[hit], trace_view_->first_antennas, posed);
+        next = posed.point;
+      }
+      nearest = std::min(nearest, distance_to_segment(sweep.centre, last, next));
+      last = next;
+    }
+    if (nearest < sweep.radius) needed = sweep.num_times;
+  }
+  return needed;
+}
+
+std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, double time, Job* job) {
+  const Scene& scene = *paths_.scene;
+  if (index == geometries_.size()) {
+    geometries_.push_back(std::make_shared<EmbreeScene>(scene, Pose(scene, time), origin_, job));
+  } else {
+    geometries_[index]->update(scene, Pose(scene, time), origin_, job);
+  }
+  return geometries_[index];
+}
+
+void FrameCheck::pose(size_t first, size_t count, Job* job) {
+  views_.clear();
+  first_posed_ = first;
+  for (size_t i = 0; i < count && first + i < times_.times.size(); ++i) {
+    const double time = times_.times[first + i];
+    views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
+  }
+}
 
 bool FrameCheck::is_still(const LocalPath& path) const {
   const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
   return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
 }
 
-void FrameCheck::evaluate(const LocalPath& path, Scratch& scratch, PathFinding& found) const {
-  evaluate_path(path, trace_view_->first_antennas, radio_, scratch.evaluation, {&found.length, &found.amplitude, 1});
-  found.power = std::norm(found.amplitude);
-  if (is_still(path)) return;
-  double length;
-  std::complex<double> amplitude;
-  for (const auto& view : views_) {
-    evaluate_path(path, view->first_antennas, radio_, scratch.evaluation, {&length, &amplitude, 1});
-    found.power += std::norm(amplitude);
-  }
-  found.power /= static_cast<double>(views_.size() + 1);
+Echo FrameCheck::at_trace(const LocalPath& path, Scratch& scratch) const {
+  Echo echo;
+  evaluate_path(path, trace_view_->first_antennas, radio_, scratch.evaluation, {&echo.length, &echo.amplitude, 1});
+  return echo;
 }
 
-PathFinding FrameCheck::check(const LocalPath& path, Scratch& scratch) const {
-  PathFinding found;
-  evaluate(path, scratch, found);
+void FrameCheck::check(const LocalPath& path, int num_times, Scratch& scratch, PathFinding& found,
+                       std::vector<Echo>& out) const {
+  const int64_t needed = num_times - static_cast<int64_t>(first_posed_);
+  const auto count = static_cast<size_t>(std::clamp<int64_t>(needed, 0, std::ssize(views_)));
+  const Echo traced = at_trace(path, scratch);
+  const bool still = is_still(path);
+  if (found.num_powers == 0) {
+    found.power = std::norm(traced.amplitude);
+    found.num_powers = 1;
+  }
   trace_view_->probe.cosines(path, scratch.probe, scratch.probe.reference);
   scratch.known.resize(views_.size());
-  for (size_t i = 0; i < views_.size(); ++i) merge(views_[i]->probe.check(path, scratch.probe, scratch.known[i]), found.state);
-  return found;
-}
-
-SurfaceSeen FrameCheck::look(int64_t num_rays, Job* job) const {
-  const TraceView trace{*trace_view_->geometry, paths_.frame.transmitter - origin_, paths_.frame.receiver - origin_};
-  const auto num_looks = static_cast<int64_t>(views_.size() * probe_radar_.transmitters.size());
-  SurfaceSeen seen(*paths_.scene);
-  for (const auto& view : views_) {
-    seen.add(look_for_new_surface(*paths_.scene, first_radar_.waveform.start_frequency, view->rim, *view->geometry, trace,
-                                  std::max<int64_t>(1, num_rays / std::max<int64_t>(1, num_looks)), job));
+  out.assign(count, traced);
+  for (size_t i = 0; i < count; ++i) {
+    const PathState state = views_[i]->probe.check(path, scratch.probe, scratch.known[i]);
+    if (!still) evaluate_path(path, views_[i]->first_antennas, radio_, scratch.evaluation, {&out[i].length, &out[i].amplitude, 1});
+    out[i].is_lost = is_lost(state);
+    found.power += std::norm(out[i].amplitude);
+    ++found.num_powers;
+    merge(state, found.state);
   }
-  return seen;
 }
 
 }  // namespace echopath

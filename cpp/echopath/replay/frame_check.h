@@ -5,17 +5,25 @@
 #include <vector>
 
 #include "echopath/replay/amplitude.h"
+#include "echopath/replay/check_times.h"
 #include "echopath/replay/frame_probe.h"
-#include "echopath/replay/new_surface.h"
+#include "echopath/trace/kept_geometry.h"
 
 namespace echopath {
 
-// Worst over the times of the check.
+// Between the first antennas, at one time.
+struct Echo {
+  std::complex<double> amplitude;  // sqrt(W)
+  double length = 0.0;             // m
+  bool is_lost = false;            // something blocks a leg, or a point of reflection has left its surface
+};
+
+// Of one path, over the times that were checked.
 struct PathFinding {
-  double power = 0.0;                // W, mean of |amplitude|^2 over the trace time and the times of the check
-  std::complex<double> amplitude;    // sqrt(W), at the trace time
-  double length = 0.0;               // m, at the trace time
-  PathState state;
+  double power = 0.0;  // W, sum of |amplitude|^2 over the trace time and those times
+  int num_powers = 0;  // in that sum
+  PathState state;     // worst
+  double mean_power() const { return num_powers > 0 ? power / num_powers : 0.0; }
 };
 
 class FrameCheck {
@@ -27,30 +35,44 @@ class FrameCheck {
     explicit Scratch(int longest);  // hits of a path
   };
 
-  // Amplitudes are those between the first antennas of `radar`. Paths and radar must outlive it. Where nothing moves, one time
-  // stands for all. Raises invalid_argument when a motion does not cover a time, Cancelled.
-  FrameCheck(const Paths& paths, const Radar& radar, std::vector<double> times,
-             SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
+  // Amplitudes are those between the first antennas of `radar`. Paths and radar must outlive it. Raises invalid_argument when a
+  // motion does not cover a time, Cancelled.
+  FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular = SpecularPoints::kMaterial,
+             Job* job = nullptr);
   ~FrameCheck();
 
+  const CheckTimes& times() const { return times_; }
   LocalPaths localise(std::span<const int64_t> indices) const { return localise_(indices); }
-  // Thread-safe.
-  PathFinding check(const LocalPath& path, Scratch& scratch) const;
-  // What is seen at the times of the check, by about `num_rays` rays in all.
-  SurfaceSeen look(int64_t num_rays, Job* job = nullptr) const;
+  // How many of the times a path needs, from the first: what it touches, or what may come in its way, tells.
+  int times_of(const LocalPath& path) const;
+
+  // Poses the scene at the times [first, first + count), for `check`. No other call may run meanwhile.
+  void pose(size_t first, size_t count, Job* job = nullptr);
+  // Thread-safe, as all that follows.
+  Echo at_trace(const LocalPath& path, Scratch& scratch) const;
+  // Adds what becomes of a path at the posed times that it needs; out: an echo for each of them.
+  void check(const LocalPath& path, int num_times, Scratch& scratch, PathFinding& found, std::vector<Echo>& out) const;
+
   // How far the length is off where specular hits stand as chosen.
   const LengthError& error_of(const PathState& state) const {
     return radio_.specular == SpecularPoints::kFermat ? state.stepped : state.frozen;
   }
+  const Radar& first_radar() const { return first_radar_; }
+  size_t num_antenna_pairs() const { return std::max(probe_radar_.transmitters.size(), probe_radar_.receivers.size()); }
   bool has_array() const { return probe_radar_.transmitters.size() + probe_radar_.receivers.size() > 2; }
+  bool anything_moves() const { return !is_still_; }
   double wavenumber() const { return radio_.wavenumber; }
 
  private:
   struct View;
+  struct Sweep;
   bool is_still(const LocalPath& path) const;
-  void evaluate(const LocalPath& path, Scratch& scratch, PathFinding& found) const;
+  void find_sweeps();
+  // At one of the posed times, brought there from the time that stood in its place.
+  std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
 
   const Paths& paths_;
+  CheckTimes times_;
   Radar probe_radar_, first_radar_;
   Localiser localise_;
   SurfaceWalk walk_;
@@ -58,8 +80,12 @@ class FrameCheck {
   std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
+  std::shared_ptr<EmbreeScene> traced_;
+  std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // of the posed times; brought from one to the next
   std::unique_ptr<const View> trace_view_;
-  std::vector<std::unique_ptr<const View>> views_;  // by time
+  std::vector<std::unique_ptr<const View>> views_;  // posed
+  size_t first_posed_ = 0;
+  std::vector<Sweep> sweeps_;  // of the meshes that need more times than others
 };
 
 }  // namespace echopath

@@ -2,32 +2,33 @@
 // Surface that the antennas see at some time of a frame and that was hidden from the trace: its echoes are in no record.
 #include <vector>
 
-#include "echopath/replay/instant.h"
-#include "echopath/trace/embree_scene.h"
+#include "echopath/base/job.h"
+#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/trace.h"
 
 namespace echopath {
 
-// Power of single echoes, each surface taken as rough: gains, |Gamma|^2, cosine and spreading of both ways; in units of their
-// own, for shares.
-struct SurfaceSeen {
-  double power = 0.0;      // of all that is seen
-  double hidden = 0.0;     // of what the trace could not see: in a shadow of its transmitter or receiver, or turned away
-  std::vector<double> power_of, hidden_of;  // by object, the child of the scene's root above the mesh (node index)
+// How a record was traced, for traces of the same kind at other times.
+TraceSettings settings_like(const TraceFrame& frame);
 
-  explicit SurfaceSeen(const Scene& scene) : power_of(scene.nodes().size()), hidden_of(scene.nodes().size()) {}
-  void add(const SurfaceSeen& other);
+// Of one look at the scene as it is at one time.
+struct Look {
+  Paths paths;                   // what a trace finds then
+  std::vector<uint8_t> is_new;   // [P] 1: a trace at the time of the record could not have had it
 };
 
-// The two antennas of a trace and what it saw, m relative to the origin.
-struct TraceView {
-  const EmbreeScene& geometry;
-  Vec3 transmitter, receiver;
+struct LookSettings {
+  double time = 0.0;      // s
+  int64_t num_rays = 0;
+  uint64_t seed = 1;      // of directions and random phases
+  size_t antenna = 0;     // of those of probe_radar(record, radar), in turn; 0: those of the trace, carried along
 };
 
-// What `num_rays` rays from each of the transmitters of `antennas` find first in `geometry`, connected to each of the
-// receivers; frequency in Hz. An independent test: it knows nothing of the record. The same bits for any number of threads.
-// Raises Cancelled.
-SurfaceSeen look_for_new_surface(const Scene& scene, double frequency, const Instant& antennas, const EmbreeScene& geometry,
-                                 const TraceView& trace, int64_t num_rays, Job* job);
+// A trace of the record's scene at another time, and what of it the record cannot have: a way that was blocked then, or led over
+// points of reflection that their surface had not. It is the reverse of what `renew` takes out, so that a record without what is
+// blocked and the new paths are a whole. `then`, `now`: geometry kept at the time of the record and from look to look. The same
+// bits for any number of threads. Raises invalid_argument when a motion does not cover the time, Cancelled.
+Look look_for_new_surface(const Paths& record, const Radar& radar, const LookSettings& settings, Job* job = nullptr,
+                          KeptGeometry* then = nullptr, KeptGeometry* now = nullptr);
 
 }  // namespace echopath

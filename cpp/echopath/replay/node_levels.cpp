@@ -5,11 +5,24 @@
 
 #include "echopath/replay/motion_knots.h"
 #include "echopath/replay/node_tails.h"
+#include "echopath/replay/turn_rates.h"
 
 namespace echopath {
 namespace {
 
 constexpr std::array<int, 13> kOrders = {4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, NodeLevels::kHighestOrder};
+
+constexpr int kNodesBeyondTurns = 2;  // of a polynomial that follows a turning: where its coefficients begin to fall
+
+// Between neighbours of start, cuts (s, ascending) and end.
+double longest_piece(double start, double end, const std::vector<double>& cuts) {
+  double longest = 0.0, from = start;
+  for (const double cut : cuts) {
+    longest = std::max(longest, cut - from);
+    from = cut;
+  }
+  return std::max(longest, end - from);
+}
 
 }  // namespace
 
@@ -34,8 +47,8 @@ void NodeLevels::find_shapes() {
   }
   const int64_t smooth = num_pieces(radar_, start, breakpoints_), analytic = num_pieces(radar_, start, knots_);
   for (const int order : kOrders) {
-    shapes_.push_back({order, &breakpoints_, order * smooth});
-    if (analytic > smooth) shapes_.push_back({order, &knots_, order * analytic});
+    shapes_.push_back({order, &breakpoints_, order * smooth, longest_piece(start, end, breakpoints_)});
+    if (analytic > smooth) shapes_.push_back({order, &knots_, order * analytic, longest_piece(start, end, knots_)});
   }
   std::erase_if(shapes_, [&](const Shape& shape) { return shape.num_nodes > num_exact_nodes(); });
   std::stable_sort(shapes_.begin(), shapes_.end(), [](const Shape& a, const Shape& b) { return a.num_nodes < b.num_nodes; });
@@ -118,6 +131,13 @@ const NodeLevels::Trial& NodeLevels::trial_of(int polynomial) const {
   return trial;
 }
 
+// The Chebyshev coefficients of a turning by w over a piece of length T are Bessel functions of w T / 2, which fall but for orders
+// above that: with fewer nodes it may look as if it stood still, as four of them find what turns four times.
+bool NodeLevels::can_follow(int polynomial, double rate) const {
+  const Shape& shape = shapes_[static_cast<size_t>(polynomial) - 1];
+  return shape.order >= kNodesBeyondTurns + 0.5 * rate * shape.longest;
+}
+
 // The distances of vertices all over a mesh from the transmitters tell how many nodes its motion needs: an echo's length is
 // made of such distances.
 bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
@@ -143,10 +163,13 @@ bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
 
 void NodeLevels::find_mesh_levels() const {
   const std::lock_guard lock(mutex_);
+  const TimeSpan frame{paths_.frame.start_time, paths_.frame.start_time + radar_.frame_duration()};
+  const double of_radar = turn_rate(radar_, frame);
   for (uint32_t id = 0; id < paths_.scene->meshes().size(); ++id) {
     const bool moves = paths_.scene->is_moving(id) || radar_.motion;
     int& needed = mesh_level_.emplace_back(moves ? 1 : 0);
-    while (moves && needed <= num_polynomials() && !fits(needed, id)) ++needed;
+    const double rate = moves ? turn_rate(*paths_.scene, id, frame) + of_radar : 0.0;
+    while (moves && needed <= num_polynomials() && !(can_follow(needed, rate) && fits(needed, id))) ++needed;
   }
 }
 

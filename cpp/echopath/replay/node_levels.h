@@ -62,6 +62,7 @@ class NodeLevels {
     int order;                                // nodes per piece
     const std::vector<double>* cuts;          // between pieces, s
     int64_t num_nodes;                        // of all pieces
+    double longest;                           // s, of a piece
   };
   void find_shapes();
   int exact_order() const;
@@ -80,6 +81,7 @@ class NodeLevels {
   const std::vector<int>& mesh_levels() const;
   void find_mesh_levels() const;
   const Trial& trial_of(int polynomial) const;
+  bool can_follow(int polynomial, double turn_rate) const;
   bool fits(int polynomial, uint32_t mesh_id) const;
 
   const Paths& paths_;

@@ -17,6 +17,8 @@ constexpr int kMaxSteps = 12;        // they converge quadratically; what needs 
 
 enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
 
+bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
+
 // What became of a block of paths; hits of those that moved, in the order of the record.
 struct BlockOutcome {
   std::vector<Outcome> of_path;
@@ -150,7 +152,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
     }
     for (const Outcome outcome : block.of_path) {
       const auto path = keep.size();
-      keep.push_back(outcome == Outcome::kKept || outcome == Outcome::kMoved);
+      keep.push_back(stays(outcome));
       renewal.num_blocked += outcome == Outcome::kBlocked;
       renewal.num_lost += outcome == Outcome::kLost;
       renewal.num_moved += outcome == Outcome::kMoved;
@@ -167,9 +169,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
   }
 }
 
-}  // namespace
-
-Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
+std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
   const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsPerBlock - 1) / kPathsPerBlock;
   std::vector<BlockOutcome> blocks(static_cast<size_t>(num_blocks));
@@ -180,9 +180,23 @@ Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, Kep
     std::iota(indices.begin(), indices.end(), begin);
     blocks[static_cast<size_t>(i)] = renewer.renew_block(indices);
   }, job);
+  return blocks;
+}
+
+}  // namespace
+
+Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   Renewal renewal;
-  assemble(paths, blocks, renewal, job);
+  assemble(paths, renew_blocks(paths, radar, time, job, kept), renewal, job);
   return renewal;
+}
+
+std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
+  std::vector<uint8_t> out;
+  for (const BlockOutcome& block : renew_blocks(paths, radar, time, job, kept)) {
+    std::transform(block.of_path.begin(), block.of_path.end(), std::back_inserter(out), stays);
+  }
+  return out;
 }
 
 }  // namespace echopath

@@ -20,4 +20,8 @@ struct Renewal {
 // bits for any number of threads. Raises invalid_argument when a motion does not cover the time, DeviceError, Cancelled. `kept`: as in `trace`.
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
+// [P] 1: the path is still there at `time`, as `renew` has it. Of paths of another trace: those that one at `time` could have had.
+std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job = nullptr,
+                                 KeptGeometry* kept = nullptr);
+
 }  // namespace echopath

@@ -1,32 +1,34 @@
 #include "echopath/replay/validity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
+#include <map>
 #include <numeric>
+#include <span>
 
-#include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/base/phasor.h"
-#include "echopath/replay/frame_check.h"
+#include "echopath/replay/new_surface.h"
+#include "echopath/replay/replay.h"
+#include "echopath/replay/validity_objects.h"
+#include "echopath/signal/noise.h"
 
 namespace echopath {
 namespace {
 
 constexpr int64_t kPathsPerBlock = 2048;
-constexpr int64_t kBlocksInFlight = 64;   // fixed: sums must not depend on the number of threads
-constexpr size_t kNumFrequencies = 64;    // over the band, for the power of the coherent sum
-constexpr int64_t kLookRays = 1 << 16;    // for new surface, over all times and transmitters
+constexpr int64_t kBlocksInFlight = 64;      // fixed: sums must not depend on the number of threads
+constexpr size_t kTimesAtOnce = kBaseCheckTimes;
+constexpr int64_t kLookRays = 1 << 17;       // for new surface, over all times and antennas
+constexpr int64_t kLeastLookRays = 1 << 12;  // of one look
+constexpr uint64_t kLookSeed = 0x6c6f6f6b;   // beside that of the trace: its lattice may not be the trace's
 
 // Sums of power over paths, W.
 struct Sums {
   double power = 0.0, squared = 0.0, slid = 0.0, left = 0.0, blocked = 0.0, turned = 0.0;
 
-  void add(const PathFinding& found, double phase) {
-    const double p = found.power;
-    const PathState& state = found.state;
+  void add(const PathState& state, double p, double phase) {
     power += p;
     squared += p * phase * phase;
     if (phase > kPhaseLimit) slid += p;
@@ -51,123 +53,188 @@ struct Sums {
 // Physical-optics paths add up as fields, the others as powers.
 struct KindSums {
   Sums field, power;
+  BandSum together;  // of the physical-optics paths at the trace time
 
-  void add(const KindSums& other) {
-    field.add(other.field);
-    power.add(other.power);
-  }
   Sums combined(double field_scale) const {
     Sums sum = power;
     sum.add(field, field_scale);
     return sum;
   }
-};
-
-struct Tally {
-  KindSums whole;
-  std::vector<KindSums> of_object;                              // by node index
-  std::array<std::complex<double>, kNumFrequencies> field{};    // sqrt(W), sum of the physical-optics paths over the band
-  double largest = 0.0, motion = 0.0, stepped = 0.0;            // rad
-  double cosine_change = 0.0;
-
-  explicit Tally(size_t num_nodes) : of_object(num_nodes) {}
-
-  void add(const Tally& other) {
-    whole.add(other.whole);
-    for (size_t i = 0; i < of_object.size(); ++i) of_object[i].add(other.of_object[i]);
-    for (size_t i = 0; i < field.size(); ++i) field[i] += other.field[i];
-    largest = std::max(largest, other.largest);
-    motion = std::max(motion, other.motion);
-    stepped = std::max(stepped, other.stepped);
-    cosine_change = std::max(cosine_change, other.cosine_change);
-  }
   // From the sum of |a|^2 of the physical-optics paths to the power of their sum, mean over the band.
-  double field_scale() const {
-    double sum = 0.0;
-    for (const std::complex<double>& value : field) sum += std::norm(value) / kNumFrequencies;
-    return whole.field.power > 0 ? sum / whole.field.power : 1.0;
-  }
+  double field_scale() const { return field.power > 0 ? together.power() / field.power : 1.0; }
 };
 
 bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_material >= 0; }
 
+// Paths to be checked and for how many of their kind each stands.
+struct Sample {
+  std::vector<int64_t> paths;
+  std::vector<float> weights;
+};
+
+// Of each object and number of bounces about every n-th path, so that no more than kPathsChecked are looked at; all that add up as
+// fields, which would alias.
+class Sampling {
+ public:
+  explicit Sampling(const Paths& paths) : paths_(paths), count_(paths.scene->nodes().size() * kKinds) {
+    for (int64_t path = 0; path < paths.num_paths(); ++path) ++count_[kind_of(path)];
+  }
+  Sample operator()(bool all) const {
+    Sample sample;
+    std::vector<int64_t> seen(count_.size());
+    for (int64_t path = 0; path < paths_.num_paths(); ++path) {
+      const size_t kind = kind_of(path);
+      const int64_t step = all || is_coherent(path) ? 1 : (count_[kind] + kPathsChecked - 1) / kPathsChecked;
+      if (seen[kind]++ % step != 0) continue;
+      sample.paths.push_back(path);
+      // What stands for how many: the last one of a kind may stand for fewer.
+      sample.weights.push_back(static_cast<float>(std::min(step, count_[kind] - seen[kind] + 1)));
+    }
+    return sample;
+  }
+
+ private:
+  static constexpr size_t kKinds = 8;  // by coherence and number of bounces
+  bool is_coherent(int64_t path) const { return paths_.diffuse[static_cast<size_t>(path)] == 0; }
+  size_t kind_of(int64_t path) const {
+    const int bounces = paths_.num_bounces[static_cast<size_t>(path)];
+    const Hit& last = paths_.hits_of(path)[std::max(0, bounces - 1)];
+    const auto object = static_cast<size_t>(paths_.scene->meshes()[last.mesh_id].object);
+    return kKinds * object + 4 * is_coherent(path) + static_cast<size_t>(std::min(bounces, 4) - 1);
+  }
+
+  const Paths& paths_;
+  std::vector<int64_t> count_;
+};
+
 class Certificate {
  public:
-  Certificate(const Paths& paths, const Radar& radar, const std::vector<double>& times, const ValiditySettings& settings,
-              Job* job)
-      : paths_(paths), check_(paths, radar, times, settings.specular, job), keeps_arrays_(settings.arrays), job_(job) {
-    const ChirpSequence& waveform = radar.waveform;
-    first_turns_ = (waveform.start_frequency + 0.5 * waveform.bandwidth / kNumFrequencies) / kSpeedOfLight;
-    turns_step_ = waveform.bandwidth / kNumFrequencies / kSpeedOfLight;
+  Certificate(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
+      : paths_(paths), radar_(radar), check_(paths, radar, std::move(times), settings.specular, job),
+        sample_(Sampling(paths)(settings.arrays)), band_(radar.waveform), keeps_arrays_(settings.arrays), job_(job) {
     report_.num_paths = paths.num_paths();
-    report_.times = times;
+    report_.times = check_.times().times;
     report_.has_array = check_.has_array();
     report_.specular = settings.specular;
+    const ChirpSequence& waveform = radar.waveform;
+    const double cells = static_cast<double>(waveform.num_samples) * waveform.num_chirps;
+    report_.cell_noise = noise_power(radar) * (waveform.real ? 2.0 : 1.0) / cells;
   }
 
   Validity run() {
-    if (keeps_arrays_) resize_arrays();
-    const Tally tally = tally_all();
-    fill_shares(tally);
-    add_new_surface();
+    findings_.resize(sample_.paths.size());
+    for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
+    sum_findings();
+    look_at_surface();
+    make_objects();
     return std::move(report_);
   }
 
  private:
-  Tally tally_all() {
-    const size_t num_nodes = paths_.scene->nodes().size();
-    Tally sum(num_nodes);
-    const int64_t num_blocks = (paths_.num_paths() + kPathsPerBlock - 1) / kPathsPerBlock;
-    if (job_) job_->start(num_blocks);
-    for (int64_t begin = 0; begin < num_blocks; begin += kBlocksInFlight) {
-      std::vector<Tally> parts(static_cast<size_t>(std::min(kBlocksInFlight, num_blocks - begin)), Tally(num_nodes));
-      const auto check = [&](int64_t i) { check_block(begin + i, parts[static_cast<size_t>(i)]); };
-      parallel_for(static_cast<int64_t>(parts.size()), check, job_);
-      for (const Tally& part : parts) sum.add(part);
+  // What is kept of a path between the times.
+  struct Finding : PathFinding {
+    int num_times = 0;          // that it needs
+    size_t object = 0;          // node index
+    bool is_field = false;
+    Echo at_trace;
+  };
+
+  // Of an object.
+  struct SeenNow {
+    BandSum seen, fresh;  // by one look: of all, and of new surface
+  };
+  struct SeenSums {
+    double seen = 0.0, fresh = 0.0;  // W, over times and antennas
+    double largest = 0.0;            // W, of what is seen from the antennas of the trace
+  };
+
+  size_t num_base() const { return static_cast<size_t>(check_.times().num_base); }
+
+  // Paths of the sample that need times from `first` on.
+  std::vector<size_t> members_from(size_t first) const {
+    std::vector<size_t> members;
+    for (size_t i = 0; i < findings_.size(); ++i) {
+      if (first == 0 || findings_[i].num_times > static_cast<int>(first)) members.push_back(i);
     }
-    return sum;
+    return members;
   }
 
-  void check_block(int64_t block, Tally& tally) {
-    const int64_t begin = block * kPathsPerBlock;
-    std::vector<int64_t> indices(static_cast<size_t>(std::min(kPathsPerBlock, paths_.num_paths() - begin)));
-    std::iota(indices.begin(), indices.end(), begin);
+  void check_times_from(size_t first) {
+    const std::vector<size_t> members = members_from(first);
+    if (first > 0 && members.empty()) return;
+    check_.pose(first, kTimesAtOnce, job_);
+    const int64_t size = std::ssize(members), num_blocks = (size + kPathsPerBlock - 1) / kPathsPerBlock;
+    if (job_) job_->start(num_blocks);
+    for (int64_t begin = 0; begin < num_blocks; begin += kBlocksInFlight) {
+      std::vector<ObjectsAtTimes> parts(static_cast<size_t>(std::min(kBlocksInFlight, num_blocks - begin)));
+      const auto check = [&](int64_t i) {
+        const int64_t from = (begin + i) * kPathsPerBlock;
+        const std::span<const size_t> some(members.data() + from, static_cast<size_t>(std::min(kPathsPerBlock, size - from)));
+        check_block(some, first, parts[static_cast<size_t>(i)]);
+      };
+      parallel_for(static_cast<int64_t>(parts.size()), check, job_);
+      for (const ObjectsAtTimes& part : parts) add(part, at_times_);
+    }
+  }
+
+  void check_block(std::span<const size_t> members, size_t first, ObjectsAtTimes& sums) {
+    std::vector<int64_t> indices;
+    for (const size_t member : members) indices.push_back(sample_.paths[member]);
     const LocalPaths local = check_.localise(indices);
     FrameCheck::Scratch scratch(local.longest);
-    for (size_t i = 0; i < indices.size(); ++i) {
-      const PathFinding found = check_.check(local.paths[i], scratch);
-      count(local.paths[i], found, tally);
-      if (keeps_arrays_) keep(static_cast<size_t>(indices[i]), found);
+    std::vector<Echo> echoes;
+    for (size_t i = 0; i < members.size(); ++i) {
+      Finding& found = findings_[members[i]];
+      const LocalPath& path = local.paths[i];
+      if (first == 0) begin_path(path, scratch, found);
+      check_.check(path, found.num_times, scratch, found, echoes);
+      add_echoes(found, sample_.weights[members[i]], first, echoes, sums);
+    }
+  }
+
+  void begin_path(const LocalPath& path, FrameCheck::Scratch& scratch, Finding& found) const {
+    found.num_times = check_.times_of(path);
+    found.object = static_cast<size_t>(paths_.scene->meshes()[path.hits[std::max(path.last_material, 0)].mesh_id].object);
+    found.is_field = is_field(path);
+    found.at_trace = check_.at_trace(path, scratch);
+  }
+
+  // Of the times at which surface is looked for, too.
+  void add_echoes(const Finding& found, double weight, size_t first, const std::vector<Echo>& echoes, ObjectsAtTimes& sums) const {
+    if (first >= num_base()) return;
+    std::vector<ObjectAtTime>& times = sums[found.object];
+    times.resize(num_base());
+    for (size_t i = 0; i < echoes.size() && first + i < num_base(); ++i) {
+      times[first + i].replayed.add(echoes[i], found.is_field, weight, band_);
+      if (echoes[i].is_lost) times[first + i].lost.add(echoes[i], found.is_field, weight, band_);
     }
   }
 
   double phase(double length) const { return check_.wavenumber() * length; }
-  LengthError error_of(const PathFinding& found) const { return check_.error_of(found.state); }
 
-  void count(const LocalPath& path, const PathFinding& found, Tally& tally) const {
-    const double slid = phase(error_of(found).largest);
-    const bool adds_as_field = is_field(path);
-    const LocalHit& hit = path.hits[std::max(path.last_material, 0)];
-    KindSums& object = tally.of_object[static_cast<size_t>(paths_.scene->meshes()[hit.mesh_id].object)];
-    (adds_as_field ? tally.whole.field : tally.whole.power).add(found, slid);
-    (adds_as_field ? object.field : object.power).add(found, slid);
-    if (adds_as_field) add_field(found, tally);
-    if (!(found.power > 0)) return;
-    tally.largest = std::max(tally.largest, slid);
-    tally.motion = std::max(tally.motion, phase(error_of(found).motion));
-    tally.stepped = std::max(tally.stepped, phase(found.state.stepped.largest));
-    tally.cosine_change = std::max(tally.cosine_change, found.state.cosine_change);
-  }
-
-  void add_field(const PathFinding& found, Tally& tally) const {
-    const Phasor first = phasor_of_product(first_turns_, found.length), step = phasor_of_product(turns_step_, found.length);
-    std::complex<double> value = found.amplitude * std::complex<double>(first.re, -first.im);
-    const std::complex<double> turn(step.re, -step.im);
-    for (std::complex<double>& sum : tally.field) {
-      sum += value;
-      value *= turn;
+  void sum_findings() {
+    if (keeps_arrays_) resize_arrays();
+    KindSums whole;
+    for (size_t i = 0; i < findings_.size(); ++i) {
+      const Finding& found = findings_[i];
+      const double slid = phase(check_.error_of(found.state).largest), power = sample_.weights[i] * found.mean_power();
+      for (KindSums* sums : {&whole, &of_object_[found.object]}) {
+        (found.is_field ? sums->field : sums->power).add(found.state, power, slid);
+        if (found.is_field) sums->together.add(found.at_trace, true, sample_.weights[i], band_);
+      }
+      if (keeps_arrays_) keep(i, found);
+      if (!(power > 0)) continue;
+      raise(report_.largest_phase_error, slid);
+      raise(report_.motion_phase_error, phase(check_.error_of(found.state).motion));
+      raise(report_.stepped_phase_error, phase(found.state.stepped.largest));
+      raise(report_.largest_cosine_change, found.state.cosine_change);
     }
+    const Sums sum = whole.combined(whole.field_scale());
+    report_.shares = sum.shares();
+    report_.rms_phase_error = sum.power > 0 ? std::sqrt(sum.squared / sum.power) : 0.0;
   }
+
+  static void raise(double& largest, double value) { largest = std::max(largest, value); }
 
   void resize_arrays() {
     ValidityArrays& arrays = report_.arrays;
@@ -179,8 +246,8 @@ class Certificate {
 
   void keep(size_t path, const PathFinding& found) {
     ValidityArrays& arrays = report_.arrays;
-    arrays.power[path] = found.power;
-    arrays.phase_error[path] = static_cast<float>(phase(error_of(found).largest));
+    arrays.power[path] = found.mean_power();
+    arrays.phase_error[path] = static_cast<float>(phase(check_.error_of(found.state).largest));
     arrays.stepped_phase_error[path] = static_cast<float>(phase(found.state.stepped.largest));
     arrays.left[path] = found.state.left;
     arrays.blocked[path] = found.state.blocked;
@@ -189,55 +256,148 @@ class Certificate {
     arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
   }
 
-  void fill_shares(const Tally& tally) {
-    const double scale = tally.field_scale();
-    const Sums whole = tally.whole.combined(scale);
-    report_.shares = whole.shares();
-    report_.rms_phase_error = whole.power > 0 ? std::sqrt(whole.squared / whole.power) : 0.0;
-    report_.largest_phase_error = tally.largest;
-    report_.motion_phase_error = tally.motion;
-    report_.stepped_phase_error = tally.stepped;
-    report_.largest_cosine_change = tally.cosine_change;
-    of_object_.resize(tally.of_object.size());
-    for (size_t i = 0; i < of_object_.size(); ++i) of_object_[i] = tally.of_object[i].combined(scale).shares();
+  // From the antennas of the trace at each of the times, and from those at the rim.
+  void look_at_surface() {
+    if (!check_.anything_moves() && !check_.has_array()) return;
+    const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
+    LookSettings look;
+    look.num_rays = std::max(kLeastLookRays, kLookRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
+    look.seed = paths_.frame.seed ^ kLookSeed;
+    KeptGeometry then, now;
+    for (size_t time = 0; time < num_times; ++time) {
+      look.time = report_.times[time];
+      for (look.antenna = 0; look.antenna < num_pairs; ++look.antenna) {
+        add_look(look_for_new_surface(paths_, radar_, look, job_, &then, &now), time, look.antenna == 0);
+      }
+    }
   }
 
-  void add_new_surface() {
-    const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0.0; };
-    const SurfaceSeen seen = check_.look(kLookRays, job_);
-    report_.shares.new_surface = share(seen.hidden, seen.power);
-    for (size_t i = 0; i < of_object_.size(); ++i) {
-      of_object_[i].new_surface = share(seen.hidden_of[i], seen.power_of[i]);
-      if (of_object_[i].power <= 0 && seen.power_of[i] <= 0) continue;
-      report_.objects.push_back({paths_.scene->nodes()[i].name, of_object_[i]});
+  // What rim antennas see counts for shares alone.
+  void add_look(const Look& found, size_t time, bool is_own) {
+    Radar ears = is_own ? check_.first_radar() : found.paths.radar;
+    ears.waveform.num_chirps = ears.waveform.num_samples = 1;
+    std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    Replayer(found.paths, ears).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
+    std::map<size_t, SeenNow> seen;
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Hit* hits = found.paths.hits_of(all[i]);
+      const auto [object, is_field] = end_of(found.paths, i, hits);
+      const Echo echo{amplitudes[i], lengths[i], false};
+      seen[object].seen.add(echo, is_field, 1.0, band_);
+      if (found.is_new[i]) seen[object].fresh.add(echo, is_field, 1.0, band_);
     }
-    std::stable_sort(report_.objects.begin(), report_.objects.end(),
-                     [](const auto& a, const auto& b) { return a.shares.power > b.shares.power; });
+    for (const auto& [object, at] : seen) {
+      SeenSums& sums = seen_[object];
+      const double power = at.seen.power();
+      sums.seen += power;
+      sums.fresh += at.fresh.power();
+      if (is_own) raise(sums.largest, power);
+      if (!is_own || time >= num_base()) continue;
+      at_times_[object].resize(num_base());
+      at_times_[object][time].fresh.add(at.fresh);
+    }
   }
+
+  // The object of the last hit that is no image, as the path was traced, and whether its echo adds up as a field.
+  std::pair<size_t, bool> end_of(const Paths& paths, size_t path, const Hit* hits) const {
+    const int count = paths.num_bounces[path];
+    const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
+    int last = -1;
+    for (int k = 0; k < count && last < 0; ++k) {
+      const int hit = is_reversed ? k : count - 1 - k;
+      const bool is_image = paths_.scene->node_of(hits[hit].mesh_id).material->mirror && !(paths.diffuse[path] >> hit & 1);
+      if (!is_image) last = hit;
+    }
+    const Hit& end = hits[last >= 0 ? last : is_reversed ? count - 1 : 0];
+    return {static_cast<size_t>(paths_.scene->meshes()[end.mesh_id].object), last >= 0 && paths.diffuse[path] == 0};
+  }
+
+  void make_objects() {
+    std::vector<double> turn(of_object_.size());
+    std::vector<uint8_t> is_too_fast(of_object_.size());
+    const CheckTimes& times = check_.times();
+    for (size_t id = 0; id < times.turn.size(); ++id) raise(turn[object_of(id)], times.turn[id]);
+    for (const uint32_t id : times.too_fast) is_too_fast[object_of(id)] = 1;
+    double strongest = 0.0;
+    for (size_t i = 0; i < of_object_.size(); ++i) {
+      ObjectValidity object = make_object(i);
+      object.turn = turn[i];
+      object.is_too_fast = is_too_fast[i] != 0;
+      if (object.power <= 0 && object.seen_power <= 0) continue;
+      raise(strongest, std::max(object.power, object.seen_power));
+      report_.objects.push_back(std::move(object));
+    }
+    const double floor = std::max(strongest * std::pow(10.0, -0.1 * kDynamicRangeDb), report_.cell_noise);
+    for (ObjectValidity& object : report_.objects) object.is_in_range = std::max(object.power, object.seen_power) >= floor;
+    std::stable_sort(report_.objects.begin(), report_.objects.end(), [](const auto& a, const auto& b) { return a.power > b.power; });
+  }
+
+  size_t object_of(size_t mesh_id) const { return static_cast<size_t>(paths_.scene->meshes()[mesh_id].object); }
+
+  ObjectValidity make_object(size_t node) {
+    ObjectValidity object;
+    static_cast<ValidityShares&>(object) = of_object_[node].combined(of_object_[node].field_scale()).shares();
+    object.name = paths_.scene->nodes()[node].name;
+    object.has_paths = object.power > 0;
+    const bool is_whole = paths_.num_paths() == paths_.frame.statistics.num_paths;
+    object.is_asked = is_whole || object.has_paths;
+    const SeenSums& looks = seen_[node];
+    object.new_surface = looks.seen > 0 ? looks.fresh / looks.seen : 0.0;
+    report_.shares.new_surface += all_seen() > 0 ? looks.fresh / all_seen() : 0.0;
+    double replayed = 0.0, kept = 0.0, truth = 0.0;
+    for (const ObjectAtTime& at : at_times_[node]) {
+      BandSum left = at.replayed;
+      left.add(at.lost, -1.0);
+      replayed += at.replayed.power();
+      kept += left.power();
+      truth += at.true_power();
+    }
+    object.seen_power = looks.largest;
+    if (replayed > 0) object.disappears = std::max(0.0, 1.0 - kept / replayed);
+    if (is_whole && replayed > 0 && truth > 0) object.error_db = 10.0 * std::log10(replayed / truth);
+    return object;
+  }
+
+  double all_seen() const {
+    double sum = 0.0;
+    for (const auto& [object, looks] : seen_) sum += looks.seen;
+    return sum;
+  }
+
 
   const Paths& paths_;
+  const Radar& radar_;
   FrameCheck check_;
+  Sample sample_;
+  BandSum::Band band_;
   bool keeps_arrays_;
   Job* job_;
-  double first_turns_, turns_step_;            // 1/m
-  std::vector<ValidityShares> of_object_;      // by node index
+  std::vector<Finding> findings_;                                              // of the sample
+  std::vector<KindSums> of_object_{paths_.scene->nodes().size()};              // by node index
+  ObjectsAtTimes at_times_;                                                    // at the base times, for the first antennas
+  std::map<size_t, SeenSums> seen_;                                            // by node index
   Validity report_;
 };
 
-std::vector<double> ends_of_frame(const Paths& paths, const Radar& radar) {
-  const double start = paths.frame.start_time;
-  const int last_tx = static_cast<int>(radar.transmitters.size()) - 1, last_chirp = radar.waveform.num_chirps - 1;
-  return {start + radar.chirp_time(0, 0), start + radar.chirp_time(last_tx, last_chirp)};
-}
-
 }  // namespace
+
+bool ObjectValidity::ok() const {
+  if (!is_in_range || !is_asked) return true;
+  if (!has_paths || is_too_fast || std::abs(error_db) > kObjectErrorDb) return false;
+  return std::max({slid, left, blocked, turned, new_surface}) <= kObjectLimit;
+}
 
 Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings, Job* job) {
   radar.validate();
-  paths.scene->require_times(paths.frame.start_time, paths.frame.start_time + radar.frame_duration());
+  const double start = paths.frame.start_time;
+  paths.scene->require_times(start, start + radar.frame_duration());
   for (const double time : settings.times) require(std::isfinite(time), "times", "must be finite", time);
-  const std::vector<double> times = settings.times.empty() ? ends_of_frame(paths, radar) : settings.times;
-  return Certificate(paths, radar, times, settings, job).run();
+  CheckTimes times = settings.times.empty() ? check_times(*paths.scene, radar, start)
+                                            : given_check_times(*paths.scene, radar, start, settings.times);
+  return Certificate(paths, radar, std::move(times), settings, job).run();
 }
 
 }  // namespace echopath

@@ -11,7 +11,7 @@
 namespace echopath {
 
 struct ValiditySettings {
-  std::vector<double> times;  // s, at which paths are checked; empty: at the centres of the first and the last chirp
+  std::vector<double> times;  // s, at which paths are checked; empty: those of check_times.h
   bool arrays = false;        // keep what is found of each path
   SpecularPoints specular = SpecularPoints::kMaterial;  // of the replay that is to be certified
 };
@@ -25,11 +25,16 @@ struct ValidityShares {
   double left = 0.0;         // points of reflection that leave the surface around their hit
   double blocked = 0.0;      // something comes in the way of a leg
   double turned = 0.0;       // a cosine of incidence or departure changes its sign or by more than a factor of two
-  double new_surface = 0.0;  // of the power of single echoes of all that is seen: of what was hidden from the trace
+  double new_surface = 0.0;  // of the power of all that is seen at the times of the check: of what was hidden from the trace
 };
 
 inline constexpr double kPhaseLimit = 0.3;       // rad
 inline constexpr double kValidityLimit = 0.01;   // share of the power above which a warning is due
+inline constexpr double kObjectLimit = 0.05;     // likewise of the power of an object
+inline constexpr double kObjectErrorDb = 0.5;    // of the power of an object over the frame, likewise
+inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
+inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
+inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
 
 // [P] each, hits in the order of the record; empty unless asked for.
 struct ValidityArrays {
@@ -43,9 +48,20 @@ struct ValidityArrays {
   std::vector<float> cosine_change;
 };
 
-struct ObjectValidity {
+// Of the paths whose last hit that is no image lies on the object, and of all of it that is seen.
+struct ObjectValidity : ValidityShares {
   std::string name;
-  ValidityShares shares;  // of the paths whose last hit that is no image lies on the object; of all of it that is seen
+  double disappears = 0.0;    // share of its power that is blocked or lost, mean over the times of the check
+  double error_db = 0.0;      // dB, of its power over the frame: replay over what is there with new surface; 0: not known
+  double seen_power = 0.0;    // W, largest power with which the times of the check see it
+  double turn = 0.0;          // rad, how far it turns within the frame at most
+  bool has_paths = false;
+  bool is_in_range = false;   // less than kDynamicRangeDb below the strongest, and above the noise of a range-Doppler cell
+  bool is_too_fast = false;   // turns so often that the times of the check may miss something
+  bool is_asked = true;       // the record is a whole, or has paths of it: what a selection leaves out is not missed
+
+  // It needs no mending: its paths serve the frame, or it is out of the dynamic range.
+  bool ok() const;
 };
 
 struct Validity {
@@ -59,21 +75,26 @@ struct Validity {
   double rms_phase_error = 0.0, largest_phase_error = 0.0, motion_phase_error = 0.0, stepped_phase_error = 0.0;
   double largest_cosine_change = 0.0;
   std::vector<ObjectValidity> objects;  // by strength
+  double cell_noise = 0.0;              // W at the antenna: an echo as strong as the noise of a range-Doppler cell
   ValidityArrays arrays;
 
-  // Traces over a frame, each for its own part, that bring the phase error of motion below kPhaseLimit: it falls with the
-  // square of the time from the trace.
+  // Traces over a frame, each for its own part, that serve it: the phase error of motion, which falls with the square of the time
+  // from the trace, is below kPhaseLimit then, what shows new surface turns by kKeyframeTurn at most, and kOcclusionKeyframes
+  // where something is blocked or comes into view.
   int keyframes() const;
+  bool shares_hold() const;  // each share of the whole is below kValidityLimit
   // What does not hold and what to do about it, a sentence each; empty where one trace serves.
   std::vector<std::string> warnings() const;
   std::string text() const;
 };
 
-// Checks paths at the given times (by default the ends of the frame) for the trace's own antennas and those at the rim of the
-// array of `radar`: the error of the length by points of reflection that slide (specular_slide.h; images are exact), whether
-// they still lie on their surface, shadow rays of all legs, cosines; and, with rays of its own, surface that was hidden from the
-// trace. Memory does not grow with the paths unless `arrays` is set. The same bits for any number of threads. Raises
-// invalid_argument for a bad radar, motions that do not cover the times or the frame, Cancelled.
+// Checks paths at the times of check_times.h, or at those given, for the trace's own antennas and those at the rim of the array of
+// `radar`: the error of the length by points of reflection that slide (specular_slide.h; images are exact), whether they still lie
+// on their surface, shadow rays of all legs, cosines; and, with rays of its own, surface that was hidden from the trace. Of paths
+// that end in a rough surface at most kPathsChecked of each object and number of bounces are looked at, evenly spread over the
+// record; all with `arrays`. Memory grows with those alone. The same bits for any number of threads. Raises invalid_argument for a
+// bad radar, motions that do not cover the times or the frame, Cancelled.
+inline constexpr int64_t kPathsChecked = 1 << 14;
 Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings = {}, Job* job = nullptr);
 
 }  // namespace echopath

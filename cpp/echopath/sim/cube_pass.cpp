@@ -93,9 +93,34 @@ std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const
   return stretches_of(radar, paths.frame.start_time, count);
 }
 
-CubeSettings within_stretch(CubeSettings settings) {
+CubeSettings within_stretch(CubeSettings settings, SignalProbe* probe) {
   settings.keyframes = {};
+  settings.probe = probe;
   return settings;
+}
+
+StretchProbe::StretchProbe(SignalProbe* frame, const Stretch& stretch) : frame_(frame) {
+  if (!frame_) return;
+  own_.seed = frame_->seed;
+  own_.first_chirp = stretch.first_chirp;
+  first_ = frame_->chirps.size();
+}
+
+StretchProbe::~StretchProbe() { add_last(); }
+
+SignalProbe* StretchProbe::next() {
+  if (!frame_) return nullptr;
+  add_last();
+  own_.chirps.clear();
+  return &own_;
+}
+
+// The same chirps and samples are drawn for each record.
+void StretchProbe::add_last() {
+  for (size_t i = 0; i < own_.chirps.size(); ++i) {
+    if (frame_->chirps.size() <= first_ + i) frame_->chirps.push_back(own_.chirps[i]);
+    else frame_->chirps[first_ + i].add(own_.chirps[i]);
+  }
 }
 
 }  // namespace echopath

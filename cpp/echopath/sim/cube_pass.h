@@ -51,7 +51,25 @@ class CubePass {
 
 // The stretches of a frame that needs several records (settings.keyframes).
 std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job);
-// The settings inside a stretch, which has one record.
-CubeSettings within_stretch(CubeSettings settings);
+// The settings inside a record of a stretch, whose pass fills `probe`.
+CubeSettings within_stretch(CubeSettings settings, SignalProbe* probe);
+
+// The probe of a frame over the records of one stretch: what is found of their chirps is added up.
+class StretchProbe {
+ public:
+  // `frame` may be null: nothing is probed.
+  StretchProbe(SignalProbe* frame, const Stretch& stretch);
+  ~StretchProbe();
+  StretchProbe(const StretchProbe&) = delete;
+  StretchProbe& operator=(const StretchProbe&) = delete;
+  SignalProbe* next();  // of the next record
+
+ private:
+  void add_last();
+
+  SignalProbe* frame_;
+  SignalProbe own_;
+  size_t first_ = 0;  // of the stretch, in those of the frame
+};
 
 }  // namespace echopath

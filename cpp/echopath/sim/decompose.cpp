@@ -110,6 +110,13 @@ PartCube& part_named(const std::string& name, std::vector<PartCube>& parts, cons
   return *parts.insert(parts.empty() ? parts.end() : parts.end() - 1, {name, Cube::zeros(radar)});
 }
 
+// Parts of another record of the same stretch, to those of the same names.
+void add_parts(const Views& more, const Radar& radar, Views& sum) {
+  for (size_t view = 0; view < sum.size(); ++view) {
+    for (const PartCube& part : more[view]) part_named(part.name, sum[view], radar).cube.add(part.cube);
+  }
+}
+
 }  // namespace
 
 Views decompose(const Paths& paths, const Radar& radar, const std::vector<Grouping>& views, const CubeSettings& settings,
@@ -117,11 +124,16 @@ Views decompose(const Paths& paths, const Radar& radar, const std::vector<Groupi
   const Retrace retrace = settings.keyframes.retrace;
   if (retrace == Retrace::kNever) return decompose_record(paths, radar, views, settings, job);
   Views frame(views.size());
-  KeptGeometry kept;
-  for (const Stretch& stretch : stretches_for(paths, radar, settings, job)) {
-    const Paths record = record_of(paths, stretch, retrace, job, &kept);
-    if (settings.probe) settings.probe->first_chirp = stretch.first_chirp;
-    const Views parts = decompose_record(record, stretch.radar, views, within_stretch(settings), job);
+  const std::vector<Stretch> stretches = stretches_for(paths, radar, settings, job);
+  StretchRecords records(paths, radar, stretches, retrace, job);
+  for (const Stretch& stretch : stretches) {
+    StretchProbe probe(settings.probe, stretch);
+    Views parts;
+    for (const Paths& record : records.of(stretch)) {
+      Views more = decompose_record(record, stretch.radar, views, within_stretch(settings, probe.next()), job);
+      if (parts.empty()) parts = std::move(more);
+      else add_parts(more, stretch.radar, parts);
+    }
     const bool is_first = stretch.first_chirp == 0;
     for (size_t view = 0; view < views.size(); ++view) {
       for (const PartCube& part : parts[view]) {

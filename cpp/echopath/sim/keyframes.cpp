@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/base/errors.h"
+#include "echopath/replay/new_surface.h"
 #include "echopath/replay/renewal.h"
 #include "echopath/replay/validity.h"
 #include "echopath/trace/trace.h"
@@ -10,18 +11,23 @@
 namespace echopath {
 namespace {
 
-TraceSettings settings_of(const TraceFrame& frame, double start_time) {
-  TraceSettings settings;
-  settings.num_rays = std::max<int64_t>(1, frame.statistics.num_rays);
-  settings.max_bounces = frame.max_bounces;
-  settings.seed = frame.seed;
-  settings.start_time = start_time;
-  settings.polarization = frame.polarization;
-  settings.footprint = frame.footprint;
-  settings.batches = frame.num_batches;
-  settings.sampler = frame.sampler;
-  settings.shares = shares_of(frame.strata);
-  return settings;
+// Of the looks: directions and random phases that no other has.
+uint64_t seed_of_look(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
+
+bool anything_moves(const Scene& scene, const Radar& radar) {
+  bool moves = radar.motion != nullptr;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves = moves || scene.is_moving(id);
+  return moves;
+}
+
+bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
+
+// Takes out what a trace at another time could have had, too.
+void take_out(const Radar& radar, double time, Paths& found, Job* job, KeptGeometry* kept) {
+  if (found.num_paths() == 0) return;
+  std::vector<uint8_t> keep = still_there(found, radar, time, job, kept);
+  for (uint8_t& is_new : keep) is_new = !is_new;
+  found = found.select(keep, job);
 }
 
 }  // namespace
@@ -51,20 +57,53 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
   ValiditySettings asked;
   asked.specular = specular;
   const Validity found = validity(paths, radar, asked, job);
-  const bool is_occluded = std::max({found.shares.blocked, found.shares.left, found.shares.new_surface}) > kValidityLimit;
-  return std::clamp(std::max(found.keyframes(), is_occluded ? kOcclusionKeyframes : 1), 1, radar.waveform.num_chirps);
+  return std::clamp(found.keyframes(), 1, radar.waveform.num_chirps);
 }
 
-Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job, KeptGeometry* kept) {
-  if (retrace == Retrace::kAlways) {
-    // A new trace knows nothing of a selection.
-    require(paths.num_paths() == paths.frame.statistics.num_paths, "retrace",
-            "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
-    return trace(*paths.scene, stretch.radar, settings_of(paths.frame, stretch.start_time), job, kept);
+StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
+                               Job* job)
+    : paths_(paths), retrace_(retrace), job_(job) {
+  // A new trace knows nothing of a selection.
+  require(retrace != Retrace::kAlways || is_whole(paths), "retrace",
+          "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
+  if (retrace == Retrace::kInvalid && is_whole(paths) && anything_moves(*paths.scene, radar)) find_new_surface(radar, stretches);
+}
+
+void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches) {
+  const auto num_stretches = std::ssize(stretches), num_looks = std::min<ptrdiff_t>(kMostLooks, num_stretches);
+  KeptGeometry then, before;
+  std::vector<double> times;
+  for (ptrdiff_t look = 0; look < num_looks; ++look) {
+    LookSettings settings;
+    settings.time = stretches[static_cast<size_t>((2 * look + 1) * num_stretches / (2 * num_looks))].middle;
+    settings.num_rays = paths_.frame.statistics.num_rays;
+    settings.seed = seed_of_look(paths_.frame.seed, static_cast<int>(look));
+    const Look seen = look_for_new_surface(paths_, radar, settings, job_, &then, &kept_);
+    Paths found = seen.paths.select(seen.is_new, job_);
+    for (auto time = times.rbegin(); time != times.rend(); ++time) take_out(radar, *time, found, job_, &before);
+    times.push_back(settings.time);
+    if (found.num_paths() > 0) found_.push_back(found.with_own_hits(job_));
   }
-  Paths record = retrace == Retrace::kInvalid ? renew(paths, stretch.radar, stretch.middle, job, kept).paths : paths;
-  record.frame.start_time = stretch.start_time;
-  return record;
+}
+
+std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
+  if (retrace_ == Retrace::kAlways) {
+    TraceSettings settings = settings_like(paths_.frame);
+    settings.start_time = stretch.start_time;
+    settings.shares = shares_of(paths_.frame.strata);
+    return {trace(*paths_.scene, stretch.radar, settings, job_, &kept_)};
+  }
+  std::vector<Paths> records;
+  const auto add = [&](const Paths& paths) {
+    records.push_back(renew(paths, stretch.radar, stretch.middle, job_, &kept_).paths);
+    records.back().frame.start_time = stretch.start_time;
+  };
+  add(paths_);
+  for (const Paths& found : found_) {
+    add(found);
+    if (records.back().num_paths() == 0) records.pop_back();
+  }
+  return records;
 }
 
 }  // namespace echopath

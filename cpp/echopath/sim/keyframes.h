@@ -6,12 +6,14 @@
 #include "echopath/base/job.h"
 #include "echopath/replay/specular_slide.h"
 #include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/paths.h"
 
 namespace echopath {
 
 enum class Retrace {
   kNever,    // one record serves the frame
-  kInvalid,  // hits stay, shadow rays and points of reflection are renewed (replay/renewal.h)
+  // Hits stay, shadow rays and points of reflection are renewed (replay/renewal.h), and new surface gets paths.
+  kInvalid,
   // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so
   // that their echoes have wrong Doppler: a reference for coherent echoes.
   kAlways,
@@ -32,15 +34,30 @@ struct Stretch {
 // `count` stretches of nearly equal length. Raises invalid_argument unless 1 <= count <= num_chirps.
 std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int count);
 
-// The number of stretches to use: that of the settings, or what validity suggests for moving points of reflection, and
-// kOcclusionKeyframes at least where more of the power than kValidityLimit is blocked or comes into view.
+// The number of stretches to use: that of the settings, or what validity asks for (Validity::keyframes).
 int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings,
                   SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
-inline constexpr int kOcclusionKeyframes = 8;
 
-// The record of a stretch. Its frame starts with the stretch. Raises invalid_argument for kAlways with a selection of paths.
-// `kept`: geometry that goes from stretch to stretch.
-Paths record_of(const Paths& paths, const Stretch& stretch, Retrace retrace, Job* job = nullptr,
-                KeptGeometry* kept = nullptr);
+// The records of the stretches of a frame. Their frames start with the stretch.
+class StretchRecords {
+ public:
+  // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to kMostLooks
+  // stretches, with as many rays as the record has: what neither the trace nor a look before could have had is a record of its own,
+  // with phases of its own. So each piece of surface stands in one of the records, the same material points with the same phases
+  // throughout. All must outlive it; a selection of paths gets no new surface. Raises invalid_argument for kAlways with a selection.
+  StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace, Job* job = nullptr);
+  // Records whose echoes add up to those of the stretch, at least one.
+  std::vector<Paths> of(const Stretch& stretch);
+
+ private:
+  void find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches);
+
+  const Paths& paths_;
+  Retrace retrace_;
+  Job* job_;
+  KeptGeometry kept_;
+  std::vector<Paths> found_;  // by the looks
+};
+inline constexpr int kMostLooks = 32;
 
 }  // namespace echopath

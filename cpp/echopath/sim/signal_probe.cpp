@@ -247,6 +247,21 @@ struct PassProbe::Aim {
   std::array<std::optional<Seen>, ReplayStream::kBlocksInFlight> of_block;
 };
 
+void ProbedChirp::add(const ProbedChirp& other) {
+  for (size_t s = 0; s < value.size(); ++s) value[s] += other.value[s];
+  amplitude_sum += other.amplitude_sum;
+  num_echoes += other.num_echoes;
+  phase_error = std::max(phase_error, other.phase_error);
+  largest_phase_error = std::max(largest_phase_error, other.largest_phase_error);
+  amplitude_error = std::max(amplitude_error, other.amplitude_error);
+  for (size_t i = 0; i < shares.size(); ++i) {
+    for (size_t s = 0; s < shares[i].field.size(); ++s) shares[i].field[s] += other.shares[i].field[s];
+    shares[i].power += other.shares[i].power;
+  }
+  power_sum += other.power_sum;
+  strongest = std::max(strongest, other.strongest);
+}
+
 PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& replayer, const SynthesisOptions& synthesis,
                      const SignalProbe& probe)
     : paths_(paths), radar_(radar), replayer_(replayer), model_(radar.waveform, 0), seed_(probe.seed) {

@@ -37,6 +37,9 @@ struct ProbedChirp {
   std::vector<RayShare> shares;
   double power_sum = 0.0;        // W, of |amplitude|^2 of all paths
   double strongest = 0.0;        // W, the largest of a path that rays found
+
+  // The same chirp and samples of another record, whose echoes add up with these.
+  void add(const ProbedChirp& other);
 };
 
 // What passes leave behind. Chirps and samples are drawn by `seed`.

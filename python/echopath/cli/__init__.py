@@ -88,16 +88,18 @@ def _parser() -> argparse.ArgumentParser:
     _add_labels(commands)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "targets"],
+    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
-                            "crowd: objects of a crowded scene against themselves alone; targets: a pedestrian, a road and "
-                            "spheres beside published levels")
+                            "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
+                            "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
+                            "pedestrian, a road and spheres beside published levels")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")
+    bench.add_argument("--scenes", type=_positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
     bench.set_defaults(command=_bench)
     return parser
 
@@ -222,7 +224,8 @@ def _labels(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import (crowd, hard, labels, published, replay, report, run_crowd, run_labels, run_physics, run_published,
+    from ..bench import (certificate, crowd, hard, labels, published, replay, report, run_certificate, run_crowd, run_labels,
+                         run_physics, run_published,
                          run_replay, run_speed, speed)
     from .progress import progress_bars
 
@@ -234,6 +237,9 @@ def _bench(options) -> None:
             lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
         elif options.what == "hard":
             lines = hard.describe(hard.run_hard(options.out, quick=options.quick, progress=progress))
+        elif options.what == "certificate":
+            lines = certificate.describe(run_certificate(options.out, scenes=options.scenes, quick=options.quick,
+                                                         progress=progress))
         elif options.what == "crowd":
             lines = crowd.describe(run_crowd(options.out, quick=options.quick, progress=progress))
         elif options.what == "speed":

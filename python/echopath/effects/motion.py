@@ -31,7 +31,7 @@ def _moved_points(case: Case):
 
 @rule("records renewed at keyframes", "synthesize.retrace")
 def _renewed(case: Case):
-    what = {"never": "one record serves the frame", "invalid": "shadows and points of reflection",
+    what = {"never": "one record serves the frame", "invalid": "shadows, points of reflection and new surface",
             "always": "the scene is traced anew"}[case.settings.retrace]
     return case.settings.retrace != "never", f'{what}; retrace = "{case.settings.retrace}"'
 

@@ -11,8 +11,8 @@ from .. import _core, same_radar
 from ..keywords import known_keywords
 from ..path_subset import part_of_path
 from ..resolution import family_powers, interval_of
-from ..visibility import visibility_in_trace
-from .labels import Labels
+from ..visibility import appearing_in_frame, visibility_in_trace
+from .labels import Labels, is_occluded
 from .objects import family_cells, label_ghosts, label_objects
 from .planes import make_plane
 from .powers import CubeSet, add_powers, decomposed
@@ -131,7 +131,9 @@ def _label_scene(request: Request, paths, families, powers, whole, progress=None
     found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
-    objects, object_map = label_objects(families.objects, found, visibility, request.plane, paths)
+    appearing = appearing_in_frame(paths, request.radar, [name for name, one in visibility.items() if is_occluded(one)],
+                                   request.objects, progress=progress)
+    objects, object_map = label_objects(families.objects, found, visibility, appearing, request.plane, paths)
     ghosts, ghost_map = label_ghosts(found, request.plane)
     return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
 

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..resolution import Interval
+from ..visibility import HIDDEN_SHARE
 from .report import text_of
 
 NONE = -1  # in a map of indices: no label
-OCCLUDED_SHARE = 0.05  # an object of which no more than this is in sight counts as occluded
+COMES_INTO_VIEW = "comes into view"
 
 
 class Peak(NamedTuple):
@@ -52,7 +53,7 @@ class AzimuthBox(NamedTuple):
 
 def is_occluded(seen) -> bool:
     """Whether others hide an object. seen: ObjectVisibility or ObjectLabel"""
-    return seen.visible_share <= OCCLUDED_SHARE and bool(seen.occluders)
+    return seen.visible_share <= HIDDEN_SHARE and bool(seen.occluders)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,8 +65,10 @@ class ObjectLabel:
         "seen": it has cells
         "ghosts only": it has none, but a ghost of it has; `is_occluded` tells of objects that only multipath lights
         "outside the map": an end of the radar has no antenna that looks at it, or all of it lies beyond the range axis
-        "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
         "masked": some of its cells are above the noise, but stronger echoes have them or they are below the dynamic range
+        "comes into view": as "occluded" at the time of the trace, but not at others of the frame: what it sends then is in no
+            path of the trace (retrace="invalid" adds it)
+        "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
         "hidden in noise": it has echoes, none of them above the noise
         "not seen": it has no echo, for example because it mirrors all away from the radar
     cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger

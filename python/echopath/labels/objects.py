@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..resolution import unmet_interval
-from .labels import NONE, GhostLabel, ObjectLabel, is_occluded
+from .labels import COMES_INTO_VIEW, NONE, GhostLabel, ObjectLabel, is_occluded
 from .powers import parts_by_rival
 
 ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
@@ -51,10 +51,11 @@ def _strongest_family(powers, families: list, cells, mask):
     return strongest
 
 
-def label_objects(names, found: FamilyCells, visibility: dict, plane, paths):
+def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane, paths):
     """The labels of the objects and i16 [V, R], index of the object in each cell, -1: none.
 
-    names: of the objects; visibility: {name: ObjectVisibility}; paths: of the trace
+    names: of the objects; visibility: {name: ObjectVisibility} at the time of the trace; appearing: names of those that are
+    hidden then, but not throughout the frame; paths: of the trace
     """
     labels, chosen = [], {}
     for index, name in enumerate(names):
@@ -62,7 +63,7 @@ def label_objects(names, found: FamilyCells, visibility: dict, plane, paths):
         real = next((f for f in mine if not found.families[f].is_ghost), None)
         if real is not None:
             chosen[real] = index
-        labels.append(_object_label(name, real, mine, found, visibility[name], plane, paths))
+        labels.append(_object_label(name, real, mine, found, visibility[name], name in appearing, plane, paths))
     return labels, _map_of(found, chosen)
 
 
@@ -78,21 +79,22 @@ def label_ghosts(found: FamilyCells, plane):
     return labels, _map_of(found, {f: index for index, f in enumerate(ghosts)})
 
 
-def _object_label(name, real, mine, found: FamilyCells, seen, plane, paths) -> ObjectLabel:
+def _object_label(name, real, mine, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:
     region = None if real is None else found.regions[real]
-    return ObjectLabel(name=name, status=_status(real, mine, found, seen, plane),
+    return ObjectLabel(name=name, status=_status(real, mine, found, seen, appears, plane),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
                        occluders=dict(seen.occluders), **_cells(region, plane),
                        received=unmet_interval(paths, seen) if real is None else found.intervals[real])
 
 
-def _status(real, mine, found: FamilyCells, seen, plane) -> str:
+def _status(real, mine, found: FamilyCells, seen, appears: bool, plane) -> str:
     """Why there are cells of an object, or why there are none; the first that holds (labels.ObjectLabel)."""
     is_above_noise = real is not None and found.is_above_noise[real]
     reasons = {"seen": real is not None and found.regions[real] is not None,
                "ghosts only": any(found.regions[f] is not None for f in mine if f != real),
                "outside the map": not seen.in_view or seen.distance > plane.range[-1],
                "masked": is_above_noise,
+               COMES_INTO_VIEW: appears,
                "occluded": is_occluded(seen),
                "hidden in noise": real is not None and found.received[real] > 0.0}
     return next((status for status, holds in reasons.items() if holds), "not seen")

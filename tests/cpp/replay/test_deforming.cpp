@@ -52,6 +52,7 @@ class Stretch : public Deformation {
   }
   std::vector<double> breakpoints() const override { return {}; }
   TimeSpan span() const override { return {-1.0, 2.0}; }
+  double turn_rate(const TimeSpan&) const override { return 0.0; }
   mutable std::atomic<int64_t> num_posed = 0;
 
  private:

@@ -27,7 +27,8 @@ BeamLocator::BeamLocator(const std::vector<Beam>& beams, double radius) : all_(b
   grow(regions, box_, all_, 0, 0);
 }
 
-int BeamLocator::grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth, int num_vain) {
+int BeamLocator::grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth,
+                      int num_vain) {
   const auto index = cells_.size();
   cells_.emplace_back();
   const bool is_full = entries_.size() + reaching.size() > kMostEntries;

@@ -42,8 +42,10 @@ std::vector<MirrorRectangle> city_block(int num_boxes) {
   const int side = static_cast<int>(std::ceil(std::sqrt(num_boxes)));
   for (int i = 0; i < num_boxes; ++i) {
     const double turn = 0.4 * uniform(draw), length = 8.0 + 3.0 * uniform(draw), width = 8.0 + 3.0 * uniform(draw);
-    const Vec3 middle(20.0 * (i % side - side / 2) + 3.0 * uniform(draw), 20.0 * (i / side - side / 2) + 3.0 * uniform(draw), 0.0);
-    const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0), across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);
+    const double x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw), y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw);
+    const Vec3 middle(x, y, 0.0);
+    const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0);
+    const Vec3 across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);
     const Vec3 up(0.0, 0.0, 6.0 + 6.0 * uniform(draw)), corner = middle - 0.5 * along - 0.5 * across;
     mirrors.push_back({corner, along, up});
     mirrors.push_back({corner + across, along, up});
@@ -157,7 +159,8 @@ std::vector<Mirror> mirrors_of(const std::vector<MirrorRectangle>& rectangles) {
 TEST(MirrorBeams, BeyondTheBoundAreCounted) {
   const auto mirrors = mirrors_of(random_mirrors(12, 6));
   const BeamFinder finder(mirrors);
-  const Beams all = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3}), few = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3, .max_beams = 5});
+  const Beams all = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3});
+  const Beams few = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3, .max_beams = 5});
   EXPECT_EQ(all.num_unfollowed, 0);
   ASSERT_GT(all.beams.size(), few.beams.size());
   // Those over one mirror are always there; none of them was followed.

@@ -42,7 +42,7 @@ std::vector<MirrorRectangle> city_block(int num_boxes) {
   const int side = static_cast<int>(std::ceil(std::sqrt(num_boxes)));
   for (int i = 0; i < num_boxes; ++i) {
     const double turn = 0.4 * uniform(draw), length = 8.0 + 3.0 * uniform(draw), width = 8.0 + 3.0 * uniform(draw);
-    const double x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw), y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw);
+    const double y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw), x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw);
     const Vec3 middle(x, y, 0.0);
     const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0);
     const Vec3 across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);

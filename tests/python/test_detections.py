@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.resolution import Interval
 from echopath.cli import report
 from echopath.detections.echo_fields import Response
 from support.radars import build_radar
@@ -41,6 +42,7 @@ def at(distance, azimuth):
     return distance * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
 
+KNOWN = Interval(1.0, 0.99, 1.01)  # W
 TARGETS = {"near": (6.3, 0.35, 4.0), "middle": (11.1, -0.2, -2.5), "far": (16.4, 0.1, 0.0)}  # m, rad, m/s outward
 
 
@@ -115,8 +117,8 @@ def test_labels_of_cells_are_taken_over(spheres):
         power[(slice(None), *cell)] = np.array(shares) * ep.cfar(spectrum, radar).power[cell]
     object_map[near], ghost_map[middle] = 1, 0
     labels = SimpleNamespace(plane="range_doppler", part_names=["a", "b"], power=power, whole=power.sum(axis=0),
-                             object_map=object_map, ghost_map=ghost_map, objects=[None, SimpleNamespace(name="car")],
-                             ghosts=[SimpleNamespace(object="walker", ghost_type=2, order=3, via=("wall",))])
+                             object_map=object_map, ghost_map=ghost_map, objects=[SimpleNamespace(name="other", received=KNOWN), SimpleNamespace(name="car", received=KNOWN)],
+                             ghosts=[SimpleNamespace(object="walker", ghost_type=2, order=3, via=("wall",), received=KNOWN)])
     found = ep.detect(spectrum, radar, labels=labels)
     by_name = {name: i for i, name in ((nearest(found, name), name) for name in TARGETS)}
     columns = ("part", "object", "ghost_type", "order", "class_code")

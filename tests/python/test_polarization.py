@@ -195,7 +195,7 @@ def test_a_turned_metal_plate_between_floor_and_wall(there, back):
     floor = rectangle((-50, -50, -2), (100, 0, 0), (0, 100, 0)), ep.Material(permittivity=EARTH, mirror=True)
     scene = scene_of(target=(rectangle(corner, first, second), METAL), floor=floor,
                      wall=leaning_wall(ep.Material(permittivity=BRICK, mirror=True)))
-    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 15, max_bounces=5)
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 16, max_bounces=5)
     route = " ".join(f"'{name}'" for name in (*there, "target", *reversed(back)))
     expected = plate_sum(corner, first, second, ends, arrivals, lit)
     assert abs(fields(paths.select(f"T {route} R")).sum() / expected - 1) < PLATE_TOLERANCE
@@ -247,7 +247,8 @@ def test_no_chain_of_rough_and_mirroring_bounces_gains_or_loses_power(share):
                      b=(rectangle((.1, 0, -.5), (2, 0, 0), (0, 0, 1)), rough(share)),
                      floor=(rectangle((-9, -9, -1), (18, 0, 0), (0, 18, 0)), rough(share, mirror=True)))
     radar = make_radar((3, 2, .3), (2, 3, .5))
-    paths, scalar = traced(scene, radar, num_rays=20000), ep.trace(scene, radar, num_rays=20000)
+    # Too few rays for a pilot: both models have the same.
+    paths, scalar = traced(scene, radar, num_rays=16000), ep.trace(scene, radar, num_rays=16000)
     assert np.array_equal(paths.diffuse, scalar.diffuse) and np.any(paths.diffuse & (paths.diffuse - 1) != 0)
     launched_vertically = np.linalg.norm(paths.jones[:, :, 1], axis=1)
     diffuse = paths.diffuse != 0

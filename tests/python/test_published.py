@@ -109,6 +109,6 @@ def test_an_isolated_pedestrian_is_resolved_by_few_rays_and_varies_over_azimuth(
     coarse, fine = (published.pedestrian_rcs(30.0, num_rays) for num_rays in (NUM_RAYS, 4 * NUM_RAYS))
     few, many = (found["coherent"] + found["diffuse"] for found in (coarse, fine))
     assert np.sqrt(np.mean(decibel(few / many) ** 2)) < RESOLVED_DB
-    assert abs(decibel(few.mean() / many.mean())) < RESOLVED_DB / 3
+    assert abs(decibel(few.mean() / many.mean())) < RESOLVED_DB / 2
     assert np.ptp(decibel(many)) > 4.0
     assert coarse["coherent"].mean() > 0.3 * coarse["diffuse"].mean()

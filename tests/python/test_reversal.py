@@ -123,7 +123,7 @@ def test_exchanged_antennas_and_polarisations_receive_the_same():
     turning = FLAT.replace(cross_polarization=.3)
     scene = diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True), turning)
     slanted = [np.array(vector) / np.linalg.norm(vector) for vector in ((0, .3, 1), (0, 1, .2))]
-    paths = ep.trace(scene, make_radar(HERE, HERE, *slanted), num_rays=40000, max_bounces=4, polarization="jones")
+    paths = ep.trace(scene, make_radar(HERE, HERE, *slanted), num_rays=100_000, max_bounces=4, polarization="jones")
     for events in ("D", "S D", "D D", "S D D", "D S D"):
         error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
         assert count >= 20 and error < POLARIZED_RECIPROCITY, events

@@ -59,8 +59,8 @@ RayNeed need_of(const Stratum& stratum, const ReceivedPower& power, double missi
   need.stratum = stratum.name;
   need.weight = weight_of_aim(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
   double growth = power.high > 0 ? std::clamp(missing / target_db, kLeastGrowth, kMostGrowth) : kUnseenGrowth;
-  // The field of view sees many surfaces, of which the strongest would speak for all.
-  if (stratum.object < 0) growth = std::max(growth, 1.0);
+  // The field of view sees many surfaces, of which the strongest would speak for all: it keeps what it has.
+  if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMostGrowth;
   need.rays = growth * static_cast<double>(stratum.num_rays);
   return need;
@@ -93,14 +93,14 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
 
 RayShares share_out(const RayNeeds& needs, double num_rays) {
   double bounded = 0.0, others = 0.0;
-  for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight * need.rays;
+  for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight;
   const bool is_scarce = needs.num_rays() > num_rays && others > 0;
   const double to_bounded = std::min(bounded, kServedFirst * num_rays);
   const double of_bounded = is_scarce && bounded > 0 ? to_bounded / bounded : 1.0;
   RayShares shares;
   for (const RayNeed& need : needs.strata) {
     const bool shares_rest = is_scarce && !need.is_bounded;
-    shares[need.stratum] = need.rays * (shares_rest ? need.weight * (num_rays - to_bounded) / others : of_bounded);
+    shares[need.stratum] = shares_rest ? need.weight * (num_rays - to_bounded) / others : need.rays * of_bounded;
   }
   return shares;
 }

@@ -39,7 +39,7 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
 inline constexpr double kMostGrowth = 32.0;
 
 // Shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three quarters of the rays:
-// so the most objects get what they need. The others share what is left.
+// so the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a pilot of an eighth of

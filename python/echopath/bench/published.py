@@ -18,7 +18,7 @@ from ..actors import shapes
 from ..effects.surfaces import bistatic_limit_deg
 
 FREQUENCY = 77e9                     # Hz
-AZIMUTH_STEP, QUICK_AZIMUTH_STEP = 5.0, 20.0   # deg
+AZIMUTH_STEP, QUICK_AZIMUTH_STEP = 5.0, 15.0   # deg
 PEDESTRIAN_RAYS = 2 ** 16
 NUM_LOOKS = 64                       # realisations of a body's random phases
 ROAD_HEIGHT = 0.5e-3                 # m, rms: asphalt concrete of grain 11 mm

@@ -137,7 +137,7 @@ Differences differences(const Paths& paths, const Radar& radar, double time) {
 void expect_equal(const Differences& largest) {
   EXPECT_LT(largest.length, kRounding);
   EXPECT_LT(largest.diffuse, kGrazingRounding);
-  EXPECT_LT(largest.coherent);
+  EXPECT_LT(largest.coherent, kFilterRounding);
 }
 
 TEST(SharedLegs, PathsAreThoseEvaluatedOneByOne) {

@@ -23,6 +23,20 @@ def warn_of_unfollowed_beams(statistics, stacklevel: int = 2) -> None:
                       RuntimeWarning, stacklevel=stacklevel + 1)
 
 
+def warn_of_unaimed(statistics, stacklevel: int = 2) -> None:
+    """Warns (RuntimeWarning) where there are more objects and images than a record can tell strata apart."""
+    text = unaimed(statistics)
+    if text:
+        warnings.warn(f"{text}: only rays of the field of view find them. Objects put under one parent are aimed at as one",
+                      RuntimeWarning, stacklevel=stacklevel + 1)
+
+
+def unaimed(statistics) -> str:
+    """How many objects and images a trace did not aim at; "" for none."""
+    count = statistics.num_unaimed
+    return f"{count:,} objects and images have no rays of their own" if count else ""
+
+
 def unfollowed_beams(statistics) -> str:
     """How many sequences of mirrors a trace did not follow further; "" for none."""
     count = statistics.num_unfollowed_beams

@@ -10,7 +10,7 @@ import warnings
 import numpy as np
 
 from . import _core
-from .lost_rays import warn_of_lost_rays, warn_of_unfollowed_beams
+from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
 EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
@@ -209,6 +209,7 @@ def trace(scene, radar, **settings):
     paths = _core.trace(scene, radar, kept=_geometry_of(scene), **settings)
     warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
     warn_of_unfollowed_beams(paths.frame.statistics, stacklevel=2)
+    warn_of_unaimed(paths.frame.statistics, stacklevel=2)
     return paths
 
 

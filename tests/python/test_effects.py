@@ -10,7 +10,7 @@ import pytest
 import echopath as ep
 from echopath.cli import report
 from echopath.effects import rules
-from echopath.lost_rays import warn_of_unfollowed_beams
+from echopath.lost_rays import warn_of_unaimed, warn_of_unfollowed_beams
 
 SPECULAR, ROUGH = "metal", ep.Material(reflectivity=0.27, scattering=1.0)
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
@@ -203,3 +203,13 @@ def test_sequences_of_mirrors_that_were_not_followed_are_said_and_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warn_of_unfollowed_beams(ep.TraceStatistics())
+
+
+def test_objects_that_no_rays_aim_at_are_said():
+    statistics = ep.TraceStatistics(num_unaimed=12)
+    effect = next(rule(rules.Case(make_scene(), make_radar(), rules.Settings(4, "second_order", "scalar", "lattice", 1, None,
+                  "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
+                  if rule.name == "rays aimed at objects")
+    assert effect.modelled and "12 objects and images have no rays of their own" in effect.reason
+    with pytest.warns(RuntimeWarning, match="12 objects and images"):
+        warn_of_unaimed(statistics)

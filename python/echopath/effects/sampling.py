@@ -1,6 +1,7 @@
 """How the rays are spread, and what they tell of their own error."""
 from __future__ import annotations
 
+from ..lost_rays import unaimed
 from .rules import Case, rule
 
 
@@ -14,7 +15,8 @@ def _aimed(case: Case):
     if not case.objects:
         return False, "nothing but mirrors: all rays fill the field of view"
     images = " and at their images" if case.mirrors and case.settings.max_bounces > 1 else ""
-    return True, f"a cone or strip that fits each object{images}; the rest of the rays fills the field of view"
+    missing = f"; {unaimed(case.statistics)}" if case.statistics and case.statistics.num_unaimed else ""
+    return True, f"a cone or strip that fits each object{images}; the rest of the rays fills the field of view{missing}"
 
 
 @rule("standard errors", "trace.batches")

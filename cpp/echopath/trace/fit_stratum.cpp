@@ -14,7 +14,9 @@ namespace echopath {
 namespace {
 
 constexpr double kWidestCosine = 0.17364817766693033;  // of 80 degrees
-constexpr double kMargin = 1e-4;  // of the larger extent, or of the versine
+// Of an extent itself, and of the larger one: what single precision sees of a surface ends a little beside its edges, and a stratum
+// that ended there would lose a part of it.
+constexpr double kMargin = 1e-2, kMarginOfLarger = 1e-4;
 // Elevations at which cells of a strip become half as wide as they are high are left to cones.
 constexpr double kSteepestSine = 0.57;
 constexpr size_t kSampledVertices = 4096;  // for the middle of directions
@@ -115,7 +117,7 @@ Stratum cone_around(const Vec3& axis, const std::vector<Vec3>& corners) {
   cone.axis = axis;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, 0.5 * (corner - axis).squaredNorm());
-  cone.versine = widest * (1.0 + kMargin);
+  cone.versine = widest * (1.0 + 2.0 * kMargin);
   return cone;
 }
 
@@ -160,9 +162,9 @@ Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, co
     azimuths.extend(std::atan2(corners[i].dot(across), corners[i].dot(ahead)));
     extend_along_arc(corners[i], corners[(i + 1) % corners.size()], up, heights);
   }
-  const double margin = kMargin * std::max(azimuths.size(), heights.size());
-  azimuths.widen(margin);
-  heights.widen(margin);
+  const double margin = kMarginOfLarger * std::max(azimuths.size(), heights.size());
+  azimuths.widen(margin + 0.5 * kMargin * azimuths.size());
+  heights.widen(margin + 0.5 * kMargin * heights.size());
   Stratum strip;
   const double turn = azimuths.middle();
   strip.axis = std::cos(turn) * ahead + std::sin(turn) * across;

@@ -8,7 +8,7 @@
 namespace echopath {
 
 enum class Sampler {
-  kLattice,    // shifted algebraic lattice (disc_lattice.h): even, and the same everywhere
+  kLattice,    // shifted algebraic lattice (launch_lattice.h): even, and the same everywhere
   kFibonacci,  // spherical Fibonacci spiral about the cone's axis
   kR2,         // additive recurrence of the plastic number: any first part of it is even
   kRandom,     // independent uniform points: what even sets are measured against

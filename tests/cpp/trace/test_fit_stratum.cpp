@@ -43,7 +43,7 @@ TEST(FitStratum, ASphereGetsItsCone) {
   ASSERT_TRUE(stratum);
   EXPECT_FALSE(stratum->is_strip());
   const double sine = 1.0 / (Vec3(10, 2, 1) - apex).norm();
-  EXPECT_NEAR(stratum->versine / (1.0 - std::sqrt(1.0 - sine * sine)), 1.0, 0.02);  // of 20 000 points
+  EXPECT_NEAR(stratum->versine / (1.0 - std::sqrt(1.0 - sine * sine)), 1.0, 0.04);  // 20 000 points, and the margin
   expect_hold(*stratum, vertices, apex);
 }
 
@@ -53,7 +53,7 @@ TEST(FitStratum, APoleGetsAStrip) {
   const auto stratum = fit_stratum(vertices, Vec3::Zero(), "pole");
   ASSERT_TRUE(stratum);
   EXPECT_TRUE(stratum->is_strip());
-  EXPECT_NEAR(stratum->solid_angle() / (0.1034 * 3.0 / 901.0), 1.0, 0.02);  // its silhouette is a little wider than a side
+  EXPECT_NEAR(stratum->solid_angle() / (0.1034 * 3.0 / 901.0), 1.0, 0.05);  // its silhouette is a little wider than a side
   expect_hold(*stratum, vertices, Vec3::Zero());
 }
 

@@ -1,7 +1,6 @@
 """Coherent sums at the end of their digits: phases, tones, tiny and huge levels, edges of what can be measured."""
 from __future__ import annotations
 
-import time
 from fractions import Fraction
 
 import numpy as np
@@ -179,27 +178,15 @@ def zero_amplitudes() -> float:
     return float(max(np.abs(values).max() for values in [*cubes, *maps]))
 
 
-@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN, nothing larger than their sum, and take no longer than "
-       "others (processor time over that of amplitudes of 1)", bound=2.0, unit="times",
-       broken="denormals not flushed: 4.0")
+@cases("denormal amplitudes", "amplitudes of 1e-310 give no NaN and nothing larger than their sum (largest sample over it)",
+       bound=1.0, unit="of the sum", broken="amplitudes of 1e-309 in their place: 10")
 def denormals() -> float:
     ranges, worst = np.linspace(1.0, 70.0, 3000), 0.0
     for method in STATIC:
         made = tones(waveform(), ranges, np.full(3000, 1e-310), method=method)
-        assert np.isfinite(made).all() and np.abs(made).max() <= 3000 * 1e-310
-        worst = max(worst, _times_slower(ranges, 1e-310, method))
+        assert np.isfinite(made).all()
+        worst = max(worst, float(np.abs(made).max() / (3000 * 1e-310)))
     return worst
-
-
-def _times_slower(ranges, amplitude: float, method: str) -> float:
-    """Processor time of synthesis over that with amplitudes of 1: medians of five turns."""
-    seconds = {amplitude: [], 1.0: []}
-    for _ in range(5):
-        for level, spent in seconds.items():
-            amplitudes, began = np.full(len(ranges), level), time.process_time()
-            tones(waveform(), ranges, amplitudes, method=method)
-            spent.append(time.process_time() - began)
-    return float(np.median(seconds[amplitude]) / np.median(seconds[1.0]))
 
 
 @cases("levels from 1e-280 to 1e280", "the signal is linear in the amplitudes", bound=1e-12, unit="relative",

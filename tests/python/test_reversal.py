@@ -112,7 +112,7 @@ def diffuse_scene(wall, rough=FLAT):
 
 def test_exchanged_antennas_receive_the_same_over_diffuse_hits_and_mirrors():
     scene = diffuse_scene(ep.Material.metal(mirror=True))
-    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=40000, max_bounces=5)
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=100_000, max_bounces=5)
     for events in ("D", "S D", "S D S", "D D", "S D D", "S D D S", "D D D", "D S D", "D S D S"):
         error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
         assert count >= 20 and error < RECIPROCITY, events

@@ -9,7 +9,7 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
-constexpr double kOutline = 0.35, kOutlineOfFields = 0.17;
+constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
 
 double squared(double x) { return x * x; }
 

@@ -82,23 +82,19 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
     paths: of a trace; objects: as in `families`
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
     progress: callable (stage, fraction) or None
-    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar that no ray has met is among them, with what three rays
-    might have brought back from it as its upper end.
+    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar that no
+    ray has met is among them, with what three rays might have brought back from it as its upper end.
     """
     families = families_of(paths, objects)
     powers = family_powers(paths, families, progress)
-    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power), _advice(paths, families, family, power))
+    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power),
+                        _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)
              if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
     found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
     return sorted((one for one in found if one.interval.high > least_power),
                   key=lambda one: (bool(one.via), -one.interval.power, -one.interval.high))
-
-
-def noise_power_of(radar) -> float:
-    """Noise power in W against the mean received power of an echo in its cell: of a sample over the samples of a frame."""
-    return _core.noise_power(radar) / (radar.waveform.num_samples * radar.waveform.num_chirps)
 
 
 # --- advice ---

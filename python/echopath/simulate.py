@@ -15,7 +15,7 @@ from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
-from .resolution import noise_power_of, unresolved
+from .resolution import unresolved
 from .stages import Stage, StageClock
 
 _FAMILIES = object()  # a view that has the name of no partition
@@ -106,7 +106,7 @@ class Frame:
     def unresolved(self) -> list:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
-        return unresolved(self.paths, least_power=noise_power_of(self.radar))
+        return unresolved(self.paths, least_power=ep._core.noise_power_in_cell(self.radar))
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"

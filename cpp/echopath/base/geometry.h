@@ -2,6 +2,7 @@
 // Names for the small linear algebra that every module uses.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace echopath {
 
@@ -10,5 +11,12 @@ using Mat3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 // p_outer = T * p_inner; read names right to left: world_from_node.
 using Transform = Eigen::Affine3d;
+
+// From a point to the segment between two others, which may be one.
+inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
+  const Vec3 along = to - from;
+  const double square = along.squaredNorm(), at = square > 0 ? std::clamp(along.dot(point - from) / square, 0.0, 1.0) : 0.0;
+  return (from + at * along - point).norm();
+}
 
 }  // namespace echopath

@@ -35,12 +35,6 @@ struct End {
   }
 };
 
-double distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
-  const Vec3 edge = b - a;
-  const double along = std::clamp((point - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-  return (a + along * edge - point).norm();
-}
-
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3 normal = (b - a).cross(c - a).normalized();

@@ -42,12 +42,6 @@ TimeSpan frame_of(const Radar& radar, double start) {
   return {start + radar.chirp_time(0, 0), start + radar.chirp_time(last_tx, last_chirp)};
 }
 
-bool anything_moves(const Scene& scene, const Radar& radar) {
-  bool moves = radar.motion != nullptr;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves = moves || scene.is_moving(id);
-  return moves;
-}
-
 std::vector<double> golden_times(const TimeSpan& frame, int count) {
   std::vector<double> times = {frame.begin, frame.end};
   for (int k = 1; k + 2 <= count; ++k) {
@@ -61,7 +55,8 @@ std::vector<double> golden_times(const TimeSpan& frame, int count) {
 
 CheckTimes check_times(const Scene& scene, const Radar& radar, double start) {
   const TimeSpan frame = frame_of(radar, start);
-  if (frame.begin == frame.end || !anything_moves(scene, radar)) return given_check_times(scene, radar, start, {frame.begin});
+  const bool moves = radar.motion || scene.is_anything_moving();
+  if (frame.begin == frame.end || !moves) return given_check_times(scene, radar, start, {frame.begin});
   CheckTimes found;
   found.turn = turns_of(scene, radar, frame);
   found.num_base = kBaseCheckTimes;

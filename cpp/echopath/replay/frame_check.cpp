@@ -35,12 +35,6 @@ void merge(const PathState& at, PathState& worst) {
 
 bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
 
-double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
-  const Vec3 along = to - from;
-  const double length = along.squaredNorm(), at = length > 0 ? std::clamp(along.dot(point - from) / length, 0.0, 1.0) : 0.0;
-  return (from + at * along - point).norm();
-}
-
 // Of a mesh at one time, in the world.
 std::pair<Vec3, double> ball_of(const Pose& pose, uint32_t mesh_id) {
   Eigen::AlignedBox3d box;
@@ -163,11 +157,10 @@ Echo FrameCheck::at_trace(const LocalPath& path, Scratch& scratch) const {
   return echo;
 }
 
-void FrameCheck::check(const LocalPath& path, int num_times, Scratch& scratch, PathFinding& found,
+void FrameCheck::check(const LocalPath& path, const Echo& traced, int num_times, Scratch& scratch, PathFinding& found,
                        std::vector<Echo>& out) const {
   const int64_t needed = num_times - static_cast<int64_t>(first_posed_);
   const auto count = static_cast<size_t>(std::clamp<int64_t>(needed, 0, std::ssize(views_)));
-  const Echo traced = at_trace(path, scratch);
   const bool still = is_still(path);
   if (found.num_powers == 0) {
     found.power = std::norm(traced.amplitude);

@@ -116,9 +116,7 @@ class Certificate {
     report_.times = check_.times().times;
     report_.has_array = check_.has_array();
     report_.specular = settings.specular;
-    const ChirpSequence& waveform = radar.waveform;
-    const double cells = static_cast<double>(waveform.num_samples) * waveform.num_chirps;
-    report_.cell_noise = noise_power(radar) * (waveform.real ? 2.0 : 1.0) / cells;
+    report_.cell_noise = noise_power_in_cell(radar);
   }
 
   Validity run() {
@@ -187,7 +185,7 @@ class Certificate {
       Finding& found = findings_[members[i]];
       const LocalPath& path = local.paths[i];
       if (first == 0) begin_path(path, scratch, found);
-      check_.check(path, found.num_times, scratch, found, echoes);
+      check_.check(path, found.at_trace, found.num_times, scratch, found, echoes);
       add_echoes(found, sample_.weights[members[i]], first, echoes, sums);
     }
   }

@@ -96,6 +96,13 @@ bool Scene::is_moving(uint32_t mesh_id) const {
   return false;
 }
 
+bool Scene::is_anything_moving() const {
+  for (uint32_t mesh_id = 0; mesh_id < meshes().size(); ++mesh_id) {
+    if (is_moving(mesh_id)) return true;
+  }
+  return false;
+}
+
 bool Scene::may_stretch(uint32_t mesh_id) const {
   if (node_of(mesh_id).deformation) return true;
   if (!is_moving(mesh_id)) return false;

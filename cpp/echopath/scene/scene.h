@@ -51,6 +51,7 @@ class Scene {
 
   // Mesh moves at some time (its node or an ancestor has a motion, or it deforms).
   bool is_moving(uint32_t mesh_id) const;
+  bool is_anything_moving() const;
   // Its triangles may change their areas: it deforms, or moves below or with a placement that scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;
   std::vector<double> breakpoints() const;  // of all motions, ascending

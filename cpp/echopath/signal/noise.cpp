@@ -24,6 +24,12 @@ double noise_power(const Radar& radar) {
   return radar.waveform.real ? 0.5 * complex_power : complex_power;
 }
 
+double noise_power_in_cell(const Radar& radar) {
+  const ChirpSequence& waveform = radar.waveform;
+  const double scale = waveform.real ? 2.0 : 1.0;
+  return scale * noise_power(radar) / (static_cast<double>(waveform.num_samples) * waveform.num_chirps);
+}
+
 int64_t cube_size(const Radar& radar) {
   return static_cast<int64_t>(radar.transmitters.size()) * static_cast<int64_t>(radar.receivers.size()) *
          radar.waveform.num_chirps * radar.waveform.num_samples;

@@ -26,6 +26,42 @@ void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::sp
   });
 }
 
+// The probe of a frame over the records of one stretch: what is found of their chirps is added up.
+class StretchProbe {
+ public:
+  // `frame` may be null: nothing is probed.
+  StretchProbe(SignalProbe* frame, const Stretch& stretch) : frame_(frame) {
+    if (!frame_) return;
+    own_.seed = frame_->seed;
+    own_.first_chirp = stretch.first_chirp;
+    first_ = frame_->chirps.size();
+  }
+  ~StretchProbe() { add_last(); }
+  StretchProbe(const StretchProbe&) = delete;
+  StretchProbe& operator=(const StretchProbe&) = delete;
+
+  // Of the next record.
+  SignalProbe* next() {
+    if (!frame_) return nullptr;
+    add_last();
+    own_.chirps.clear();
+    return &own_;
+  }
+
+ private:
+  // The same chirps and samples are drawn for each record.
+  void add_last() {
+    for (size_t i = 0; i < own_.chirps.size(); ++i) {
+      if (frame_->chirps.size() <= first_ + i) frame_->chirps.push_back(own_.chirps[i]);
+      else frame_->chirps[first_ + i].add(own_.chirps[i]);
+    }
+  }
+
+  SignalProbe* frame_;
+  SignalProbe own_;
+  size_t first_ = 0;  // of the stretch, in those of the frame
+};
+
 }  // namespace
 
 Cube Cube::zeros(const Radar& radar) {
@@ -39,12 +75,14 @@ void Cube::add(const Cube& other) {
   for (size_t i = 0; i < values.size(); ++i) values[i] += other.values[i];
 }
 
-void Cube::insert_chirps(const Cube& stretch, int first_chirp) {
+void Cube::add_chirps(const Cube& stretch, int first_chirp) {
   const size_t size = static_cast<size_t>(stretch.num_chirps) * stretch.num_samples;
   const size_t frame_size = static_cast<size_t>(num_chirps) * num_samples;
   const size_t first = static_cast<size_t>(first_chirp) * num_samples;
   for (size_t channel = 0; channel < static_cast<size_t>(num_tx) * num_rx; ++channel) {
-    std::copy_n(stretch.values.data() + channel * size, size, values.data() + channel * frame_size + first);
+    const std::complex<double>* from = stretch.values.data() + channel * size;
+    std::complex<double>* to = values.data() + channel * frame_size + first;
+    for (size_t i = 0; i < size; ++i) to[i] += from[i];
   }
 }
 
@@ -88,38 +126,19 @@ size_t CubePass::cube_bytes() const {
   return channels * samples * sizeof(std::complex<double>);
 }
 
-std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job) {
-  const int count = num_keyframes(paths, radar, settings.keyframes, settings.replay.specular, job);
-  return stretches_of(radar, paths.frame.start_time, count);
-}
-
-CubeSettings within_stretch(CubeSettings settings, SignalProbe* probe) {
-  settings.keyframes = {};
-  settings.probe = probe;
-  return settings;
-}
-
-StretchProbe::StretchProbe(SignalProbe* frame, const Stretch& stretch) : frame_(frame) {
-  if (!frame_) return;
-  own_.seed = frame_->seed;
-  own_.first_chirp = stretch.first_chirp;
-  first_ = frame_->chirps.size();
-}
-
-StretchProbe::~StretchProbe() { add_last(); }
-
-SignalProbe* StretchProbe::next() {
-  if (!frame_) return nullptr;
-  add_last();
-  own_.chirps.clear();
-  return &own_;
-}
-
-// The same chirps and samples are drawn for each record.
-void StretchProbe::add_last() {
-  for (size_t i = 0; i < own_.chirps.size(); ++i) {
-    if (frame_->chirps.size() <= first_ + i) frame_->chirps.push_back(own_.chirps[i]);
-    else frame_->chirps[first_ + i].add(own_.chirps[i]);
+void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job, const RecordVisitor& visit) {
+  const KeyframeSettings& keyframes = settings.keyframes;
+  const int count = num_keyframes(paths, radar, keyframes, settings.replay.specular, job);
+  const std::vector<Stretch> stretches = stretches_of(radar, paths.frame.start_time, count);
+  StretchRecords records(paths, radar, stretches, keyframes.retrace, job);
+  CubeSettings alone = settings;
+  alone.keyframes = {};
+  for (const Stretch& stretch : stretches) {
+    StretchProbe probe(settings.probe, stretch);
+    for (const Paths& record : records.of(stretch)) {
+      alone.probe = probe.next();
+      visit(record, stretch.radar, alone, stretch.first_chirp);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 // Cubes, and the pass of replay and synthesis that fills them.
 #include <complex>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "echopath/replay/replay.h"
@@ -25,8 +26,8 @@ struct Cube {
 
   static Cube zeros(const Radar& radar);
   void add(const Cube& other);
-  // Puts the chirps of a stretch of the frame into their place.
-  void insert_chirps(const Cube& stretch, int first_chirp);
+  // To the chirps from `first_chirp` on, those of a stretch of the frame.
+  void add_chirps(const Cube& stretch, int first_chirp);
 };
 
 // One way to sort paths into groups.
@@ -49,27 +50,9 @@ class CubePass {
   std::vector<Synthesizer> synthesizers_;  // by way
 };
 
-// The stretches of a frame that needs several records (settings.keyframes).
-std::vector<Stretch> stretches_for(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job);
-// The settings inside a record of a stretch, whose pass fills `probe`.
-CubeSettings within_stretch(CubeSettings settings, SignalProbe* probe);
-
-// The probe of a frame over the records of one stretch: what is found of their chirps is added up.
-class StretchProbe {
- public:
-  // `frame` may be null: nothing is probed.
-  StretchProbe(SignalProbe* frame, const Stretch& stretch);
-  ~StretchProbe();
-  StretchProbe(const StretchProbe&) = delete;
-  StretchProbe& operator=(const StretchProbe&) = delete;
-  SignalProbe* next();  // of the next record
-
- private:
-  void add_last();
-
-  SignalProbe* frame_;
-  SignalProbe own_;
-  size_t first_ = 0;  // of the stretch, in those of the frame
-};
+// The records of a frame that needs several (settings.keyframes), stretch by stretch, each with the radar of its stretch and the
+// settings of a pass over it alone, whose signal belongs to the chirps from first_chirp on.
+using RecordVisitor = std::function<void(const Paths& record, const Radar& radar, const CubeSettings& settings, int first_chirp)>;
+void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job, const RecordVisitor& visit);
 
 }  // namespace echopath

@@ -103,17 +103,22 @@ Views decompose_record(const Paths& paths, const Radar& radar, const std::vector
   return out;
 }
 
-// The part of that name; one that no earlier stretch has is put before the last.
+// The part of that name; one that no earlier record has is put before the last.
 PartCube& part_named(const std::string& name, std::vector<PartCube>& parts, const Radar& radar) {
   const auto found = std::find_if(parts.begin(), parts.end(), [&](const PartCube& part) { return part.name == name; });
   if (found != parts.end()) return *found;
   return *parts.insert(parts.empty() ? parts.end() : parts.end() - 1, {name, Cube::zeros(radar)});
 }
 
-// Parts of another record of the same stretch, to those of the same names.
-void add_parts(const Views& more, const Radar& radar, Views& sum) {
-  for (size_t view = 0; view < sum.size(); ++view) {
-    for (const PartCube& part : more[view]) part_named(part.name, sum[view], radar).cube.add(part.cube);
+// What a record adds to the parts of a frame. The first one has them in their order.
+void add_parts(const Views& record, const Radar& radar, int first_chirp, Views& frame) {
+  for (size_t view = 0; view < frame.size(); ++view) {
+    std::vector<PartCube>& parts = frame[view];
+    const bool is_first = parts.empty();
+    for (const PartCube& part : record[view]) {
+      if (is_first) parts.push_back({part.name, Cube::zeros(radar)});
+      part_named(part.name, parts, radar).cube.add_chirps(part.cube, first_chirp);
+    }
   }
 }
 
@@ -121,27 +126,12 @@ void add_parts(const Views& more, const Radar& radar, Views& sum) {
 
 Views decompose(const Paths& paths, const Radar& radar, const std::vector<Grouping>& views, const CubeSettings& settings,
                 Job* job) {
-  const Retrace retrace = settings.keyframes.retrace;
-  if (retrace == Retrace::kNever) return decompose_record(paths, radar, views, settings, job);
+  if (settings.keyframes.retrace == Retrace::kNever) return decompose_record(paths, radar, views, settings, job);
   Views frame(views.size());
-  const std::vector<Stretch> stretches = stretches_for(paths, radar, settings, job);
-  StretchRecords records(paths, radar, stretches, retrace, job);
-  for (const Stretch& stretch : stretches) {
-    StretchProbe probe(settings.probe, stretch);
-    Views parts;
-    for (const Paths& record : records.of(stretch)) {
-      Views more = decompose_record(record, stretch.radar, views, within_stretch(settings, probe.next()), job);
-      if (parts.empty()) parts = std::move(more);
-      else add_parts(more, stretch.radar, parts);
-    }
-    const bool is_first = stretch.first_chirp == 0;
-    for (size_t view = 0; view < views.size(); ++view) {
-      for (const PartCube& part : parts[view]) {
-        if (is_first) frame[view].push_back({part.name, Cube::zeros(radar)});
-        part_named(part.name, frame[view], radar).cube.insert_chirps(part.cube, stretch.first_chirp);
-      }
-    }
-  }
+  const auto add = [&](const Paths& record, const Radar& of, const CubeSettings& alone, int first_chirp) {
+    add_parts(decompose_record(record, of, views, alone, job), radar, first_chirp, frame);
+  };
+  for_each_record(paths, radar, settings, job, add);
   return frame;
 }
 

@@ -14,12 +14,6 @@ namespace {
 // Of the looks: directions and random phases that no other has.
 uint64_t seed_of_look(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
 
-bool anything_moves(const Scene& scene, const Radar& radar) {
-  bool moves = radar.motion != nullptr;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves = moves || scene.is_moving(id);
-  return moves;
-}
-
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
 // Takes out what a trace at another time could have had, too.
@@ -66,7 +60,8 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
   // A new trace knows nothing of a selection.
   require(retrace != Retrace::kAlways || is_whole(paths), "retrace",
           "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
-  if (retrace == Retrace::kInvalid && is_whole(paths) && anything_moves(*paths.scene, radar)) find_new_surface(radar, stretches);
+  const bool moves = radar.motion || paths.scene->is_anything_moving();
+  if (retrace == Retrace::kInvalid && is_whole(paths) && moves) find_new_surface(radar, stretches);
 }
 
 void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches) {

@@ -27,12 +27,6 @@ std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
   return received_powers(paths, group, num_strata + 1, job);
 }
 
-// W, of one cell of a range-Doppler map that all samples of a frame make. Maps of real samples are scaled to the same levels.
-double noise_of_cell(const Radar& radar) {
-  const double scale = radar.waveform.real ? 2.0 : 1.0;
-  return scale * noise_power(radar) / (static_cast<double>(radar.waveform.num_samples) * radar.waveform.num_chirps);
-}
-
 double strongest_of(const std::vector<ReceivedPower>& powers) {
   double strongest = 0.0;
   for (const ReceivedPower& power : powers) strongest = std::max(strongest, power.power);
@@ -76,7 +70,7 @@ double RayNeeds::num_rays() const {
 
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job) {
   const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
-  const double least = floor == EchoFloor::kNoise ? noise_of_cell(paths.radar) : kDynamicRange * strongest_of(powers);
+  const double least = floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
   const std::vector<bool> moves = moving_objects(*paths.scene);
   RayNeeds needs;
   for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
@@ -84,9 +78,7 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
     needs.strata.push_back(need_of(stratum, powers[k], missing, is_moving ? kMovingTarget * target_db : target_db));
-    if (powers[k].high <= least || missing <= needs.worst_db) continue;
-    needs.worst_db = missing;
-    needs.worst = stratum.name;
+    if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
 }

@@ -31,13 +31,6 @@ void meet_again(const Vec3& from, const Vec3& direction, const std::array<Vec3, 
   hit.v = static_cast<float>(v / sum);
 }
 
-bool any_moves(const Scene& scene) {
-  for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
-    if (scene.is_moving(mesh_id)) return true;
-  }
-  return false;
-}
-
 Eigen::AlignedBox3d world_box(const Scene& scene, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
@@ -55,7 +48,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origi
 
 void EmbreeScene::update(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job) {
   std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
-  const bool tree_per_mesh = any_moves(scene) && meshes_.mean_cover() <= kMostCover;
+  const bool tree_per_mesh = scene.is_anything_moving() && meshes_.mean_cover() <= kMostCover;
   if (!device_->scene || device_->has_mesh.size() != meshes_.size() || tree_per_mesh != device_->has_tree_per_mesh) {
     device_->start_scene(meshes_.size(), tree_per_mesh);
     changed.resize(meshes_.size());
@@ -81,7 +74,7 @@ Vec3 EmbreeScene::origin_near(const Scene& scene, const Pose& pose, const Vec3& 
   if (box.isEmpty()) return near;
   const Vec3 nearest = near.cwiseMax(box.min()).cwiseMin(box.max());
   const double length = box.sizes().maxCoeff();
-  if (!(near_moves || any_moves(scene)) || length <= 0.0) return nearest;
+  if (!(near_moves || scene.is_anything_moving()) || length <= 0.0) return nearest;
   const double step = std::exp2(std::floor(std::log2(length)) - 3.0);
   return (nearest / step).array().round().matrix() * step;
 }

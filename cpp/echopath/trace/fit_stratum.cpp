@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/trace/convex_hull.h"
 
 namespace echopath {
 namespace {
@@ -22,9 +23,7 @@ constexpr double kSteepestSine = 0.57;
 constexpr size_t kSampledVertices = 4096;  // for the middle of directions
 constexpr int kAxisSteps = 64;
 constexpr int kTriedTurns = 48;            // directions of strips, beside those of few hull edges
-constexpr int kOctants = 16;               // outward directions by which points inside the hull are sorted out
-
-using Points = std::vector<Eigen::Vector2d>;
+constexpr int kOutwardDirections = 16;     // by which points inside the hull are sorted out
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -73,43 +72,24 @@ struct GnomonicPlane {
 };
 
 // Those that may be corners of the convex hull: outside of the polygon of the outermost ones in some directions.
-Points outer_points(const Points& points) {
-  std::array<Eigen::Vector2d, kOctants> outermost;
-  for (int k = 0; k < kOctants; ++k) {
-    const double angle = kTwoPi * k / kOctants;
+PlanePoints outer_points(const PlanePoints& points) {
+  std::array<Eigen::Vector2d, kOutwardDirections> outermost;
+  for (int k = 0; k < kOutwardDirections; ++k) {
+    const double angle = kTwoPi * k / kOutwardDirections;
     const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
     outermost[static_cast<size_t>(k)] = *std::max_element(
         points.begin(), points.end(), [&](const auto& a, const auto& b) { return outward.dot(a) < outward.dot(b); });
   }
   const auto is_inside = [&](const Eigen::Vector2d& point) {
-    for (size_t k = 0; k < kOctants; ++k) {
-      const Eigen::Vector2d edge = outermost[(k + 1) % kOctants] - outermost[k];
+    for (size_t k = 0; k < kOutwardDirections; ++k) {
+      const Eigen::Vector2d edge = outermost[(k + 1) % kOutwardDirections] - outermost[k];
       if (edge.squaredNorm() > 0 && cross(edge, point - outermost[k]) <= 0) return false;
     }
     return true;
   };
-  Points outer;
+  PlanePoints outer;
   std::copy_if(points.begin(), points.end(), std::back_inserter(outer), [&](const auto& point) { return !is_inside(point); });
   return outer;
-}
-
-// Corners in order around it (Andrew 1979).
-Points convex_hull(Points points) {
-  const auto before = [](const auto& a, const auto& b) { return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1]; };
-  std::sort(points.begin(), points.end(), before);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  Points hull;
-  for (const bool upper : {false, true}) {
-    const size_t begin = hull.size();
-    for (const Eigen::Vector2d& point : points) {
-      while (hull.size() >= begin + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0) hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();  // begins the other half
-    if (!upper) std::reverse(points.begin(), points.end());
-  }
-  return hull;
 }
 
 Stratum cone_around(const Vec3& axis, const std::vector<Vec3>& corners) {
@@ -150,7 +130,7 @@ void extend_along_arc(const Vec3& from, const Vec3& to, const Vec3& up, Range& h
 }
 
 // Along the direction `along` of the plane; holds the hull between the corners.
-Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const Points& hull, const std::vector<Vec3>& corners) {
+Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull, const std::vector<Vec3>& corners) {
   const Eigen::Vector2d aside(-along[1], along[0]);
   Range offsets{aside.dot(hull.front()), aside.dot(hull.front())};
   for (const Eigen::Vector2d& corner : hull) offsets.extend(aside.dot(corner));
@@ -181,8 +161,8 @@ bool serves(const Stratum& strip) {
 }
 
 // Unit vectors along which strips are tried: evenly turned, and along the edges of the hull where these are few.
-Points turns_to_try(const Points& hull) {
-  Points turns;
+PlanePoints turns_to_try(const PlanePoints& hull) {
+  PlanePoints turns;
   for (int k = 0; k < kTriedTurns; ++k) turns.emplace_back(std::cos(kPi * k / kTriedTurns), std::sin(kPi * k / kTriedTurns));
   if (hull.size() > kTriedTurns) return turns;
   for (size_t i = 0; i < hull.size(); ++i) {
@@ -207,14 +187,14 @@ std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3
   const std::optional<Vec3> axis = axis_toward(vertices, apex, directions);
   if (!axis) return std::nullopt;
   const GnomonicPlane plane(*axis);
-  Points points;
+  PlanePoints points;
   points.reserve(directions.size());
   for (const Vec3& direction : directions) points.push_back(plane.project(direction));
-  const Points hull = convex_hull(outer_points(points));
+  const PlanePoints hull = convex_hull(outer_points(points));
   std::vector<Vec3> corners;
   for (const Eigen::Vector2d& corner : hull) corners.push_back(plane.direction(corner));
   Stratum best = cone_around(plane.axis, corners);
-  for (const Eigen::Vector2d& along : may_be_strip ? turns_to_try(hull) : Points()) {
+  for (const Eigen::Vector2d& along : may_be_strip ? turns_to_try(hull) : PlanePoints()) {
     const Stratum strip = strip_along(along, plane, hull, corners);
     if (serves(strip) && strip.solid_angle() < best.solid_angle()) best = strip;
   }

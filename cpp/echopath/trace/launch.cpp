@@ -91,12 +91,6 @@ Stratum field_of_view(const LaunchSettings& settings) {
 
 }  // namespace
 
-RayShares shares_of(const std::vector<Stratum>& strata) {
-  RayShares shares;
-  for (const Stratum& stratum : strata) shares[stratum.name] = static_cast<double>(stratum.num_rays);
-  return shares;
-}
-
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);

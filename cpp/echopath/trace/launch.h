@@ -1,9 +1,7 @@
 #pragma once
 // Where rays start: strata of directions and the low-discrepancy set inside each.
 #include <array>
-#include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "echopath/trace/mirror_beams.h"
@@ -13,11 +11,6 @@
 #include "echopath/trace/stratum.h"
 
 namespace echopath {
-
-// Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
-using RayShares = std::map<std::string, double>;
-// Those of a plan that was carried out.
-RayShares shares_of(const std::vector<Stratum>& strata);
 
 // One stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over mirrors,
 // and the antenna's field of view, the last one. Objects are the children of the scene's root, without their mirrors; those that

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "echopath/trace/convex_hull.h"
 
 namespace echopath {
 namespace {
@@ -65,28 +68,12 @@ bool fills_outline(const Scene& scene, const EmbreeScene& geometry, const Mirror
 
 std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& corners) {
   const Vec3 first = mirror.normal.unitOrthogonal(), second = mirror.normal.cross(first);
-  std::vector<std::pair<double, double>> points;
-  for (const Vec3& corner : corners) {
-    const Vec3 line = corner - mirror.point;
-    points.emplace_back(first.dot(line), second.dot(line));
-  }
-  std::sort(points.begin(), points.end());
-  std::vector<std::pair<double, double>> hull;
-  const auto turns_left = [&](const auto& next) {
-    const auto &a = hull[hull.size() - 2], &b = hull.back();
-    return (b.first - a.first) * (next.second - a.second) - (b.second - a.second) * (next.first - a.first) > 0;
-  };
-  for (const bool upper : {false, true}) {
-    const size_t begin = hull.size();
-    for (const auto& point : points) {
-      while (hull.size() >= begin + 2 && !turns_left(point)) hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();  // begins the other half
-    if (!upper) std::reverse(points.begin(), points.end());
-  }
+  PlanePoints points;
+  for (const Vec3& corner : corners) points.emplace_back(first.dot(corner - mirror.point), second.dot(corner - mirror.point));
   std::vector<Vec3> outline;
-  for (const auto& [x, y] : hull) outline.push_back(mirror.point + x * first + y * second);
+  for (const Eigen::Vector2d& corner : convex_hull(std::move(points))) {
+    outline.push_back(mirror.point + corner[0] * first + corner[1] * second);
+  }
   return outline;
 }
 

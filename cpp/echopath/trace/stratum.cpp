@@ -14,4 +14,10 @@ bool Stratum::contains(const Vec3& direction) const {
   return height >= low && height <= high && std::abs(std::atan2(direction.dot(across), direction.dot(axis))) <= half_azimuth;
 }
 
+RayShares shares_of(const std::vector<Stratum>& strata) {
+  RayShares shares;
+  for (const Stratum& stratum : strata) shares[stratum.name] = static_cast<double>(stratum.num_rays);
+  return shares;
+}
+
 }  // namespace echopath

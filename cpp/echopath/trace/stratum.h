@@ -1,7 +1,9 @@
 #pragma once
 // A launch stratum: a part of the directions about the transmitter, with rays spread evenly over it.
 #include <cstdint>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "echopath/base/geometry.h"
 
@@ -25,5 +27,10 @@ struct Stratum {
   double solid_angle() const;                  // sr
   bool contains(const Vec3& direction) const;  // unit direction
 };
+
+// Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
+using RayShares = std::map<std::string, double>;
+// Those of a plan that was carried out.
+RayShares shares_of(const std::vector<Stratum>& strata);
 
 }  // namespace echopath

@@ -1,7 +1,6 @@
 #pragma once
 // The trace: scene and radar at mid-frame -> paths.
 #include "echopath/base/job.h"
-#include "echopath/trace/launch.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {

@@ -95,7 +95,7 @@ def judge_scene(seed: int):
     replayed = object_powers(paths, times, names).mean(axis=1)
     truths = [np.mean([_traced_powers(made, at, seed_of_truth, names) for at in times], axis=0) for seed_of_truth in SEEDS]
     truth = np.mean(truths, axis=0)
-    noise = ep._core.noise_power(made.radar) / (waveform.num_samples * waveform.num_chirps)
+    noise = ep._core.noise_power_in_cell(made.radar)
     floor = max(noise, max(truth.max(), replayed.max()) * 10.0 ** (-DYNAMIC_RANGE_DB / 10.0))
     verdicts = []
     for i, name in enumerate(names):

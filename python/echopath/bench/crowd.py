@@ -96,7 +96,7 @@ def measure_street(*, mirrors: bool, quick: bool) -> dict:
 
     one_set = levels_of(1, 1)
     runs = [levels_of(seed, BATCHES) for seed in range(1, (QUICK_SEEDS if quick else SEEDS) + 1)]
-    noise = ep._core.noise_power(radar) / (radar.waveform.num_samples * radar.waveform.num_chirps)
+    noise = ep._core.noise_power_in_cell(radar)
     rows = [_row(name, *_alone(name, radar, mirrors, quick), one_set[name], [levels[name] for levels in runs], noise)
             for name in names]
     return {"title": "flagged mirrors" if mirrors else "rough concrete", "rays": rays, "rows": rows,

@@ -225,8 +225,7 @@ def _labels(options) -> None:
 
 def _bench(options) -> None:
     from ..bench import (certificate, crowd, hard, labels, published, replay, report, run_certificate, run_crowd, run_labels,
-                         run_physics, run_published,
-                         run_replay, run_speed, speed)
+                         run_physics, run_published, run_replay, run_speed, speed)
     from .progress import progress_bars
 
     with progress_bars() as progress:

@@ -96,7 +96,8 @@ def test_noise_of_a_cell_is_the_mean_of_noise_alone(window, real):
 
 @pytest.mark.parametrize("real", [False, True])
 def test_noise_against_echoes_is_that_of_maps_without_a_window(real):
-    radar = ep.Radar(ep.ChirpSequence(num_samples=256, num_chirps=128, real=real), receivers=[ep.Antenna()] * 4)
+    radar = ep.Radar(ep.ChirpSequence(num_samples=256, num_chirps=128, real=real), transmitters=[ep.Antenna()],
+                     receivers=[ep.Antenna()] * 4)
     noise = ep.add_noise(np.zeros((1, 4, 128, 256)), radar, seed=6)
     measured = np.mean(np.abs(ep.range_doppler(noise, radar, window="rect").values[..., 1:]) ** 2)
     assert _core.noise_power_in_cell(radar) / measured == pytest.approx(1.0, abs=0.02)  # 6e4 cells

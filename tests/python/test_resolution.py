@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 import echopath as ep
+from echopath.actors import shapes
 from echopath.bench import crowd_scenes, targets
 from echopath.bench.closed_forms import WAVELENGTH
 from echopath.cli import report
@@ -67,6 +68,23 @@ def far_patch():
     scene.add(ep.actors.plate(0.02, 0.02), name="patch", material=rough, parent="pair")
     scene.add(ep.actors.plate(3, 3), name="board", material=rough, parent="pair", position=(0, 4, 0))
     return scene
+
+
+def test_a_wall_without_a_point_of_reflection_is_resolved():
+    """Its coherent part has nothing but edges, which the sum of all paths without the filter exceeds by 50 dB and more."""
+    scene = crowd_scenes.alone("wall_left", mirrors=False)
+    wall = ep.received_power(ep.trace(scene, crowd_scenes.radar(), num_rays=20_000, max_bounces=1).select("T 'wall_left' R"))
+    assert wall.unfiltered > 1e4 * wall.power and wall.hidden < wall.power
+    assert wall.resolved and wall.coherent < 0.01 * wall.power
+
+
+def test_facets_that_cells_do_not_resolve_may_hide_all():
+    """A sphere of facets, each flat and much smaller than a launch cell: what one of them says holds for no other."""
+    scene = ep.Scene()
+    scene.add(shapes.sphere(1.0, edge=0.01), name="ball", material=ep.Material.metal(), position=(30.0, 0.0, 0.0))
+    ball = ep.received_power(ep.trace(scene, targets.radar(), num_rays=64, max_bounces=1))
+    assert ball.hidden == pytest.approx(ball.unfiltered, rel=1e-12) and not ball.resolved
+    assert ball.low <= power_of(np.pi, 30.0) <= ball.high
 
 
 def test_what_no_ray_has_met_is_not_known_to_be_nothing():

@@ -13,7 +13,11 @@ struct CellFilter {
   double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
   Footprint order = Footprint::kSecondOrder;
   double side = 1.0;        // of the cells that it takes, relative to those of the launch: what finer or coarser ones would do
+  // As a side: in the place of a filter what cells as launched may hide (hidden_part_of).
+  static constexpr double kHidden = -1.0;
 };
+
+inline constexpr double kNoFacets = 1e150;  // m^2, of a smooth surface
 
 // A cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. Does not change while its mesh moves rigidly.
 struct CellShape {
@@ -24,6 +28,7 @@ struct CellShape {
   double turn[3] = {0, 0, 0};      // T_a.U_b, m
   double bend[3] = {0, 0, 0};      // II(T_a, T_b) about the normal of the triangle, m
   double across[2] = {1, 0};       // of kFlatOneWay: unit, in cells, toward the curvature
+  bool is_coarse = false;          // wider than the facets of its mesh, so that its own one tells nothing of the rest
 };
 
 // A cell as waves meet and leave it.
@@ -95,10 +100,19 @@ ECHOPATH_INLINE Real shadow_taper(const CellWaves<Real>& at) {
   return 4.0 * at.cos_in * at.cos_out / (sum * sum);
 }
 
+// What a cell may hide (CellFilter::kHidden), of coarse ones all. is_coarse: CellShape::is_coarse, or a mask of lanes.
+template <class Math, class Shape, class Mask, class Real>
+ECHOPATH_INLINE Real hidden_part_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at, CellFilter filter) {
+  filter.side = 1.0;
+  const Real hidden = hidden_part_of<Math>(cell_phase(cell, at, filter));
+  return is_coarse ? hidden * 0.0 + 1.0 : hidden;
+}
+
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
   const Real zero = at.cos_in * 0.0;
   if (filter.order == Footprint::kNone || !cell.is_known) return {zero + 1.0, zero};
+  if (filter.side == CellFilter::kHidden) return {hidden_part_of_cell<Math>(cell, cell.is_coarse, at, filter), zero};
   const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) return {first_order_footprint_of<Math>(phase), zero};
   if (cell.flatness == Flatness::kFlat) {

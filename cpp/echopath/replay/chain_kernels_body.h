@@ -31,6 +31,7 @@ struct LaneMath {
   static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
   static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
   static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
+  static ECHOPATH_INLINE Vec smaller(Vec x, Vec y) { return x < y ? x : y; }
   static ECHOPATH_INLINE bool any(Mask x) {
 #if ECHOPATH_LANES == 8
     return _mm512_movepi64_mask(reinterpret_cast<__m512i>(x)) != 0;

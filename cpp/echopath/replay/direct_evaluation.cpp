@@ -54,7 +54,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
   if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
            is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
-            radio.filter(), is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
+            radio.filter(), kNoFacets, is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
   const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
@@ -63,6 +63,7 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
     const Points points(sorted_.data() + first, count);
     if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
       set_mesh(mesh_id, localise);
+      work_.facet_area = localise.facet_area(mesh_id);
       see_antennas(mesh_id, localise, level);
       if (is_polarized) see_axes(mesh_id, localise, level);
     }

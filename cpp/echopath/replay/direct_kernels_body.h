@@ -30,6 +30,11 @@ struct FlatCell {
   static constexpr bool is_curved = false;
   static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
   Vec product[3];
+
+  // CellShape::is_coarse
+  ECHOPATH_INLINE Mask is_coarse(double facet_area) const {
+    return product[0] * product[2] - product[1] * product[1] > all(facet_area * facet_area);
+  }
 };
 
 ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {
@@ -178,13 +183,13 @@ ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAnte
 }
 
 ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t slot, const CellWaves<Vec>& waves,
-                                              const CellFilter& filter) {
+                                              const CellFilter& filter, double facet_area) {
   if (filter.order == Footprint::kNone) return {all(1.0), Vec{}};
   const FlatCell cell{{load(slots.product[0] + slot), load(slots.product[1] + slot), load(slots.product[2] + slot)}};
-  const FootprintPhaseOf<Vec> phase = cell_phase(cell, waves, filter);
   ComplexOf<Vec> found{};
-  if (filter.order == Footprint::kFirstOrder) found.re = first_order_footprint_of<LaneMath>(phase);
-  else found = flat_cell_filter<LaneMath>(phase, filter);
+  if (filter.side == CellFilter::kHidden) found.re = hidden_part_of_cell<LaneMath>(cell, cell.is_coarse(facet_area), waves, filter);
+  else if (filter.order == Footprint::kFirstOrder) found.re = first_order_footprint_of<LaneMath>(cell_phase(cell, waves, filter));
+  else found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter);
   const Mask has_cell = load(slots.has_cell + slot) > 0.0;
   return {has_cell ? found.re : all(1.0), has_cell ? found.im : Vec{}};
 }
@@ -209,7 +214,7 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const 
     waves.along_arrival[a] = in(D::kAlong + a);
     waves.along_departure[a] = -out(D::kAlong + a);
   }
-  const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter);
+  const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter, paths.facet_area);
   const Vec size = in(D::kGain) * out(D::kGain) * waves.cos_in * waves.inverse_in * waves.inverse_out;
   const Mask is_far = (in(D::kLegLength) >= kNearAntenna) & (out(D::kLegLength) >= kNearAntenna);
   const Mask is_lit = (cos_in * cos_out > 0.0) & is_far;

@@ -79,6 +79,7 @@ class Sums {
       sums.coherent_power[side] += std::norm(field);
     }
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
+    sums.hidden_squares += std::norm(arriving[kHidden * stride]) * std::norm(arriving[kHidden * stride]);
     if (power > 0.0) {
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;

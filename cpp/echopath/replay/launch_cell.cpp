@@ -30,6 +30,10 @@ void find_across(const CellShape& cell, double* across) {
   for (int a = 0; a < 2; ++a) across[a] = axes.eigenvectors()(a, bent);
 }
 
+bool is_coarse(const CellShape& cell, double facet_area) {
+  return cell.product[0] * cell.product[2] - cell.product[1] * cell.product[1] > facet_area * facet_area;
+}
+
 }  // namespace
 
 LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density) {
@@ -61,6 +65,7 @@ CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTang
     shape.turn[i] = cell.turn[i];
     if (hit.is_smooth) shape.bend[i] = t[a].dot(hit.curvature * t[b]);
   }
+  shape.is_coarse = is_coarse(shape, cell.facet_area);
   if (shape.flatness == Flatness::kFlatOneWay) find_across(shape, shape.across);
   return shape;
 }

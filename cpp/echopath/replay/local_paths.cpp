@@ -30,7 +30,16 @@ Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
     mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
     mesh_from_trace_.push_back(trace_instant_.rotation(id).inverse());
     smooth_normals_.push_back(normals_at_trace(id));
+    facet_area_.push_back(facet_area_at_trace(id));
   }
+}
+
+// As if it were stretched evenly.
+double Localiser::facet_area_at_trace(uint32_t mesh_id) const {
+  const Node& node = paths_.scene->node_of(mesh_id);
+  if (node.smooth) return kNoFacets;
+  const double at_rest = node.mesh->area() / static_cast<double>(node.mesh->triangles().size());
+  return at_rest * std::pow(std::abs(trace_instant_.rotation(mesh_id).determinant()), 2.0 / 3.0);
 }
 
 std::vector<Vec3> Localiser::normals_at_trace(uint32_t mesh_id) const {
@@ -132,11 +141,13 @@ void Localiser::add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& 
   if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
   const double density = paths_.frame.lattice_density(stratum);
   path.cell.ray_density = density;
+  const double facet_area = facet_area_[path.hits[path.last_material].mesh_id];
   if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
     path.cell = recorded_cell(paths_.curved_cell[p], density);
-    return;
+  } else if (paths_.frame.footprint != Footprint::kNone) {
+    set_flat_cell(path, scratch);
   }
-  if (paths_.frame.footprint != Footprint::kNone) set_flat_cell(path, scratch);
+  path.cell.facet_area = facet_area;
 }
 
 void Localiser::set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const {

@@ -36,6 +36,8 @@ class Localiser {
   bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
   // Each of its triangles is a plane in the mesh's frame for good.
   bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
+  // m^2, mean of the triangles of a mesh at the trace; kNoFacets where the mesh is smooth.
+  double facet_area(uint32_t mesh_id) const { return facet_area_[mesh_id]; }
   // Normals of its corners; false where facets are meant or the crease guard refuses this one.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
   // Unit vertex normals by mesh ID; empty where facets are meant. As the rays saw the mesh: at rest, or deformed as at the
@@ -49,6 +51,7 @@ class Localiser {
 
  private:
   std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
+  double facet_area_at_trace(uint32_t mesh_id) const;
   LocalPath local_path(int64_t index, LocalPaths& block) const;
   void add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const;
   void set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const;
@@ -59,6 +62,7 @@ class Localiser {
   Instant trace_instant_;
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;
+  std::vector<double> facet_area_;     // by mesh ID
 };
 
 }  // namespace echopath

@@ -9,9 +9,23 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
+constexpr double kGone = 0.3, kOfHidden = 1.25;
+constexpr double kOfAHit = 0.5;
+constexpr double kEdgeCells = 8.0;  // of the root of their number: four sides, twice over
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
 
 double squared(double x) { return x * x; }
+
+// Number of equal values with the same sum and sum of squares.
+double effective_number(double sum, double sum_of_squares) {
+  return sum_of_squares > 0.0 ? sum * sum / sum_of_squares : 1.0;
+}
+
+// Power of what launch cells may hide, W. Each batch hides the same.
+double hidden_power(const PowerEvidence& evidence) {
+  const double all = evidence.coherent_power[kHidden], num_cells = effective_number(all, evidence.hidden_squares);
+  return evidence.num_batches * all * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
+}
 
 // How far the coherent field may lie above and below, sqrt(W).
 struct FieldBias {
@@ -21,17 +35,13 @@ struct FieldBias {
 FieldBias field_bias(const PowerEvidence& evidence) {
   const double size = std::abs(evidence.field[kAsLaunched]);
   const auto change = [&](CellSide side) { return std::abs(evidence.field[side] - evidence.field[kAsLaunched]); };
-  if (size == 0.0) return {std::sqrt(evidence.coherent_power[kUnfiltered]), 0.0};
+  const double hidden = std::sqrt(hidden_power(evidence));
+  if (size == 0.0) return {hidden, 0.0};
   const double halving = change(kHalfDensity) / size;
   const double finer = kOfFiner * std::max(0.0, change(kFiner) / size - kAliases);
-  const double all_gone = squared(squared(std::min(halving, 1.0))) * std::sqrt(evidence.coherent_power[kUnfiltered]);
+  const double all_gone = squared(std::min(halving / kGone, 1.0)) * kOfHidden * hidden;
   const double above = halving * std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
   return {std::hypot(size * (above + finer), all_gone), size * (kOfHalving * halving + finer)};
-}
-
-// Number of equal values with the same sum and sum of squares.
-double effective_number(double sum, double sum_of_squares) {
-  return sum_of_squares > 0.0 ? sum * sum / sum_of_squares : 1.0;
 }
 
 // Standard error of the power of one batch, W.
@@ -49,10 +59,16 @@ struct Reach {
   double above = 0.0, below = 0.0;  // W
 };
 
+// Standard error, W: an even lattice meets a small surface a whole number of times, in each batch perhaps the same one.
+double counting_error(const PowerEvidence& evidence) {
+  const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
+  return evidence.diffuse * kOfAHit * std::sqrt(static_cast<double>(evidence.num_batches)) / std::max(num_hits, 1.0);
+}
+
 // By chance. A power that is made of few hits is as uneven as their number: 95 % limits of a Poisson count, by its root.
 Reach chance_reach(const PowerEvidence& evidence, double power, double standard_error) {
   if (evidence.num_batches > 1) {
-    const double reach = standard_error * student_t95(evidence.num_batches - 1);
+    const double reach = std::max(standard_error * student_t95(evidence.num_batches - 1), kNormal * counting_error(evidence));
     return {reach, reach};
   }
   if (power <= 0.0) return {kNormal * standard_error, 0.0};

@@ -98,6 +98,7 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
     evidence.field[side] = std::accumulate(sums.field[side].begin(), sums.field[side].end(), std::complex<double>());
     evidence.coherent_power[side] = sums.coherent_power[side];
   }
+  evidence.hidden_squares = sums.hidden_squares;
   evidence.steady_power = sums.steady_power;
   evidence.steady_squares = sums.steady_squares;
   evidence.lattice_squares = sums.lattice_squares;
@@ -118,6 +119,7 @@ ReceivedPower with_interval(const GroupSums& sums) {
   out.field = evidence.field[kAsLaunched];
   out.half_density_field = evidence.field[kHalfDensity];
   out.unfiltered = evidence.coherent_power[kUnfiltered];
+  out.hidden = evidence.coherent_power[kHidden];
   out.num_coherent_paths = sums.num_coherent_paths;
   out.num_diffuse_hits = sums.num_diffuse_hits;
   if (out.diffuse > 0) out.strongest_share = sums.strongest_hit / out.diffuse;

@@ -57,7 +57,8 @@ class Replayer {
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
   // The same amplitudes [side, channel, P] as the footprint filter makes them of launch cells whose sides are that many times
-  // those of the trace: wider ones are those of fewer rays, sides of 0 switch it off.
+  // those of the trace: wider ones are those of fewer rays, sides of 0 switch it off, and CellFilter::kHidden takes what cells may
+  // hide in its place.
   void evaluate(std::span<const int64_t> paths, double time, std::span<const double> cell_sides, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 

@@ -62,6 +62,7 @@ RigidCell TraceCells::operator()(const ChainPlan::Chain& chain) const {
     tangents = flat_tangents(chain, hit, density);
     cell.is_known = tangents[0].allFinite() && tangents[1].allFinite();
   }
+  cell.facet_area = localise_.facet_area(plan_.points[point].mesh_id);
   out.shape = cell_shape(cell, hit, tangents);
   for (size_t a = 0; a < 2; ++a) out.tangent[a] = localise_.mesh_from_trace(plan_.points[point].mesh_id) * tangents[a];
   return out;

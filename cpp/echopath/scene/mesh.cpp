@@ -97,6 +97,12 @@ void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
   require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
 }
 
+double area_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  double twice = 0.0;
+  for (const Triangle& t : triangles) twice += (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]).norm();
+  return 0.5 * twice;
+}
+
 }  // namespace
 
 Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle)
@@ -124,6 +130,7 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   vertices_.reserve(original_vertex_.size());
   for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
   is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
+  area_ = area_of(vertices_, triangles_);
 }
 
 MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
@@ -148,17 +155,10 @@ MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
   }
   made->num_input_vertices_ = whole->num_input_vertices_;
   made->is_closed_ = made->num_duplicated_vertices_ == 0 && !has_boundary(made->triangles_);
+  made->area_ = area_of(made->vertices_, made->triangles_);
   return made;
 }
 
 Mesh::~Mesh() = default;
-
-double Mesh::area() const {
-  double twice = 0.0;
-  for (const Triangle& t : triangles_) {
-    twice += (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]).norm();
-  }
-  return 0.5 * twice;
-}
 
 }  // namespace echopath

@@ -85,5 +85,57 @@ TEST(Footprint, FlatTopIsFlat) {
   EXPECT_LT(flat_top_footprint({12.0, 0, 0, 0, 0}), kFaded);
 }
 
+// |integral of e^{-j(g.x + x.h.x/2)} over a square of cells about the middle|, by midpoints.
+double integral_over(const FootprintPhase& phase, double from, double to) {
+  constexpr int kSteps = 2000;
+  const double step = (to - from) / kSteps;
+  std::complex<double> sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const double x = from + (i + 0.5) * step, y = from + (j + 0.5) * step;
+      sum += std::polar(1.0, -(phase.g1 * x + phase.g2 * y +
+                               0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y)));
+    }
+  }
+  return std::abs(sum) * step * step;
+}
+
+// Axes turned by an angle.
+FootprintPhase turned(const FootprintPhase& phase, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * phase.g1 - s * phase.g2, s * phase.g1 + c * phase.g2,
+          c * c * phase.h11 - 2 * c * s * phase.h12 + s * s * phase.h22,
+          c * s * (phase.h11 - phase.h22) + (c * c - s * s) * phase.h12,
+          s * s * phase.h11 + 2 * c * s * phase.h12 + c * c * phase.h22};
+}
+
+double hidden(const FootprintPhase& phase) { return hidden_part_of<ScalarMath>(phase); }
+
+// A point of reflection beside the middle of a cell, where a Gaussian about the middle sees nearly nothing of it: what it sends back
+// is that of all cells together, the ends of the integral apart.
+TEST(Footprint, HiddenIsAPointOfReflectionInTheCell) {
+  const FootprintPhase bent{0.6 * 60.0, -0.5 * 50.0, 60.0, 0.0, -50.0};
+  const double whole = integral_over(bent, -3.0, 3.0);
+  EXPECT_NEAR(hidden(bent) / whole, 1.0, 0.1);
+  EXPECT_LT(std::abs(second_order_footprint(bent, 0.65)), 0.8 * whole);
+  for (const double angle : {0.3, 1.1, 2.5}) EXPECT_NEAR(hidden(turned(bent, angle)) / hidden(bent), 1.0, kThreeSums);
+}
+
+// Without a point of reflection a cell that an edge cuts sends back what its part does, whichever that is.
+TEST(Footprint, HiddenBoundsACellThatAnEdgeCuts) {
+  for (const double slope : {4.0, 12.0, 45.0}) {
+    const FootprintPhase level{slope, 0.0, 0.1, 0.0, 0.1};
+    double most = 0.0;
+    for (double edge = -0.5; edge <= 0.5; edge += 0.01) {
+      // Along x from -1/2 to the edge; along y the whole cell, which hardly turns.
+      most = std::max(most, std::abs(std::polar(1.0, -slope * edge) - std::polar(1.0, 0.5 * slope)) / slope);
+    }
+    EXPECT_GT(hidden(level), 0.8 * most);
+    EXPECT_LT(hidden(level), 1.01 * most);
+  }
+}
+
+TEST(Footprint, NothingHidesWhereRaysFollowThePhase) { EXPECT_LT(hidden({0.3, -0.2, 0.2, 0.05, 0.1}), 0.02); }
+
 }  // namespace
 }  // namespace echopath

@@ -166,9 +166,10 @@ the mean over realisations of the roughness.
 frequency: Hz
 incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
 observation: toward the receiver, likewise; None: monostatic
-polarization: [3] of both antennas, with one coefficient a hit (the scalar model of trace); or, with field vectors:
-    [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv" (transmitted, received: "v" points up, "h" lies in the
-    xy-plane, both across the line of sight) or a list [C] of these. Of a vector its part across the line of sight counts
+polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
+    (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of these. Of
+    a vector its part across the line of sight counts
+model: of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
 num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
 seed, footprint, sampler: as in trace
 batches: as in trace; 8 for return_error, else 1

@@ -16,11 +16,23 @@ ReceivedPower power_of(const Paths& paths, int tx, int rx, const py::object& pro
   return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job, {tx, rx}); });
 }
 
-std::vector<ReceivedPower> powers_of(const Paths& paths, const py::array_t<uint32_t, py::array::c_style | py::array::forcecast>& groups,
-                                     size_t num_groups, int tx, int rx, const py::object& progress) {
-  const std::span<const uint32_t> group_of_path(groups.data(), static_cast<size_t>(groups.size()));
-  return run_job("received power", progress,
-                 [&](Job& job) { return received_powers(paths, group_of_path, num_groups, &job, {tx, rx}); });
+using Groups = py::array_t<uint32_t, py::array::c_style | py::array::forcecast>;
+
+Sorting as_sorting(const Groups& groups, size_t num_groups) {
+  return {{groups.data(), static_cast<size_t>(groups.size())}, num_groups};
+}
+
+std::vector<ReceivedPower> powers_of(const Paths& paths, const Groups& groups, size_t num_groups, int tx, int rx,
+                                     const py::object& progress) {
+  const Sorting sorting = as_sorting(groups, num_groups);
+  return run_job("received power", progress, [&](Job& job) { return received_powers(paths, sorting, &job, {tx, rx}); });
+}
+
+std::vector<std::vector<ReceivedPower>> powers_of_sortings(const Paths& paths, const std::vector<std::pair<Groups, size_t>>& given,
+                                                           const py::object& progress) {
+  std::vector<Sorting> sortings;
+  for (const auto& [groups, num_groups] : given) sortings.push_back(as_sorting(groups, num_groups));
+  return run_job("received power", progress, [&](Job& job) { return received_powers(paths, sortings, &job); });
 }
 
 std::string power_text(const ReceivedPower& self) {
@@ -83,6 +95,8 @@ paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the 
 progress: callable(stage, fraction) or None
 Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
 are not there, KeyboardInterrupt on Ctrl-C.)");
+  m.def("received_powers_of_sortings", &powers_of_sortings, py::arg("paths"), py::arg("sortings"), py::arg("progress") = py::none(),
+        "received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.");
 }
 
 }  // namespace echopath::bindings

@@ -71,9 +71,15 @@ def interval_of(power) -> Interval:
     return Interval(power.power, power.low, power.high)
 
 
-def family_powers(paths, families, progress=None) -> list:
-    """ep.ReceivedPower of each of `families` of the paths, list [F], in W."""
-    return _core.received_powers(paths, families.family_of_path, len(families.families), progress=progress)
+def powers_of(paths, families, parts=(), progress=None) -> tuple:
+    """Mean received powers of ghost families and of parts, from one pass over the paths.
+
+    families: Families of the paths; parts: (part_of_path [P], number of parts) of each partition
+    Returns [F] of the families and a list [partition, part], each of ep.ReceivedPower, in W.
+    """
+    sortings = [(families.family_of_path, len(families.families)), *parts]
+    of_families, *of_parts = _core.received_powers_of_sortings(paths, sortings, progress)
+    return of_families, of_parts
 
 
 def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
@@ -86,7 +92,12 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
     ray has met is among them, with what three rays might have brought back from it as its upper end.
     """
     families = families_of(paths, objects)
-    powers = family_powers(paths, families, progress)
+    of_families, _ = powers_of(paths, families, progress=progress)
+    return unresolved_of(paths, families, of_families, objects, least_power=least_power, progress=progress)
+
+
+def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, progress=None) -> list:
+    """`unresolved` from powers that are known. families: of the paths and objects; powers: [F] of these, as of `powers_of`"""
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power),
                         _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)

@@ -4,6 +4,8 @@ from __future__ import annotations
 import dataclasses
 from functools import cached_property
 
+import numpy as np
+
 import echopath as ep
 
 from .azimuth_map import checked_settings, sees_azimuth
@@ -15,7 +17,7 @@ from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
-from .resolution import unresolved
+from .resolution import powers_of, unresolved_of
 from .stages import Stage, StageClock
 
 _FAMILIES = object()  # a view that has the name of no partition
@@ -93,27 +95,38 @@ class Frame:
     @cached_property
     def mean_power(self):
         """ep.ReceivedPower of all paths, in W: the mean over the random phases, with its interval."""
-        return ep.received_power(self.paths)
+        return self._mean_powers[1][-1][0]
 
     @cached_property
     def mean_part_powers(self) -> dict:
         """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
-        return {partition: dict(zip(self.parts[partition],
-                                    ep.received_powers(self.paths, part_of_path, len(self.parts[partition]))))
-                for partition, part_of_path in self.part_of_path.items()}
+        return {partition: dict(zip(self.parts[partition], powers))
+                for partition, powers in zip(self.part_of_path, self._mean_powers[1])}
 
     @cached_property
     def unresolved(self) -> list:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
-        return unresolved(self.paths, least_power=ep._core.noise_power_in_cell(self.radar))
+        return unresolved_of(self.paths, self._families, self._mean_powers[0],
+                             least_power=ep._core.noise_power_in_cell(self.radar))
+
+    @cached_property
+    def _families(self):
+        return ep.families(self.paths)
+
+    @cached_property
+    def _mean_powers(self) -> tuple:
+        """Of families, of the parts of each partition and last of all paths, as `powers_of` gives them."""
+        sortings = [(part_of_path, len(self.parts[partition])) for partition, part_of_path in self.part_of_path.items()]
+        whole = np.zeros(self.paths.num_paths, np.uint32), 1
+        return powers_of(self.paths, self._families, [*sortings, whole])
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"
         return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
 
 
-def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="scalar",
+def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="auto",
              footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
              parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
              keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, detections=None,

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
+from .polarization import (AUTO, COHERENT_SHARE, FIELD_VECTORS, MODELS, SCALAR, antennas_of, chosen_model, coherent_share)
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
 EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
@@ -20,7 +21,6 @@ SMOOTH_GAIN = 4.0        # how much coarser a smooth mesh may be
 FLAT_ANGLE = 1e-3        # rad: neighbours that turn by less are one plane
 CREASE_ANGLE = 0.7       # rad (40 degrees): neighbours that turn by more meet in an edge that is meant
 CURVED_SHARE = 0.05      # of a mesh's area, below it the mesh counts as flat
-COHERENT_SHARE = 0.01    # of the reflected power, below it a surface has no coherent echo
 ONE_SIDED = 0.6          # |sum of turns| / sum: a facet that turns on one side only lies at a bend between planes
 
 
@@ -138,13 +138,6 @@ def _weighted_median(values, weights) -> float:
     return float(values[order[np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())]])
 
 
-def coherent_share(material, wavelength: float) -> float:
-    """Share of the reflected power at normal incidence that keeps its phase (Ament for a roughness height)."""
-    if material.scattering is not None:
-        return 1.0 - material.scattering**2
-    return float(np.exp(-((4.0 * np.pi * material.roughness_height / wavelength) ** 2)))
-
-
 def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
     """Warns (TessellationWarning) of each curved mesh whose coherent echo at `frequency` [Hz] would err by more than
     0.3 dB, and names the edge that would do."""
@@ -204,20 +197,34 @@ def _geometry_of(scene):
     return state.setdefault("_geometry", _core.KeptGeometry())
 
 
-def trace(scene, radar, **settings):
+def trace(scene, radar, *, polarization=AUTO, **settings):
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
-    paths = _core.trace(scene, radar, kept=_geometry_of(scene), **settings)
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    model = chosen_model(polarization, scene, wavelength, antennas_of(radar))
+    paths = _core.trace(scene, radar, kept=_geometry_of(scene), polarization=model, **settings)
     warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
     warn_of_unfollowed_beams(paths.frame.statistics, stacklevel=2)
     warn_of_unaimed(paths.frame.statistics, stacklevel=2)
     return paths
 
 
-def rcs(scene, **settings):
+def rcs(scene, *, polarization=(0.0, 0.0, 1.0), model=AUTO, **settings):
     frequency = settings.get("frequency")
     if isinstance(frequency, numbers.Real) and 0.0 < frequency < math.inf:  # the core says what is wrong with others
         warn_of_coarse_meshes(scene, float(frequency), stacklevel=2)
-    return _core.rcs(scene, **settings)
+        if _is_one_vector(polarization):
+            model = chosen_model(model, scene, _core.speed_of_light / frequency)
+    if model not in MODELS:
+        raise ValueError(f"model: must be 'auto', 'scalar' or 'jones', got {model!r}")
+    if _is_one_vector(polarization) and model == FIELD_VECTORS:
+        polarization = [polarization, polarization]
+    elif not _is_one_vector(polarization) and model == SCALAR:
+        raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {polarization!r}")
+    return _core.rcs(scene, polarization=polarization, **settings)
+
+
+def _is_one_vector(polarization) -> bool:
+    return not isinstance(polarization, str) and np.shape(polarization) == (3,) and not isinstance(polarization[0], str)
 
 
 for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):

@@ -205,7 +205,8 @@ def test_a_rough_patch_beside_a_leaning_wall():
     patch = plate(TARGET, (-1.0, 0.4, 0.2), 1e-4), ep.Material(reflectivity=.5, scattering=1.0)
     scene = scene_of(target=patch, wall=leaning_wall(METAL.replace(mirror=True)))
     radar = radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED)
-    polarised, scalar = traced(scene, radar, max_bounces=3), ep.trace(scene, radar, num_rays=1 << 12, max_bounces=3)
+    polarised, scalar = traced(scene, radar, max_bounces=3), ep.trace(scene, radar, num_rays=1 << 12, max_bounces=3,
+                                                                          polarization="scalar")
     for route, over in ROUTES.items():
         _, arrivals, starts = legs_of(over)
         lit = [field_off_metal(across(vector, start), start, LEAN) if by_wall else across(vector, start)
@@ -233,7 +234,7 @@ def test_the_cross_polarised_receiver_gets_its_share(share, slant_deg):
     radar = ep.Radar(plain.waveform, transmitters=[ep.Antenna((0, 0, 0), polarization=co)],
                      receivers=[ep.Antenna((0, 0, 0), polarization=p) for p in (co, cross)], transmit_power=1.0)
     paths = traced(scene, radar, num_rays=1 << 14, max_bounces=1)
-    total = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=1).power
+    total = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=1, polarization="scalar").power
     time = [paths.frame.trace_time]
     powers = [np.abs(paths.amplitudes(time, 0, receiver)[0]) ** 2 for receiver in (0, 1)]
     assert powers[0] + powers[1] == pytest.approx(total, rel=RIGHT_ANGLE_TOLERANCE, abs=0)  # of every hit
@@ -248,7 +249,7 @@ def test_no_chain_of_rough_and_mirroring_bounces_gains_or_loses_power(share):
                      floor=(rectangle((-9, -9, -1), (18, 0, 0), (0, 18, 0)), rough(share, mirror=True)))
     radar = make_radar((3, 2, .3), (2, 3, .5))
     # Too few rays for a pilot: both models have the same.
-    paths, scalar = traced(scene, radar, num_rays=16000), ep.trace(scene, radar, num_rays=16000)
+    paths, scalar = traced(scene, radar, num_rays=16000), ep.trace(scene, radar, num_rays=16000, polarization="scalar")
     assert np.array_equal(paths.diffuse, scalar.diffuse) and np.any(paths.diffuse & (paths.diffuse - 1) != 0)
     launched_vertically = np.linalg.norm(paths.jones[:, :, 1], axis=1)
     diffuse = paths.diffuse != 0

@@ -73,7 +73,7 @@ def test_a_corner_has_both_orders_of_the_reference(floor, polarization):
     along, up = side * np.array([-np.cos(angle), 0, -np.sin(angle)]), side * np.array([-np.sin(angle), 0, np.cos(angle)])
     scene = scene_of(floor=(rectangle(corner, along, across), floor), wall=(rectangle(corner, up, across), METAL))
     radar = make_radar((0, 0, 0), polarization=polarization)
-    paths = ep.trace(scene, radar, num_rays=2 ** 16, max_bounces=2)
+    paths = ep.trace(scene, radar, num_rays=2 ** 16, max_bounces=2, polarization="scalar")
     double = np.asarray(paths.num_bounces) == 2
     reference = Reference(scene, radar, spacing=1e-3, trace_time=paths.frame.trace_time, corners=True)
     expected = sum(np.sum(field * np.exp(-2j * np.pi * np.mod(length / WAVELENGTH, 1.0)))

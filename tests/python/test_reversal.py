@@ -167,7 +167,7 @@ def test_what_a_transmit_leg_finds_comes_back_behind_several_diffuse_hits():
     """A plate that is not flagged is a mirror for the transmit leg alone: the opposite order is the reversal."""
     scene = corner_scene()
     scene.add(ep.actors.sphere(0.8), name="other", material=FLAT, position=(6, -1.2, 0))
-    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=200000, max_bounces=3)
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=200000, max_bounces=3, polarization="scalar")
     chain, opposite = paths.select("T S'plate' D D R"), paths.select("T D D S'plate' R")
     assert chain.num_paths > 20 and not np.any(chain.flags & 1) and np.all(opposite.flags & 1)
     error, count = exchange_error(paths.select("T (S'plate' D D | D D S'plate') R"))

@@ -127,7 +127,7 @@ direct = "T . R"
 quad = "T 'quad' R"
 """))
     assert scene_file.trace_settings() == {"num_rays": 1234, "max_bounces": 4, "seed": 1, "start_time": 0.0,
-                                           "polarization": "scalar", "footprint": "second_order", "sampler": "lattice",
+                                           "polarization": "auto", "footprint": "second_order", "sampler": "lattice",
                                            "batches": None, "target_error_db": None,
                                            "max_rays": 2**24}
     assert scene_file.spectrum_settings() == {"window": ("chebyshev", 80), "zero_pad": 1}

@@ -100,7 +100,8 @@ def test_columns_are_read_only_views():
 
 
 def test_arrays_give_the_paths_back():
-    paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000)
+    paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000,
+                     polarization="scalar")
     columns = {name: np.array(getattr(paths, name)) for name in
                ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
     again = ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)

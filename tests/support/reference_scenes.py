@@ -163,7 +163,7 @@ def array_deviation(seed):
     antennas = [ep.Antenna(tuple(place), pattern=pattern, polarization=polarization) for place in places]
     motion = ep.LinearMotion(velocity=random.uniform(-10, 10, 3), angular_velocity=random.uniform(-2, 2, 3))
     radar = ep.Radar(radar.waveform, transmitters=antennas[:2], receivers=antennas[2:], transmit_power=0.1, motion=motion)
-    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3)
+    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3, polarization="scalar")
     time = paths.frame.trace_time
     exact = [[Reference(scene, radar, spacing=SPACING, trace_time=time, channel=(t, r)).cube() for r in (0, 1)]
              for t in (0, 1)]
@@ -200,7 +200,8 @@ def two_mirror_diffuse_deviation(seed):
 
 
 def _diffuse(scene, radar, max_bounces=3):
-    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=max_bounces, batches=BATCHES)
+    paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=max_bounces, batches=BATCHES,
+                     polarization="scalar")
     # The reference has no chains of several rough hits.
     once = paths.select((np.asarray(paths.diffuse) != 0) & (hits_on_plates(paths) == 1))
     power = ep.received_power(once)

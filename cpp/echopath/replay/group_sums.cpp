@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
@@ -169,20 +170,25 @@ class Block {
 
 }  // namespace
 
-std::vector<GroupSums> sum_groups(const Paths& paths, const Radar& radar, std::span<const uint32_t> group_of_path,
-                                  size_t num_groups, Job* job) {
-  Sums sums(paths, num_groups);
+std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings, Job* job) {
+  std::vector<Sums> sums;
+  for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());
-  if (paths.num_paths() == 0) return sums.finish();
-  Block block(paths, radar);
+  std::optional<Block> block;
+  if (paths.num_paths() > 0) block.emplace(paths, radar);
   for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
-    block.evaluate(begin, end);
-    block.add_to(sums, group_of_path);
+    block->evaluate(begin, end);
+    parallel_for(std::ssize(sums), [&](int64_t i) {
+      const auto at = static_cast<size_t>(i);
+      block->add_to(sums[at], sortings[at].group_of_path);
+    });
     if (job) job->advance(end - begin);
   }
-  return sums.finish();
+  std::vector<std::vector<GroupSums>> found;
+  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish());
+  return found;
 }
 
 }  // namespace echopath

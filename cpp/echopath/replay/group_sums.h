@@ -21,10 +21,15 @@ struct GroupSums {
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
 };
 
-// [group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths over it in its
-// group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A job advances by
-// paths. group_of_path: [P], below num_groups. Raises Cancelled.
-std::vector<GroupSums> sum_groups(const Paths& paths, const Radar& radar, std::span<const uint32_t> group_of_path,
-                                  size_t num_groups, Job* job);
+// One way to sort paths into groups.
+struct Sorting {
+  std::span<const uint32_t> group_of_path;  // [P], below num_groups
+  size_t num_groups = 0;
+};
+
+// [sorting, group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths over it in
+// its group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A job advances by
+// paths. Raises Cancelled.
+std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings, Job* job);
 
 }  // namespace echopath

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
 
 #include "echopath/base/errors.h"
-#include "echopath/replay/group_sums.h"
 
 namespace echopath {
 namespace {
@@ -126,6 +126,14 @@ ReceivedPower with_interval(const GroupSums& sums) {
   return out;
 }
 
+void check(const Sorting& sorting, const Paths& paths) {
+  const std::span<const uint32_t> group = sorting.group_of_path;
+  require(group.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path", group.size());
+  const auto last = std::max_element(group.begin(), group.end());
+  require(last == group.end() || *last < sorting.num_groups, "group_of_path", "must lie below the number of groups",
+          last == group.end() ? 0 : *last);
+}
+
 }  // namespace
 
 bool ReceivedPower::is_within(double db) const {
@@ -145,19 +153,19 @@ double ReceivedPower::error_db() const {
 
 ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
   const std::vector<uint32_t> together(static_cast<size_t>(paths.num_paths()), 0);
-  return received_powers(paths, together, 1, job, channel).front();
+  return received_powers(paths, Sorting{together, 1}, job, channel).front();
 }
 
-std::vector<ReceivedPower> received_powers(const Paths& paths, std::span<const uint32_t> group_of_path, size_t num_groups,
-                                           Job* job, Channel channel) {
-  require(group_of_path.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path",
-          group_of_path.size());
-  const auto last = std::max_element(group_of_path.begin(), group_of_path.end());
-  require(last == group_of_path.end() || *last < num_groups, "group_of_path", "must lie below the number of groups",
-          last == group_of_path.end() ? 0 : *last);
-  std::vector<ReceivedPower> powers;
-  for (const GroupSums& sums : sum_groups(paths, one_channel(paths.radar, channel), group_of_path, num_groups, job)) {
-    powers.push_back(with_interval(sums));
+std::vector<ReceivedPower> received_powers(const Paths& paths, const Sorting& sorting, Job* job, Channel channel) {
+  return received_powers(paths, {&sorting, 1}, job, channel).front();
+}
+
+std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std::span<const Sorting> sortings, Job* job,
+                                                        Channel channel) {
+  for (const Sorting& sorting : sortings) check(sorting, paths);
+  std::vector<std::vector<ReceivedPower>> powers;
+  for (const std::vector<GroupSums>& groups : sum_groups(paths, one_channel(paths.radar, channel), sortings, job)) {
+    std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()), with_interval);
   }
   return powers;
 }

@@ -24,7 +24,7 @@ std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
   std::vector<uint32_t> group(paths.stratum.size());
   std::transform(paths.stratum.begin(), paths.stratum.end(), group.begin(),
                  [&](uint16_t stratum) { return static_cast<uint32_t>(std::min<size_t>(stratum, num_strata)); });
-  return received_powers(paths, group, num_strata + 1, job);
+  return received_powers(paths, Sorting{group, num_strata + 1}, job);
 }
 
 double strongest_of(const std::vector<ReceivedPower>& powers) {

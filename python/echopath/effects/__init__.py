@@ -15,7 +15,7 @@ OUT_OF_SCOPE = [
 ]
 
 
-def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "scalar",
+def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "auto",
             sampler: str = "lattice", batches: int | None = None, target_error_db: float | None = None,
             replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
             noise_seed: int | None = None) -> list[Effect]:

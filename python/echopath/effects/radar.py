@@ -1,33 +1,27 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
-import numpy as np
-
+from ..polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_field_vectors
 from .rules import Case, meshes_or, rule
 
-CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
-
-
-def _antennas(case: Case) -> list:
-    return [*case.radar.transmitters, *case.radar.receivers]
 
 
 @rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "AntennaPattern.kind", "AntennaPattern.peak_gain",
       "AntennaPattern.exponent")
 def _patterns(case: Case):
-    shaped = sorted({antenna.pattern.kind for antenna in _antennas(case)} - {"isotropic"})
+    shaped = sorted({antenna.pattern.kind for antenna in antennas_of(case.radar)} - {"isotropic"})
     return bool(shaped), ", ".join(shaped) or "all antennas are isotropic"
 
 
 @rule("gain tables", "AntennaPattern.table_gain")
 def _tables(case: Case):
-    count = sum(antenna.pattern.kind == "table" for antenna in _antennas(case))
+    count = sum(antenna.pattern.kind == "table" for antenna in antennas_of(case.radar))
     return count > 0, f"of {count} antenna" + "s" * (count > 1) if count else "no pattern is a table"
 
 
 @rule("antenna phases", "AntennaPattern.table_phase")
 def _phases(case: Case):
-    phased = any(antenna.pattern.table_phase is not None for antenna in _antennas(case))
+    phased = any(antenna.pattern.table_phase is not None for antenna in antennas_of(case.radar))
     return phased, "phase of a table" if phased else "no pattern has a phase"
 
 
@@ -47,32 +41,23 @@ def _turns(case: Case):
 
 @rule("polarised fields", "trace.polarization", "Antenna.polarization")
 def _polarization(case: Case):
-    if case.settings.polarization == "jones":
-        return True, 'polarization = "jones"'
+    need = need_of_field_vectors(case.scene, case.wavelength, antennas_of(case.radar))
+    if case.model == FIELD_VECTORS:
+        return True, need or 'polarization = "jones"'
     reason = "each hit takes the TE or TM coefficient nearer to the polarization"
-    if _has_crossed_antennas(case):
+    if are_crossed(antennas_of(case.radar)):
         reason += '; antennas of other polarisation count as co-polarised: polarization = "jones" tells them apart'
+    elif need:
+        reason += f'; polarization = "jones" would follow the fields of {need}'
     return False, reason
 
 
 @rule("depolarisation by roughness", "Material.cross_polarization")
 def _depolarisation(case: Case):
-    if case.settings.polarization != "jones":
+    if case.model != FIELD_VECTORS:
         return False, 'polarization = "scalar"'
     return meshes_or([mesh for mesh in case.diffuse if mesh.material.cross_polarization > 0.0],
                      "no rough material has a cross_polarization")
-
-
-def _has_crossed_antennas(case: Case) -> bool:
-    first, *others = [_polarization_of(antenna) for antenna in _antennas(case)]
-    return any(abs(first @ other) < CO_POLARISED for other in others)
-
-
-def _polarization_of(antenna) -> np.ndarray:
-    """[3] unit vector in the radar's frame."""
-    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
-    cross = np.cross(imaginary, antenna.polarization)
-    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
 
 
 @rule("residual video phase", "ChirpSequence.bandwidth")

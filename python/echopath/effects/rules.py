@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 
 from .. import _core
-from ..tessellation import COHERENT_SHARE, coherent_share
+from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 
 MAX_NAMES = 3  # of meshes in a reason
 
@@ -44,6 +44,11 @@ class Case:
         self.scene, self.radar, self.settings, self.statistics = scene, radar, settings, statistics
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency
         self.meshes, self.nodes = list(scene.meshes), scene.nodes
+
+    @cached_property
+    def model(self) -> str:
+        """Of the polarisation: "scalar" or "jones"."""
+        return chosen_model(self.settings.polarization, self.scene, self.wavelength, antennas_of(self.radar))
 
     @cached_property
     def mirrors(self) -> list:

@@ -10,7 +10,7 @@ import echopath as ep
 from .. import _core, same_radar
 from ..keywords import known_keywords
 from ..path_subset import part_of_path
-from ..resolution import family_powers, interval_of
+from ..resolution import interval_of, powers_of
 from ..visibility import appearing_in_frame, visibility_in_trace
 from .labels import Labels, is_occluded
 from .objects import family_cells, label_ghosts, label_objects
@@ -117,17 +117,23 @@ def label_partitions(request: Request, paths, families, family_powers, powers: d
     selections: {partition: {name: selection}}; settings: signal settings
     """
     whole = next(iter(powers.values())).whole
-    scene_labels = _label_scene(request, paths, families, family_powers, whole, settings.get("progress"))
-    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), scene_labels, settings)
+    sorted_by = {partition: (part_of_path(paths, selections[partition]), len(of_parts.cells)) for partition, of_parts in powers.items()
+                 if [*selections.get(partition, ()), "other"] == list(of_parts.cells)}
+    of_families, of_partitions = powers_of(paths, families, sorted_by.values())
+    received = {partition: [interval_of(power) for power in found] for partition, found in zip(sorted_by, of_partitions)}
+    intervals = dict(zip(families.families, map(interval_of, of_families)))
+    scene_labels = _label_scene(request, paths, families, family_powers, intervals, whole, settings.get("progress"))
+    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition), scene_labels,
+                                    settings)
             for partition, of_parts in powers.items()}
 
 
-def _label_scene(request: Request, paths, families, powers, whole, progress=None) -> dict:
+def _label_scene(request: Request, paths, families, powers, intervals: dict, whole, progress=None) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
-    powers: ViewPowers of the families; whole: power [V, R] in W; progress: callable (stage, fraction) or None
+    powers: ViewPowers of the families; intervals: {Family: Interval}; whole: power [V, R] in W
+    progress: callable (stage, fraction) or None
     """
-    intervals = dict(zip(families.families, map(interval_of, family_powers(paths, families))))
     found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
@@ -138,8 +144,9 @@ def _label_scene(request: Request, paths, families, powers, whole, progress=None
     return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
 
 
-def _label_parts(request: Request, paths, powers, selections: dict, scene_labels: dict, settings: dict) -> Labels:
-    """Labels of a partition. powers: its ViewPowers; scene_labels: of `_label_scene`; settings: signal settings."""
+def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict) -> Labels:
+    """Labels of a partition. powers: its ViewPowers; received: Interval in W of each part, None where the parts are not those of
+    selections; scene_labels: of `_label_scene`; settings: signal settings."""
     names, plane = list(powers.cells), request.plane
     power = np.stack([powers.cells[name] for name in names])
     above_noise, mask = request.masks(powers.whole)
@@ -148,15 +155,8 @@ def _label_parts(request: Request, paths, powers, selections: dict, scene_labels
                     share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
                     noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
                     dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=paths.frame.seed,
-                    part_received=_part_intervals(paths, selections, labels_of=names), **scene_labels)
+                    part_received=received, **scene_labels)
     return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
-
-
-def _part_intervals(paths, selections: dict, labels_of: list):
-    """Interval in W of each part; None where the parts are not those of selections."""
-    if [*selections, "other"] != labels_of:
-        return None
-    return [interval_of(power) for power in ep.received_powers(paths, part_of_path(paths, selections), len(labels_of))]
 
 
 def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict,

@@ -214,7 +214,8 @@ class TraceTable(Table):
     max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
     seed: int = Field(1, ge=0, description="of the directions and random phases")
     start_time: Number = Field(0.0, description="s, first sample of the frame")
-    polarization: Literal["scalar", "jones"] = Field("scalar", description="field vectors, or one coefficient a hit")
+    polarization: Literal["auto", "scalar", "jones"] = Field(
+        "auto", description="field vectors, one coefficient a hit, or whichever the scene asks for")
     footprint: Literal["second_order", "edges", "first_order", "none"] = Field(
         "second_order", description="filter of a ray's footprint")
     sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(

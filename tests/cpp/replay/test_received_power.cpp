@@ -203,7 +203,7 @@ TEST(ReceivedPower, HalfDensitySquaresAGaussianFilter) {
   const Paths paths = shot(tilted_plate(), radar, 4096, 1, 1, Footprint::kFirstOrder, 1);
   std::vector<uint32_t> alone(static_cast<size_t>(paths.num_paths()));
   std::iota(alone.begin(), alone.end(), 0);
-  const std::vector<ReceivedPower> powers = received_powers(paths, alone, alone.size());
+  const std::vector<ReceivedPower> powers = received_powers(paths, Sorting{alone, alone.size()});
   ASSERT_GT(powers.size(), 100u);
   for (const ReceivedPower& power : powers) {
     EXPECT_LT(power.power, (1.0 - kErrorsShow) * power.unfiltered);
@@ -222,7 +222,9 @@ TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
     const Paths paths = shot(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), 4000, 1, batches);
     std::vector<uint32_t> group(static_cast<size_t>(paths.num_paths()));
     for (size_t p = 0; p < group.size(); ++p) group[p] = (paths.hits_of(static_cast<int64_t>(p))->mesh_id + paths.num_bounces[p]) % 3;
-    const std::vector<ReceivedPower> powers = received_powers(paths, group, 4);
+    const std::vector<uint32_t> together(group.size());
+    const Sorting sortings[] = {{together, 1}, {group, 4}};
+    const std::vector<ReceivedPower> powers = received_powers(paths, sortings).back();
     for (uint32_t g = 0; g < 4; ++g) {
       std::vector<uint8_t> keep;
       for (const uint32_t of_path : group) keep.push_back(of_path == g);
@@ -235,7 +237,7 @@ TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
       EXPECT_EQ(powers[g].unfiltered, alone.unfiltered);
     }
   }
-  EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), {}, 1), std::invalid_argument);
+  EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), Sorting{{}, 1}), std::invalid_argument);
 }
 
 // The sidelobe of a plate at 20 degrees is filtered away by 2048 rays, in all batches alike: its interval says so.

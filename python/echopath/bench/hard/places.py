@@ -214,7 +214,8 @@ def ground_null() -> float:
     height = 0.5 * exact.WAVELENGTH * np.sqrt(1.0 + distance ** 2 / (antenna ** 2 - 0.25 * exact.WAVELENGTH ** 2))
     plate = ("plate", shapes.plate(side, side), METAL, {"position": (distance, 0.0, float(height))})
     mirror = ("ground", shapes.ground(100.0), ep.Material.metal(mirror=True))
-    alone, above = (abs(np.sum(field(traced(scene_of(*objects), make_radar((0.0, 0.0, antenna)), 2 ** 18)
+    alone, above = (abs(np.sum(field(traced(scene_of(*objects), make_radar((0.0, 0.0, antenna)), 2 ** 18,
+                                            polarization="scalar")
                                      .select("T .* 'plate' .* R")))) for objects in ((plate,), (plate, mirror)))
     return abs(decibels((above / alone) ** 2 / abs(over_ground(distance, height, antenna, side)) ** 2))
 

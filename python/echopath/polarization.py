@@ -1,0 +1,70 @@
+"""Whether a scene asks for field vectors, and why: what polarization="auto" chooses."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from . import _core
+
+COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
+CO_POLARISED = 0.99    # cosine between the polarisations of two antennas that count as equal
+AUTO, SCALAR, FIELD_VECTORS = "auto", "scalar", "jones"
+MODELS = (AUTO, SCALAR, FIELD_VECTORS)
+
+
+def coherent_share(material, wavelength: float) -> float:
+    """Share of the reflected power at normal incidence that keeps its phase (Ament for a roughness height).
+
+    wavelength: m
+    """
+    if material.scattering is not None:
+        return 1.0 - material.scattering**2
+    return float(np.exp(-((4.0 * np.pi * material.roughness_height / wavelength) ** 2)))
+
+
+def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> str:
+    """What asks for field vectors, in words; "" where one coefficient a hit does.
+
+    Scalar coefficients are TE or TM, whichever is nearer: right on average for what is rough, and on flagged mirrors, which
+    are mostly met in one of both; off by some dB for coherent surfaces at any angle, and blind for cross-polar echoes.
+    wavelength: m
+    """
+    coherent = [mesh.name for mesh in scene.meshes
+                if not mesh.material.mirror and coherent_share(mesh.material, wavelength) >= COHERENT_SHARE]
+    if coherent:
+        return "coherent surfaces that are no flagged mirrors: " + _named(coherent)
+    turning = [mesh.name for mesh in scene.meshes
+               if mesh.material.cross_polarization > 0.0 and coherent_share(mesh.material, wavelength) < 1.0]
+    if turning:
+        return "rough surfaces that turn the polarisation: " + _named(turning)
+    return "antennas of other polarisation" if are_crossed(antennas) else ""
+
+
+def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = ()) -> str:
+    """"scalar" or "jones" for one of MODELS; any other is returned as it is. wavelength: m"""
+    if model != AUTO:
+        return model
+    return FIELD_VECTORS if need_of_field_vectors(scene, wavelength, antennas) else SCALAR
+
+
+def antennas_of(radar) -> list:
+    """Transmitters and receivers."""
+    return [*radar.transmitters, *radar.receivers]
+
+
+def are_crossed(antennas: Iterable) -> bool:
+    """Whether one antenna has another polarisation, in the radar's frame, than the first."""
+    polarizations = [_polarization_of(antenna) for antenna in antennas]
+    return any(abs(polarizations[0] @ other) < CO_POLARISED for other in polarizations[1:])
+
+
+def _polarization_of(antenna) -> np.ndarray:
+    """[3] unit vector in the radar's frame."""
+    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
+    cross = np.cross(imaginary, antenna.polarization)
+    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
+
+
+def _named(names: list, most: int = 3) -> str:
+    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")

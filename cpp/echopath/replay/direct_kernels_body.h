@@ -32,9 +32,7 @@ struct FlatCell {
   Vec product[3];
 
   // CellShape::is_coarse
-  ECHOPATH_INLINE Mask is_coarse(double facet_area) const {
-    return product[0] * product[2] - product[1] * product[1] > all(facet_area * facet_area);
-  }
+  ECHOPATH_INLINE Mask is_coarse(double facet_area) const { return LaneMath::smaller(product[0], product[2]) > all(facet_area); }
 };
 
 ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {

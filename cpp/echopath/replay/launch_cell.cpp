@@ -30,9 +30,8 @@ void find_across(const CellShape& cell, double* across) {
   for (int a = 0; a < 2; ++a) across[a] = axes.eigenvectors()(a, bent);
 }
 
-bool is_coarse(const CellShape& cell, double facet_area) {
-  return cell.product[0] * cell.product[2] - cell.product[1] * cell.product[1] > facet_area * facet_area;
-}
+// By its narrower side: toward grazing the other one says how the ray lies, not how far apart rays are.
+bool is_coarse(const CellShape& cell, double facet_area) { return std::min(cell.product[0], cell.product[2]) > facet_area; }
 
 }  // namespace
 

@@ -20,7 +20,6 @@ from .timing import processor_time
 RAYS, QUICK_RAYS = 300_000, 20_000
 SEEDS, QUICK_SEEDS = 3, 1
 ALONE_RAYS, QUICK_ALONE_RAYS = 2 ** 20, 2 ** 14
-BATCHES = 8
 MAX_BOUNCES = 4
 WANTED_DB, RIGHT_DB = 0.3, 0.1       # an echo errs by no more, or is flagged; one that errs by this is not flagged
 GROUND_RAYS, QUICK_GROUND_RAYS = (100_000, 1_000_000), (20_000,)
@@ -90,15 +89,13 @@ def measure_street(*, mirrors: bool, quick: bool) -> dict:
     radar, scene = scenes.radar(), scenes.street(mirrors=mirrors)
     rays, names = QUICK_RAYS if quick else RAYS, scenes.street_names()
 
-    def levels_of(seed: int, batches: int) -> dict:
-        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=MAX_BOUNCES, seed=seed, batches=batches)
+    def levels_of(seed: int) -> dict:
+        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=MAX_BOUNCES, seed=seed)
         return {name: level_of(direct(paths, name)) for name in names}
 
-    one_set = levels_of(1, 1)
-    runs = [levels_of(seed, BATCHES) for seed in range(1, (QUICK_SEEDS if quick else SEEDS) + 1)]
+    runs = [levels_of(seed) for seed in range(1, (QUICK_SEEDS if quick else SEEDS) + 1)]
     noise = ep._core.noise_power_in_cell(radar)
-    rows = [_row(name, *_alone(name, radar, mirrors, quick), one_set[name], [levels[name] for levels in runs], noise)
-            for name in names]
+    rows = [_row(name, *_alone(name, radar, mirrors, quick), [levels[name] for levels in runs], noise) for name in names]
     return {"title": "flagged mirrors" if mirrors else "rough concrete", "rays": rays, "rows": rows,
             **bare_share(scene, radar, rays, repetitions=1 if quick else 3)}
 
@@ -112,10 +109,10 @@ def _alone(name: str, radar, mirrors: bool, quick: bool) -> tuple[float, float]:
     return mean, abs(decibels(powers[0], powers[1])) if min(powers) > 0.0 else 0.0
 
 
-def _row(name: str, truth: float, spread_db: float, one_set: Level, levels: list[Level], noise: float) -> dict:
+def _row(name: str, truth: float, spread_db: float, levels: list[Level], noise: float) -> dict:
     errors = [decibels(level.power, truth) if truth > 0.0 else 0.0 for level in levels]
     return {"name": name, "truth_dbm": float(10.0 * np.log10(max(truth, 1e-300) * 1e3)), "alone_spread_db": spread_db,
-            "snr_db": decibels(truth, noise), "one_set_db": decibels(one_set.power, truth), "error_db": errors, "claimed_db": [level.error_db for level in levels],
+            "snr_db": decibels(truth, noise), "error_db": errors, "claimed_db": [level.error_db for level in levels],
             "flagged": [level.flagged for level in levels], "paths": [level.paths for level in levels],
             "verdict": [judged(error, level.flagged) for error, level in zip(errors, levels)]}
 
@@ -136,7 +133,7 @@ def measure_ground(*, quick: bool) -> list[dict]:
     truth = scenes.ground_path_power(radar.transmit_power)
     rows = []
     for rays in QUICK_GROUND_RAYS if quick else GROUND_RAYS:
-        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=1, batches=BATCHES)
+        paths = ep.trace(scene, radar, num_rays=rays, max_bounces=1)
         level = level_of(paths.select("T 'ground' R"))
         error = decibels(level.power, truth)
         rows.append({"rays": rays, "error_db": error, "claimed_db": level.error_db, "flagged": level.flagged,
@@ -147,10 +144,10 @@ def measure_ground(*, quick: bool) -> list[dict]:
 # --- a person among thousands of flat objects ---
 
 def measure_person(*, quick: bool) -> dict:
-    """Scatter of his direct power over seeds, relative, beside the standard error that the batches claim."""
+    """Scatter of his direct power over seeds, relative, beside the one that the intervals claim."""
     scene, radar = scenes.flat_city()
     rays, num_seeds = (QUICK_PERSON_RAYS, QUICK_PERSON_SEEDS) if quick else (PERSON_RAYS, PERSON_SEEDS)
-    levels = [level_of(direct(ep.trace(scene, radar, num_rays=rays, max_bounces=2, seed=seed, batches=BATCHES), "person"))
+    levels = [level_of(direct(ep.trace(scene, radar, num_rays=rays, max_bounces=2, seed=seed), "person"))
               for seed in range(1, num_seeds + 1)]
     powers = np.array([level.power for level in levels])
     mean = float(powers.mean())
@@ -238,11 +235,11 @@ def describe(results: dict) -> list[str]:
 def _describe_street(street: dict) -> list[str]:
     lines = [f"street, {street['title']}, {street['rays']:,} rays: trace {street['trace_s']:.2f} s, "
              f"{1.0 / street['share']:.2f} times the processor time of its {street['queries']:,} bare queries",
-             f"  {'direct echoes of':<16}{'alone, dBm':>11}{'(2 seeds, dB)':>14}{'over noise':>11}{'one set, dB':>13}"
-             f"   {BATCHES} batches: error and claimed error, dB, of each seed"]
+             f"  {'direct echoes of':<16}{'alone, dBm':>11}{'(2 seeds, dB)':>14}{'over noise':>11}"
+             "   error and claimed error, dB, of each seed"]
     for row in street["rows"]:
         runs = "   ".join(f"{error:+6.2f} +-{min(claimed, 99.0):5.2f} {verdict:<8}" for error, claimed, verdict in
                           zip(row["error_db"], row["claimed_db"], row["verdict"]))
         lines.append(f"  {row['name']:<16}{row['truth_dbm']:>11.1f}{row['alone_spread_db']:>14.2f}{row['snr_db']:>11.0f}"
-                     f"{row['one_set_db']:>+13.2f}   {runs}")
+                     f"   {runs}")
     return lines

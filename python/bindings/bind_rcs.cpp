@@ -17,7 +17,7 @@ namespace echopath::bindings {
 namespace {
 
 const std::vector<std::string> kKeywords = {"frequency", "incidence", "observation", "polarization", "num_rays",
-                                            "max_bounces", "seed", "footprint", "sampler", "batches",
+                                            "max_bounces", "seed", "model", "footprint", "sampler", "batches",
                                             "target_error_db", "max_rays", "components", "return_error", "progress"};
 
 enum class NamedChannel { kVv, kHh, kVh, kHv };  // transmitted, received
@@ -169,7 +169,7 @@ observation: toward the receiver, likewise; None: monostatic
 polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
     (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of these. Of
     a vector its part across the line of sight counts
-model: of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
+model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
 num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
 seed, footprint, sampler: as in trace
 batches: as in trace; 8 for return_error, else 1

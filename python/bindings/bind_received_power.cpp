@@ -69,7 +69,8 @@ and are NaN for one batch.)")
       .def_readonly("half_density_field", &ReceivedPower::half_density_field,
                     "sqrt(W), the same through the footprint filter of launch cells sqrt(2) wider")
       .def_readonly("unfiltered", &ReceivedPower::unfiltered, "W, sum of |a|^2 of the coherent paths without the filter")
-      .def_readonly("hidden", &ReceivedPower::hidden, "W, what launch cells may hide of the coherent power, in random phase")
+      .def_readonly("between_rays", &ReceivedPower::between_rays,
+                    "W, coherent power that launch cells may hold between rays: of points of reflection and of edges")
       .def_readonly("num_coherent_paths", &ReceivedPower::num_coherent_paths, "number of coherent paths")
       .def_readonly("num_diffuse_hits", &ReceivedPower::num_diffuse_hits, "number of diffuse hits")
       .def_readonly("strongest_share", &ReceivedPower::strongest_share, "share of the diffuse power of its strongest hit")

@@ -23,7 +23,8 @@ from ._core import (
 from .antennas import load_antenna
 from .materials import materials
 from .scene import Scene
-from .tessellation import TessellationWarning, rcs, trace
+from .tessellation import TessellationWarning
+from .tracing import rcs, trace
 from .effects import Effect, effects
 from . import actors
 from .actors import Actor, Part

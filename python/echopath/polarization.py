@@ -41,8 +41,13 @@ def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> 
     return "antennas of other polarisation" if are_crossed(antennas) else ""
 
 
-def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = ()) -> str:
-    """"scalar" or "jones" for one of MODELS; any other is returned as it is. wavelength: m"""
+def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = (), *, argument: str) -> str:
+    """"scalar" or "jones" for one of MODELS.
+
+    wavelength: m; argument: what the model was given as. Raises ValueError for another word.
+    """
+    if model not in MODELS:
+        raise ValueError(f"{argument}: must be 'auto', 'scalar' or 'jones', got {model!r}")
     if model != AUTO:
         return model
     return FIELD_VECTORS if need_of_field_vectors(scene, wavelength, antennas) else SCALAR

@@ -71,15 +71,21 @@ def interval_of(power) -> Interval:
     return Interval(power.power, power.low, power.high)
 
 
-def powers_of(paths, families, parts=(), progress=None) -> tuple:
-    """Mean received powers of ghost families and of parts, from one pass over the paths.
+class MeanPowers(NamedTuple):
+    """of_families: list [F] of ep.ReceivedPower, in W; of_parts: {partition: list [part] of the same}"""
 
-    families: Families of the paths; parts: (part_of_path [P], number of parts) of each partition
-    Returns [F] of the families and a list [partition, part], each of ep.ReceivedPower, in W.
+    of_families: list
+    of_parts: dict
+
+
+def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
+    """Of ghost families and of the parts of partitions, from one pass over the paths.
+
+    families: Families of the paths; groups: {partition: (part_of_path [P], number of parts)}
     """
-    sortings = [(families.family_of_path, len(families.families)), *parts]
+    sortings = [(families.family_of_path, len(families.families)), *groups.values()]
     of_families, *of_parts = _core.received_powers_of_sortings(paths, sortings, progress)
-    return of_families, of_parts
+    return MeanPowers(of_families, dict(zip(groups, of_parts)))
 
 
 def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
@@ -92,12 +98,12 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
     ray has met is among them, with what three rays might have brought back from it as its upper end.
     """
     families = families_of(paths, objects)
-    of_families, _ = powers_of(paths, families, progress=progress)
-    return unresolved_of(paths, families, of_families, objects, least_power=least_power, progress=progress)
+    powers = mean_powers(paths, families, {}, progress).of_families
+    return unresolved_of(paths, families, powers, objects, least_power=least_power, progress=progress)
 
 
 def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, progress=None) -> list:
-    """`unresolved` from powers that are known. families: of the paths and objects; powers: [F] of these, as of `powers_of`"""
+    """`unresolved` from powers that are known. families: of the paths and objects; powers: [F] of these, as of `mean_powers`"""
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power),
                         _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)

@@ -17,10 +17,10 @@ from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
 from .parts import ONLY_PARTITION, check_partitions
 from .path_subset import part_of_path
-from .resolution import powers_of, unresolved_of
+from .resolution import mean_powers, unresolved_of
 from .stages import Stage, StageClock
 
-_FAMILIES = object()  # a view that has the name of no partition
+_FAMILIES, _WHOLE = object(), object()  # views that have the name of no partition
 
 
 @dataclasses.dataclass
@@ -95,19 +95,19 @@ class Frame:
     @cached_property
     def mean_power(self):
         """ep.ReceivedPower of all paths, in W: the mean over the random phases, with its interval."""
-        return self._mean_powers[1][-1][0]
+        return self._mean_powers.of_parts[_WHOLE][0]
 
     @cached_property
     def mean_part_powers(self) -> dict:
         """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
-        return {partition: dict(zip(self.parts[partition], powers))
-                for partition, powers in zip(self.part_of_path, self._mean_powers[1])}
+        return {partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
+                for partition in self.part_of_path}
 
     @cached_property
     def unresolved(self) -> list:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
-        return unresolved_of(self.paths, self._families, self._mean_powers[0],
+        return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
                              least_power=ep._core.noise_power_in_cell(self.radar))
 
     @cached_property
@@ -115,11 +115,11 @@ class Frame:
         return ep.families(self.paths)
 
     @cached_property
-    def _mean_powers(self) -> tuple:
-        """Of families, of the parts of each partition and last of all paths, as `powers_of` gives them."""
-        sortings = [(part_of_path, len(self.parts[partition])) for partition, part_of_path in self.part_of_path.items()]
-        whole = np.zeros(self.paths.num_paths, np.uint32), 1
-        return powers_of(self.paths, self._families, [*sortings, whole])
+    def _mean_powers(self):
+        """MeanPowers of the families, of each partition and, as the one part of _WHOLE, of all paths."""
+        groups = {partition: (part_of_path, len(self.parts[partition])) for partition, part_of_path in self.part_of_path.items()}
+        groups[_WHOLE] = np.zeros(self.paths.num_paths, np.uint32), 1
+        return mean_powers(self.paths, self._families, groups)
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"

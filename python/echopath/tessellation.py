@@ -4,14 +4,12 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import math
-import numbers
 import warnings
 
 import numpy as np
 
 from . import _core
-from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
-from .polarization import (AUTO, COHERENT_SHARE, FIELD_VECTORS, MODELS, SCALAR, antennas_of, chosen_model, coherent_share)
+from .polarization import COHERENT_SHARE, coherent_share
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
 EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
@@ -184,50 +182,3 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
     error = f"about {facet_error_db(ratio):.1f} dB" if ratio <= EDGE_RATIOS[-1] else f"{ERRORS_DB[-1]:.0f} dB or more"
     return (f"mesh '{name}': edges of {1e3 * measured.edge:.2g} mm on a surface curved with a radius of "
             f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")
-
-
-def _geometry_of(scene):
-    """Where the geometry of a scene's traces is kept; None for its first trace: one that is traced once keeps nothing."""
-    state = getattr(scene, "__dict__", None)  # plain scenes of the core have none
-    if state is None:
-        return None
-    if not state.setdefault("_was_traced", False):
-        state["_was_traced"] = True
-        return None
-    return state.setdefault("_geometry", _core.KeptGeometry())
-
-
-def trace(scene, radar, *, polarization=AUTO, **settings):
-    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=2)
-    wavelength = _core.speed_of_light / radar.waveform.start_frequency
-    model = chosen_model(polarization, scene, wavelength, antennas_of(radar))
-    paths = _core.trace(scene, radar, kept=_geometry_of(scene), polarization=model, **settings)
-    warn_of_lost_rays(paths.frame.statistics, stacklevel=2)
-    warn_of_unfollowed_beams(paths.frame.statistics, stacklevel=2)
-    warn_of_unaimed(paths.frame.statistics, stacklevel=2)
-    return paths
-
-
-def rcs(scene, *, polarization=(0.0, 0.0, 1.0), model=AUTO, **settings):
-    frequency = settings.get("frequency")
-    if isinstance(frequency, numbers.Real) and 0.0 < frequency < math.inf:  # the core says what is wrong with others
-        warn_of_coarse_meshes(scene, float(frequency), stacklevel=2)
-        if _is_one_vector(polarization):
-            model = chosen_model(model, scene, _core.speed_of_light / frequency)
-    if model not in MODELS:
-        raise ValueError(f"model: must be 'auto', 'scalar' or 'jones', got {model!r}")
-    if _is_one_vector(polarization) and model == FIELD_VECTORS:
-        polarization = [polarization, polarization]
-    elif not _is_one_vector(polarization) and model == SCALAR:
-        raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {polarization!r}")
-    return _core.rcs(scene, polarization=polarization, **settings)
-
-
-def _is_one_vector(polarization) -> bool:
-    return not isinstance(polarization, str) and np.shape(polarization) == (3,) and not isinstance(polarization[0], str)
-
-
-for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):
-    _function.__doc__ = (_of_core.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB, "
-                         "with the edge length in m that would do.")
-trace.__doc__ += " Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, or not every sequence of mirrors was tried."

@@ -19,7 +19,7 @@ def paths():
                   yaw=np.pi)
     radar = ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=4), transmitters=[ep.Antenna()],
                      receivers=[ep.Antenna((0.0, 0.01, 0.0))])
-    return ep.trace(scene, radar, num_rays=500)
+    return ep.trace(scene, radar, num_rays=500, polarization="scalar")
 
 
 def test_random_paths_have_the_hits_that_are_asked_for(paths):

@@ -29,7 +29,7 @@ def paths():
     scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), motion=motion, material=lambert(0.27))
     scene.add(ep.actors.plate(9.0, 9.0), name="wall", position=(9.0, 0.0, 0.0), motion=motion, material="concrete")
     radar = build_radar(receivers=[(0, 0.01, 0)], num_chirps=8, chirp_interval=1e-4)
-    traced = ep.trace(scene, radar, num_rays=3000, max_bounces=HITS_PER_PATH)
+    traced = ep.trace(scene, radar, num_rays=3000, max_bounces=HITS_PER_PATH, polarization="scalar")
     index = np.arange(NUM_PATHS) % traced.num_paths
     names = ("num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
     columns = {name: getattr(traced, name)[index] for name in names}

@@ -32,7 +32,8 @@ def radar_of(*receivers):
 
 @pytest.mark.parametrize("material, model", [
     (METAL, "jones"), (CONCRETE, "jones"), (ep.Material(permittivity=5, roughness_height=1e-4), "jones"),
-    (LAMBERT, "scalar"), (ep.Material(permittivity=5, roughness_height=3e-3), "scalar"), (ep.Material.metal(mirror=True), "scalar"),
+    (LAMBERT, "scalar"), (ep.Material(permittivity=5, roughness_height=3e-3), "scalar"),
+    (ep.Material.metal(mirror=True), "scalar"),
     (ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.1), "jones")])
 def test_field_vectors_where_a_material_asks_for_them(material, model):
     scene = scene_of(LAMBERT, material)
@@ -49,12 +50,18 @@ def test_antennas_of_two_polarisations_ask_for_field_vectors():
 
 
 def test_a_word_that_is_no_model_is_refused():
-    with pytest.raises(ValueError, match="polarization: must be 'scalar' or 'jones', got 'stokes'"):
+    with pytest.raises(ValueError, match="polarization: must be 'auto', 'scalar' or 'jones', got 'stokes'"):
         model_of(scene_of(METAL), polarization="stokes")
     with pytest.raises(ValueError, match="model: must be 'auto', 'scalar' or 'jones', got 'stokes'"):
         ep.rcs(scene_of(METAL), frequency=FREQUENCY, incidence=(-1, 0, 0), model="stokes")
     with pytest.raises(ValueError, match="model: 'scalar' takes one vector"):
         ep.rcs(scene_of(METAL), frequency=FREQUENCY, incidence=(-1, 0, 0), polarization="vv", model="scalar")
+
+
+def test_a_frequency_may_be_an_array_of_no_axes():
+    scene = dihedral(np.pi / 4)
+    settings = {"incidence": (-1, 0, 0), "max_bounces": 2, "num_rays": 4096}
+    assert ep.rcs(scene, frequency=np.array(FREQUENCY), **settings) == ep.rcs(scene, frequency=FREQUENCY, **settings)
 
 
 def dihedral(tilt: float) -> ep.Scene:

@@ -100,12 +100,23 @@ def test_columns_are_read_only_views():
 
 
 def test_arrays_give_the_paths_back():
-    paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000,
-                     polarization="scalar")
+    paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000)
     columns = {name: np.array(getattr(paths, name)) for name in
-               ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")}
+               ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "jones")}
     again = ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)
     assert np.array_equal(again.amplitude, paths.amplitude)
+    with pytest.raises(ValueError, match="jones: must be given for a frame that follows field vectors"):
+        ep.Paths.from_arrays(**columns | {"jones": None}, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    for name, value, rule in (("offsets", 2 ** 63 - 1, "must lead to hits"), ("diffuse", 1 << 40, "must have no bits beyond"),
+                              ("weight", np.nan, "must be finite"), ("num_bounces", 0, "must lie in")):
+        broken = columns | {name: columns[name].copy()}
+        broken[name][0] = value
+        with pytest.raises(ValueError, match=f"{name}: {rule}"):
+            ep.Paths.from_arrays(**broken, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    off = columns["hits"].copy()
+    off["u"][0] = 2.0
+    with pytest.raises(ValueError, match="u and v: must not be negative"):
+        ep.Paths.from_arrays(**columns | {"hits": off}, scene=paths.scene, radar=paths.radar, frame=paths.frame)
     columns["offsets"][0] = len(columns["hits"])
     with pytest.raises(ValueError, match="offsets: must lead to hits"):
         ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)

@@ -42,7 +42,7 @@ def hand_made_paths(street, routes, weight=0.0) -> ep.Paths:
         hits=hits, offsets=np.cumsum(counts, dtype=np.int64) - counts, num_bounces=counts,
         diffuse=np.array(diffuse, np.uint64), weight=(zeros + weight).astype(np.complex64), stratum=zeros.astype(np.uint16),
         batch=zeros.astype(np.uint8), flags=zeros.astype(np.uint32), scene=street, radar=radar,
-        frame=ep.trace(street, radar, num_rays=100).frame)
+        frame=ep.trace(street, radar, num_rays=100, polarization="scalar").frame)
 
 
 def random_routes(count, max_hits, seed):

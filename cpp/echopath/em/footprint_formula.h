@@ -61,28 +61,36 @@ ECHOPATH_INLINE Real flat_top_of(Real g) {
   return 1.0 - square * square;
 }
 
-// How much of what it would send back without a filter a cell may still hide, in [0, 1). Where its phase may be stationary, what a
-// point of reflection sends back: its ray met the surface where the waves of neighbours cancel, while the point lies between.
-// Elsewhere only edges of the surface can be left, whose waves fall with the phase across the cell. Nothing hides where phases hardly
-// turn across the cell, as such rays add up to what there is.
+// What a launch cell may hold between its ray and those beside it, as shares of the amplitude that it has without a filter.
+template <class Real>
+struct BetweenRays {
+  Real points;  // waves of points of reflection
+  Real edges;   // waves of the edge of the surface, if that cuts the cell
+};
+
+// A ray of a coarse lattice misses a point of stationary phase by up to kReach cells. The filter then removes the wave of that point
+// with all others, although the surface sends it: the integral of e^{jhx^2/2}, sqrt(2 pi/|h|) along each axis of h. Where the phase
+// is not stationary along an axis, only a cut across it leaves a wave, of at most 2/|g|. Nothing is left out where phases hardly turn
+// across the cell, because such rays add up to what there is.
 template <class Math, class Real>
-ECHOPATH_INLINE Real hidden_part_of(const FootprintPhaseOf<Real>& phase) {
-  constexpr double kReach = 0.75;  // cells from the middle: so far may a point be from the nearest ray of a lattice
-  constexpr double kTurn = 6.283185307179586, kTiny = 1e-300;
+ECHOPATH_INLINE BetweenRays<Real> between_rays_of(const FootprintPhaseOf<Real>& phase) {
+  constexpr double kReach = 0.75, kTurn = 6.283185307179586, kTiny = 1e-300;
   const Real middle = 0.5 * (phase.h11 + phase.h22), half = 0.5 * (phase.h11 - phase.h22);
   const Real root = Math::root(half * half + phase.h12 * phase.h12);
   const Real first = Math::magnitude(middle + root) + kTiny, second = Math::magnitude(middle - root) + kTiny;
   // g^2 along the axis of the larger h: cosine and sine of twice its angle are half and h12 over the root.
-  const Real all = phase.g1 * phase.g1 + phase.g2 * phase.g2;
+  const Real all = phase.g1 * phase.g1 + phase.g2 * phase.g2, one = all * 0.0 + 1.0;
   const Real turned = half * (phase.g1 * phase.g1 - phase.g2 * phase.g2) + 2.0 * phase.h12 * phase.g1 * phase.g2;
-  const Real along = 0.5 * (all + turned / (root + kTiny)), across = all - along, one = all * 0.0 + 1.0;
-  // Powers: |integral of e^{jhx^2/2}|^2 = 2 pi/|h| over all x; of e^{jgx} over a cell, cut anyhow, at most 4/g^2.
-  const Real at_first = Math::smaller(one, kTurn / first), at_second = Math::smaller(one, kTurn / second);
-  const Real at_edge = Math::smaller(one, 4.0 / (all + kTiny));
+  const Real along = 0.5 * (all + turned / (root + kTiny)), across = all - along;
   const auto is_at_first = along <= (kReach * kReach) * first * first, is_at_second = across <= (kReach * kReach) * second * second;
-  const Real of_line = at_edge * (is_at_first ? at_first : is_at_second ? at_second : one);
-  const Real left = is_at_first & is_at_second ? at_first * at_second : of_line;
-  return Math::root(left) * (1.0 - Math::exp(all * -0.125));
+  const Real of_first = Math::smaller(one, kTurn / first), of_second = Math::smaller(one, kTurn / second);
+  const Real slope = is_at_first ? across : is_at_second ? along : all;
+  const Real of_edge = Math::smaller(one, 4.0 / (Math::magnitude(slope) + kTiny));
+  const Real on_line = of_edge * (is_at_first ? of_first : is_at_second ? of_second : one);
+  const Real lost = 1.0 - Math::exp(all * -0.125);
+  const Real at_point = lost * Math::root(of_first * of_second), at_edge = lost * Math::root(on_line);
+  const auto is_at_both = is_at_first & is_at_second;
+  return {is_at_both ? at_point : one * 0.0, is_at_both ? one * 0.0 : at_edge};
 }
 
 }  // namespace echopath

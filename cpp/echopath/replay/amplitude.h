@@ -28,9 +28,9 @@ struct RadioConstants {
   Footprint footprint = Footprint::kSecondOrder;
   double spread = 0.65;  // of a launch cell (trace/sampler.h)
   SpecularPoints specular = SpecularPoints::kMaterial;
-  double cell_side = 1.0;  // of the cells that the footprint filter takes, relative to those of the launch (CellFilter)
+  CellView cells;
 
-  CellFilter filter() const { return {wavenumber, spread, footprint, cell_side}; }
+  CellFilter filter() const { return {wavenumber, spread, footprint, cells}; }
 };
 
 // Those of a record played back with `radar`.

@@ -8,16 +8,27 @@ namespace echopath {
 // would draw an edge across the surface, and the edge would radiate.
 enum class Flatness { kFlat, kFlatOneWay, kCurved };
 
+// What a launch cell weighs its ray with.
+enum class CellWeight {
+  kFilter,  // the footprint filter
+  kPoints,  // BetweenRays::points, without a filter
+  kEdges,   // BetweenRays::edges
+};
+
+// How launch cells are looked at.
+struct CellView {
+  double side = 1.0;  // relative to those of the launch, for kFilter: what finer or coarser ones would do
+  CellWeight weight = CellWeight::kFilter;
+};
+
 struct CellFilter {
   double wavenumber = 0.0;  // rad/m
   double spread = 0.65;    // of the second order's Gaussian, in cells (trace/sampler.h)
   Footprint order = Footprint::kSecondOrder;
-  double side = 1.0;        // of the cells that it takes, relative to those of the launch: what finer or coarser ones would do
-  // As a side: in the place of a filter what cells as launched may hide (hidden_part_of).
-  static constexpr double kHidden = -1.0;
+  CellView view;
 };
 
-inline constexpr double kNoFacets = 1e150;  // m^2, of a smooth surface
+inline constexpr double kNoFacets = 1e150;  // m^2, of a surface whose triangles go on as one
 
 // A cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. Does not change while its mesh moves rigidly.
 struct CellShape {
@@ -28,7 +39,7 @@ struct CellShape {
   double turn[3] = {0, 0, 0};      // T_a.U_b, m
   double bend[3] = {0, 0, 0};      // II(T_a, T_b) about the normal of the triangle, m
   double across[2] = {1, 0};       // of kFlatOneWay: unit, in cells, toward the curvature
-  bool is_coarse = false;          // wider than the facets of its mesh, so that its own one tells nothing of the rest
+  bool is_coarse = false;          // is_coarse_cell
 };
 
 // A cell as waves meet and leave it.
@@ -44,7 +55,7 @@ struct CellWaves {
 // Shape: CellShape, or one like it for as many cells as Real has lanes.
 template <class Shape, class Real>
 ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
-  const double per_side = filter.wavenumber * filter.side, per_area = per_side * filter.side;
+  const double per_side = filter.wavenumber * filter.view.side, per_area = per_side * filter.view.side;
   FootprintPhaseOf<Real> phase;
   Real* const h[3] = {&phase.h11, &phase.h12, &phase.h22};
   const Real bends = at.side * (at.cos_in + at.cos_out);
@@ -100,19 +111,30 @@ ECHOPATH_INLINE Real shadow_taper(const CellWaves<Real>& at) {
   return 4.0 * at.cos_in * at.cos_out / (sum * sum);
 }
 
-// What a cell may hide (CellFilter::kHidden), of coarse ones all. is_coarse: CellShape::is_coarse, or a mask of lanes.
+// Whether a cell is wider than the facets of its mesh, so that its own one tells nothing of the rest; by its narrower side, since
+// toward grazing the other one says how the ray lies, not how far apart rays are. product: CellShape::product.
+template <class Math, class Real>
+ECHOPATH_INLINE auto is_coarse_cell(const Real* product, double facet_area) {
+  const Real half = 0.5 * (product[0] - product[2]);
+  const Real narrow = 0.5 * (product[0] + product[2]) - Math::root(half * half + product[1] * product[1]);
+  return narrow > facet_area;
+}
+
+// BetweenRays of a cell, of which a coarse one may hold all. is_coarse: a truth value, or a mask of lanes.
 template <class Math, class Shape, class Mask, class Real>
-ECHOPATH_INLINE Real hidden_part_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at, CellFilter filter) {
-  filter.side = 1.0;
-  const Real hidden = hidden_part_of<Math>(cell_phase(cell, at, filter));
-  return is_coarse ? hidden * 0.0 + 1.0 : hidden;
+ECHOPATH_INLINE Real between_rays_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at, const CellFilter& filter) {
+  const BetweenRays<Real> found = between_rays_of<Math>(cell_phase(cell, at, filter));
+  const Real zero = found.points * 0.0;
+  if (filter.view.weight == CellWeight::kPoints) return is_coarse ? zero + 1.0 : found.points;
+  return is_coarse ? zero : found.edges;
 }
 
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
   const Real zero = at.cos_in * 0.0;
-  if (filter.order == Footprint::kNone || !cell.is_known) return {zero + 1.0, zero};
-  if (filter.side == CellFilter::kHidden) return {hidden_part_of_cell<Math>(cell, cell.is_coarse, at, filter), zero};
+  const bool is_filter = filter.view.weight == CellWeight::kFilter;
+  if (filter.order == Footprint::kNone || !cell.is_known) return {is_filter ? zero + 1.0 : zero, zero};
+  if (!is_filter) return {between_rays_of_cell<Math>(cell, cell.is_coarse, at, filter), zero};
   const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) return {first_order_footprint_of<Math>(phase), zero};
   if (cell.flatness == Flatness::kFlat) {

@@ -6,10 +6,9 @@
 // Factors carry the signs of their cosines: a surface that is seen from opposite sides makes no echo. For doubles and for vectors
 // of doubles: Math as in base/scalar_math.h.
 #include "echopath/base/scalar_math.h"
+#include "echopath/trace/near_antenna.h"
 
 namespace echopath {
-
-inline constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
 
 // root_gain: sqrt(G); cosine: signed, at the diffuse hit; length: m, from the antenna to there.
 template <class Math, class Real>

@@ -30,9 +30,6 @@ struct FlatCell {
   static constexpr bool is_curved = false;
   static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
   Vec product[3];
-
-  // CellShape::is_coarse
-  ECHOPATH_INLINE Mask is_coarse(double facet_area) const { return LaneMath::smaller(product[0], product[2]) > all(facet_area); }
 };
 
 ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {
@@ -182,14 +179,19 @@ ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAnte
 
 ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t slot, const CellWaves<Vec>& waves,
                                               const CellFilter& filter, double facet_area) {
-  if (filter.order == Footprint::kNone) return {all(1.0), Vec{}};
+  const Vec without = filter.view.weight == CellWeight::kFilter ? all(1.0) : Vec{};
+  if (filter.order == Footprint::kNone) return {without, Vec{}};
   const FlatCell cell{{load(slots.product[0] + slot), load(slots.product[1] + slot), load(slots.product[2] + slot)}};
   ComplexOf<Vec> found{};
-  if (filter.side == CellFilter::kHidden) found.re = hidden_part_of_cell<LaneMath>(cell, cell.is_coarse(facet_area), waves, filter);
-  else if (filter.order == Footprint::kFirstOrder) found.re = first_order_footprint_of<LaneMath>(cell_phase(cell, waves, filter));
-  else found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter);
+  if (filter.view.weight != CellWeight::kFilter) {
+    found.re = between_rays_of_cell<LaneMath>(cell, is_coarse_cell<LaneMath>(cell.product, facet_area), waves, filter);
+  } else if (filter.order == Footprint::kFirstOrder) {
+    found.re = first_order_footprint_of<LaneMath>(cell_phase(cell, waves, filter));
+  } else {
+    found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter);
+  }
   const Mask has_cell = load(slots.has_cell + slot) > 0.0;
-  return {has_cell ? found.re : all(1.0), has_cell ? found.im : Vec{}};
+  return {has_cell ? found.re : without, has_cell ? found.im : Vec{}};
 }
 
 // Rows of one leg.

@@ -70,17 +70,19 @@ class Sums {
     open.field += arriving;
   }
 
-  // amplitudes: one for each of kCellSides, `stride` apart.
+  // amplitudes: one for each of kCellViews, `stride` apart.
   void add_coherent(size_t group, int64_t path, const std::complex<double>* arriving, size_t stride) {
     GroupSums& sums = groups_[group];
     const size_t batch = batch_of(path);
-    for (size_t side = 0; side < kNumCellSides; ++side) {
-      const std::complex<double> field = arriving[side * stride];
-      sums.field[side][batch] += field;
-      sums.coherent_power[side] += std::norm(field);
+    const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // else nothing is between rays
+    const size_t num_views = has_cell ? kNumCellViews : kPoints;
+    for (size_t view = 0; view < num_views; ++view) {
+      const std::complex<double> field = arriving[view * stride];
+      sums.field[view][batch] += field;
+      sums.coherent_power[view] += std::norm(field);
     }
+    if (has_cell) sums.edge_squares += std::norm(arriving[kEdges * stride]) * std::norm(arriving[kEdges * stride]);
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
-    sums.hidden_squares += std::norm(arriving[kHidden * stride]) * std::norm(arriving[kHidden * stride]);
     if (power > 0.0) {
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;
@@ -132,8 +134,8 @@ class Block {
     }
     replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
     arrive(diffuse_.size(), 1, diffuse_fields_);
-    replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellSides, lengths_, coherent_fields_);
-    arrive(coherent_.size(), kNumCellSides, coherent_fields_);
+    replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
+    arrive(coherent_.size(), kNumCellViews, coherent_fields_);
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {

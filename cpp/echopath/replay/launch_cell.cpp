@@ -30,9 +30,6 @@ void find_across(const CellShape& cell, double* across) {
   for (int a = 0; a < 2; ++a) across[a] = axes.eigenvectors()(a, bent);
 }
 
-// By its narrower side: toward grazing the other one says how the ray lies, not how far apart rays are.
-bool is_coarse(const CellShape& cell, double facet_area) { return std::min(cell.product[0], cell.product[2]) > facet_area; }
-
 }  // namespace
 
 LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density) {
@@ -64,7 +61,7 @@ CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTang
     shape.turn[i] = cell.turn[i];
     if (hit.is_smooth) shape.bend[i] = t[a].dot(hit.curvature * t[b]);
   }
-  shape.is_coarse = is_coarse(shape, cell.facet_area);
+  shape.is_coarse = is_coarse_cell<ScalarMath>(shape.product, cell.facet_area);
   if (shape.flatness == Flatness::kFlatOneWay) find_across(shape, shape.across);
   return shape;
 }

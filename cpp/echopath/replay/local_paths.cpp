@@ -34,10 +34,9 @@ Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
   }
 }
 
-// As if it were stretched evenly.
 double Localiser::facet_area_at_trace(uint32_t mesh_id) const {
   const Node& node = paths_.scene->node_of(mesh_id);
-  if (node.smooth) return kNoFacets;
+  if (node.smooth || (node.mesh->is_flat() && !node.deformation)) return kNoFacets;
   const double at_rest = node.mesh->area() / static_cast<double>(node.mesh->triangles().size());
   return at_rest * std::pow(std::abs(trace_instant_.rotation(mesh_id).determinant()), 2.0 / 3.0);
 }

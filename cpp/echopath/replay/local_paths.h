@@ -36,7 +36,8 @@ class Localiser {
   bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
   // Each of its triangles is a plane in the mesh's frame for good.
   bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
-  // m^2, mean of the triangles of a mesh at the trace; kNoFacets where the mesh is smooth.
+  // m^2, mean of the triangles of a mesh, with the scale that it has at the trace and the shape that it has at rest; kNoFacets where
+  // the mesh is smooth or a plane.
   double facet_area(uint32_t mesh_id) const { return facet_area_[mesh_id]; }
   // Normals of its corners; false where facets are meant or the crease guard refuses this one.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;

@@ -9,9 +9,9 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
-constexpr double kGone = 0.3, kOfHidden = 1.25;
+constexpr double kGone = 0.3, kOfBetween = 1.25;
 constexpr double kOfAHit = 0.5;
-constexpr double kEdgeCells = 8.0;  // of the root of their number: four sides, twice over
+constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
 
 double squared(double x) { return x * x; }
@@ -21,12 +21,6 @@ double effective_number(double sum, double sum_of_squares) {
   return sum_of_squares > 0.0 ? sum * sum / sum_of_squares : 1.0;
 }
 
-// Power of what launch cells may hide, W. Each batch hides the same.
-double hidden_power(const PowerEvidence& evidence) {
-  const double all = evidence.coherent_power[kHidden], num_cells = effective_number(all, evidence.hidden_squares);
-  return evidence.num_batches * all * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
-}
-
 // How far the coherent field may lie above and below, sqrt(W).
 struct FieldBias {
   double above = 0.0, below = 0.0;
@@ -34,12 +28,12 @@ struct FieldBias {
 
 FieldBias field_bias(const PowerEvidence& evidence) {
   const double size = std::abs(evidence.field[kAsLaunched]);
-  const auto change = [&](CellSide side) { return std::abs(evidence.field[side] - evidence.field[kAsLaunched]); };
-  const double hidden = std::sqrt(hidden_power(evidence));
-  if (size == 0.0) return {hidden, 0.0};
+  const auto change = [&](CellViewIndex view) { return std::abs(evidence.field[view] - evidence.field[kAsLaunched]); };
+  const double between = kOfBetween * std::sqrt(power_between_rays(evidence));
+  if (size == 0.0) return {between, 0.0};
   const double halving = change(kHalfDensity) / size;
   const double finer = kOfFiner * std::max(0.0, change(kFiner) / size - kAliases);
-  const double all_gone = squared(std::min(halving / kGone, 1.0)) * kOfHidden * hidden;
+  const double all_gone = squared(std::min(halving / kGone, 1.0)) * between;
   const double above = halving * std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
   return {std::hypot(size * (above + finer), all_gone), size * (kOfHalving * halving + finer)};
 }
@@ -59,7 +53,7 @@ struct Reach {
   double above = 0.0, below = 0.0;  // W
 };
 
-// Standard error, W: an even lattice meets a small surface a whole number of times, in each batch perhaps the same one.
+// Standard error, W: an even lattice meets a small surface a whole number of times, in each batch by itself.
 double counting_error(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   return evidence.diffuse * kOfAHit * std::sqrt(static_cast<double>(evidence.num_batches)) / std::max(num_hits, 1.0);
@@ -78,6 +72,13 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
 }
 
 }  // namespace
+
+double power_between_rays(const PowerEvidence& evidence) {
+  const double num_batches = evidence.num_batches, edges = evidence.coherent_power[kEdges];
+  const double num_cells = effective_number(edges, evidence.edge_squares) / num_batches;  // of each batch
+  const double of_edges = edges * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
+  return num_batches * (evidence.coherent_power[kPoints] + of_edges);
+}
 
 double student_t95(int degrees_of_freedom) {
   constexpr double kFew[] = {12.706205, 4.302653, 3.182446, 2.776445, 2.570582};

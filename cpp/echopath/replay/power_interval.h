@@ -7,17 +7,18 @@
 
 namespace echopath {
 
-// Sides of launch cells, relative to those of the trace, at which the coherent field is looked at: as launched, a little
-// finer, those of half as many rays, none at all (no filter), and what cells as launched may hide.
-inline constexpr double kCellSides[] = {1.0, 0.8, 1.4142135623730951, 0.0, CellFilter::kHidden};
-enum CellSide { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kHidden, kNumCellSides };
+// How launch cells are looked at: as launched, a little finer, those of half as many rays, none at all (no filter), and what they
+// may hold between rays.
+inline constexpr CellView kCellViews[] = {{1.0}, {0.8}, {1.4142135623730951}, {0.0}, {1.0, CellWeight::kPoints},
+                                          {1.0, CellWeight::kEdges}};
+enum CellViewIndex { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kPoints, kEdges, kNumCellViews };
 
 // What a set of paths is known by, of all rays.
 struct PowerEvidence {
   double coherent = 0.0, diffuse = 0.0;       // W, the estimates
-  std::complex<double> field[kNumCellSides];  // sqrt(W), of the coherent paths
-  double coherent_power[kNumCellSides] = {};  // W, sum of |a|^2 over them
-  double hidden_squares = 0.0;                // W^2, sum of |a|^4 of what cells may hide
+  std::complex<double> field[kNumCellViews];  // sqrt(W), of the coherent paths
+  double coherent_power[kNumCellViews] = {};  // W, sum of |a|^2 over them
+  double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
   // Of the coherent paths that hardly change at half the density, such as those of flat surfaces up to their edges: W, sum of
   // their |a|^2, and W^2, of its squares.
   double steady_power = 0.0, steady_squares = 0.0;
@@ -33,15 +34,20 @@ struct PowerInterval {
   double chance = 0.0;           // W, standard error of the power; of one batch estimated from the record
 };
 
+// Power that launch cells may hold between rays, W: |a|^2 summed as in random phase, so that a few cells beside a point count
+// several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge. Each batch has cells of its own,
+// all of which hold the same.
+double power_between_rays(const PowerEvidence& evidence);
+
 // Bias: the footprint filter of cells sqrt(2) wider says how fast the coherent field F goes with the cells. With d its change
 // relative to |F|, the field may be off by kOfHalving d |F| where d is small; where it is not, cells are far too wide, and what
-// finer ones will find grows to several times the change (kOfHalvingMore). A filter that takes all away is no evidence at all:
-// then the field may be as large as what the cells may hide, in random phase: points of reflection between rays that met the surface
-// near them, and edges; if these are many alike, no more than kEdgeCells sqrt(n) of n cells lie at one. Cells a little finer tell where the filter takes edges
-// for a surface without end; what is below kAliases there is the lattice showing through.
-// Chance: Student's t of the batches, and no less than half a hit in each of them. Of one batch: directions drawn at random give the variance sum p^2; a lattice errs along
-// the outline of what it meets alone, so that its variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for
-// fields: less so where the filter takes much away, as fields of curved surfaces fade toward their outline. The factors are fitted to the coverage of `echopath bench coverage`.
+// finer ones will find grows to several times the change (kOfHalvingMore). From there on, in full where d reaches kGone, the field
+// may also be as large as power_between_rays allows, times kOfBetween. Cells a little finer tell where the filter takes edges for a
+// surface without end; what is below kAliases there is the lattice showing through.
+// Chance: Student's t of the batches, and no less than half a hit in each of them, which errs by itself. Of one batch: directions
+// drawn at random give the variance sum p^2; a lattice errs along the outline of what it meets alone, so that its variance is
+// kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for fields: less so where the filter takes much away, as fields of
+// curved surfaces fade toward their outline. The factors are fitted to the coverage of `echopath bench crowd`.
 PowerInterval power_interval(const PowerEvidence& evidence);
 
 // Student's t: two-sided 95 % quantile.

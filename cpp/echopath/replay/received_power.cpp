@@ -94,11 +94,11 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
   PowerEvidence evidence;
   evidence.coherent = power.coherent;
   evidence.diffuse = power.diffuse;
-  for (size_t side = 0; side < kNumCellSides; ++side) {
-    evidence.field[side] = std::accumulate(sums.field[side].begin(), sums.field[side].end(), std::complex<double>());
-    evidence.coherent_power[side] = sums.coherent_power[side];
+  for (size_t view = 0; view < kNumCellViews; ++view) {
+    evidence.field[view] = std::accumulate(sums.field[view].begin(), sums.field[view].end(), std::complex<double>());
+    evidence.coherent_power[view] = sums.coherent_power[view];
   }
-  evidence.hidden_squares = sums.hidden_squares;
+  evidence.edge_squares = sums.edge_squares;
   evidence.steady_power = sums.steady_power;
   evidence.steady_squares = sums.steady_squares;
   evidence.lattice_squares = sums.lattice_squares;
@@ -119,7 +119,7 @@ ReceivedPower with_interval(const GroupSums& sums) {
   out.field = evidence.field[kAsLaunched];
   out.half_density_field = evidence.field[kHalfDensity];
   out.unfiltered = evidence.coherent_power[kUnfiltered];
-  out.hidden = evidence.coherent_power[kHidden];
+  out.between_rays = power_between_rays(evidence);
   out.num_coherent_paths = sums.num_coherent_paths;
   out.num_diffuse_hits = sums.num_diffuse_hits;
   if (out.diffuse > 0) out.strongest_share = sums.strongest_hit / out.diffuse;

@@ -37,7 +37,7 @@ struct ReceivedPower {
   // cells of half the density of rays; sum of |a|^2 of the coherent paths without the filter, W.
   std::complex<double> field, half_density_field;
   double unfiltered = 0.0;
-  double hidden = 0.0;  // W, what launch cells may hide of the coherent power, in random phase (hidden_part_of)
+  double between_rays = 0.0;  // W, coherent power that launch cells may hold between rays (power_between_rays)
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
   double strongest_share = 0.0;  // of the diffuse power, of its strongest hit
 

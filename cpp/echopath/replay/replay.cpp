@@ -74,7 +74,7 @@ struct Replayer::Target {
   std::vector<ChannelNodes> nodes;
   uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
   bool with_amplitudes = true;  // else only lengths are of interest
-  double cell_side = 1.0;       // RadioConstants::cell_side
+  CellView cells = {};
 
   ChannelSpan channels() const { return {first_channel, nodes}; }
 };
@@ -134,7 +134,7 @@ std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const Nod
 
 RadioConstants Replayer::radio_of(const Target& target) const {
   RadioConstants radio = radio_;
-  radio.cell_side = target.cell_side;
+  radio.cells = target.cells;
   return radio;
 }
 
@@ -264,26 +264,26 @@ FailedPath Replayer::failed(int64_t path, int index, const NeededOrder& needed, 
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
                         std::vector<std::complex<double>>& amplitudes, Job* job) const {
-  const double as_launched = 1.0;
+  const CellView as_launched;
   evaluate(indices, time, {&as_launched, 1}, lengths, amplitudes, job);
 }
 
-void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span<const double> cell_sides,
+void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span<const CellView> cells,
                         std::vector<double>& lengths, std::vector<std::complex<double>>& amplitudes, Job* job) const {
   constexpr size_t kBlock = 8192;
   const NodeLevel single = levels_.single(time);
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
-  amplitudes.resize(cell_sides.size() * lengths.size());
+  amplitudes.resize(cells.size() * lengths.size());
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
     std::vector<Target> targets;
-    for (size_t side = 0; side < cell_sides.size(); ++side) {
+    for (size_t view = 0; view < cells.size(); ++view) {
       targets.push_back({single, 0, {}});
-      targets.back().cell_side = cell_sides[side];
+      targets.back().cells = cells[view];
       for (size_t channel = 0; channel < channels; ++channel) {
         const size_t to = channel * indices.size() + begin;
-        targets.back().nodes.push_back({lengths.data() + to, amplitudes.data() + side * lengths.size() + to, size, 0, 1.0});
+        targets.back().nodes.push_back({lengths.data() + to, amplitudes.data() + view * lengths.size() + to, size, 0, 1.0});
       }
     }
     evaluate_at(indices.subspan(begin, size), targets);

@@ -56,10 +56,9 @@ class Replayer {
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
-  // The same amplitudes [side, channel, P] as the footprint filter makes them of launch cells whose sides are that many times
-  // those of the trace: wider ones are those of fewer rays, sides of 0 switch it off, and CellFilter::kHidden takes what cells may
-  // hide in its place.
-  void evaluate(std::span<const int64_t> paths, double time, std::span<const double> cell_sides, std::vector<double>& lengths,
+  // The same amplitudes [view, channel, P] with the weights of launch cells that are looked at in other ways: wider ones are those
+  // of fewer rays, sides of 0 switch the footprint filter off.
+  void evaluate(std::span<const int64_t> paths, double time, std::span<const CellView> cells, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:

@@ -97,10 +97,25 @@ void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
   require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
 }
 
+// m^2, of the winding.
+Vec3 area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
+  return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+}
+
 double area_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  double twice = 0.0;
-  for (const Triangle& t : triangles) twice += (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]).norm();
-  return 0.5 * twice;
+  double area = 0.0;
+  for (const Triangle& triangle : triangles) area += area_vector(vertices, triangle).norm();
+  return area;
+}
+
+// The plane is that of the first triangle.
+bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  constexpr double kRelative = 1e-6;
+  const Vec3 normal = area_vector(vertices, triangles.front()).normalized(), &origin = vertices[triangles.front()[0]];
+  return std::all_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
+    const Vec3 line = vertex - origin;
+    return std::abs(normal.dot(line)) <= kRelative * line.norm();
+  });
 }
 
 }  // namespace
@@ -131,6 +146,7 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
   is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
   area_ = area_of(vertices_, triangles_);
+  is_flat_ = lie_in_a_plane(vertices_, triangles_);
 }
 
 MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
@@ -156,6 +172,7 @@ MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
   made->num_input_vertices_ = whole->num_input_vertices_;
   made->is_closed_ = made->num_duplicated_vertices_ == 0 && !has_boundary(made->triangles_);
   made->area_ = area_of(made->vertices_, made->triangles_);
+  made->is_flat_ = lie_in_a_plane(made->vertices_, made->triangles_);
   return made;
 }
 

@@ -39,6 +39,7 @@ class Mesh {
   int64_t num_duplicated_vertices() const { return num_duplicated_vertices_; }
   bool is_closed() const { return is_closed_; }  // no boundary edge, no duplicated vertex
   double area() const { return area_; }          // m^2
+  bool is_flat() const { return is_flat_; }      // all vertices in one plane, to 1e-6 of the extent
 
   // What this is a part of, null for a whole; and its triangles [F] and vertices [V] there, empty for a whole. Vertex
   // normals are those of the whole: a curved surface has no seams where it is cut into parts.
@@ -55,7 +56,7 @@ class Mesh {
   std::vector<Triangle> triangles_;
   std::vector<uint32_t> original_triangle_, original_vertex_;
   int64_t num_input_vertices_ = 0, num_removed_triangles_ = 0, num_duplicated_vertices_ = 0;
-  bool is_closed_ = false;
+  bool is_closed_ = false, is_flat_ = false;
   double area_ = 0.0;  // m^2
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;

@@ -26,7 +26,7 @@ AntennaView LegFinder::view_of(const Vec3& antenna, int max_mirrors) const {
 void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
   legs.clear();
   search.segments.clear();
-  if (query.skip != kDirect && query.direct != Sight::kBlocked) add_direct(query, antenna, legs, search);
+  if (query.skip != kDirect && query.direct != ShadowState::kBlocked) add_direct(query, antenna, legs, search);
   const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const int index : antenna.locator.near(query.point)) {
     const Beam& beam = antenna.beams[static_cast<size_t>(index)];
@@ -40,7 +40,7 @@ void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, st
                            LegSearch& search) const {
   const Vec3 line = antenna.position - query.point;
   if (query.normal.dot(line) <= 0) return;
-  if (query.direct == Sight::kUnknown) {
+  if (query.direct == ShadowState::kUnknown) {
     search.segments.push_back({geometry_.lifted(query.point, query.normal), antenna.position});
   }
   Leg& leg = legs.emplace_back();

@@ -38,14 +38,14 @@ struct AntennaView {
   int64_t num_unfollowed = 0;  // Beams::num_unfollowed
 };
 
-enum class Sight : uint8_t { kUnknown, kOpen, kBlocked };
+enum class ShadowState : uint8_t { kUnknown, kOpen, kBlocked };
 
 // Where legs are searched.
 struct LegQuery {
   Vec3 point, normal;       // m; unit, on the lit side
   int max_mirrors = 0;
   MirrorSequence skip = -1;  // a sequence that is left out, negative for none
-  Sight direct = Sight::kUnknown;  // of the antenna itself
+  ShadowState direct = ShadowState::kUnknown;  // of the antenna itself
 };
 
 // What a search needs while it lasts; kept from one to the next for its memory.

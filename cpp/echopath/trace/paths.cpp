@@ -11,6 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr size_t kHitsPerWord = 64;
+constexpr float kBarycentricRounding = 1e-3f;  // what u + v may exceed 1 by, as hits that are moved to an edge do
 
 template <class T>
 std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep, size_t count, Job* job) {
@@ -48,6 +49,16 @@ class HitSet {
   std::vector<int64_t> before_;
 };
 
+bool is_finite(std::complex<float> value) { return std::isfinite(value.real()) && std::isfinite(value.imag()); }
+
+void validate_hit(const Hit& hit, const Scene& scene) {
+  require(hit.mesh_id < scene.meshes().size(), "mesh_id", "must be a mesh of the scene", hit.mesh_id);
+  const size_t num_triangles = scene.node_of(hit.mesh_id).mesh->triangles().size();
+  require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
+  require(hit.u >= 0.0f && hit.v >= 0.0f && hit.u + hit.v <= 1.0f + kBarycentricRounding, "u and v",
+          "must not be negative, their sum at most 1", hit.u + hit.v);
+}
+
 HitSet used_hits(const Paths& paths) {
   HitSet used(static_cast<size_t>(paths.num_hits()));
   for (size_t i = 0; i < paths.offsets.size(); ++i) {
@@ -64,17 +75,28 @@ void Paths::validate() const {
               batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size) &&
               (jones.empty() || jones.size() == size),
           "paths", "all arrays must have one entry per path, paths", size);
-  for (size_t i = 0; i < size; ++i) {
-    require(num_bounces[i] >= 1 && num_bounces[i] <= 64, "num_bounces", "must lie in [1, 64]", int{num_bounces[i]});
-    require(offsets[i] >= 0 && offsets[i] + num_bounces[i] <= num_hits(), "offsets", "must lead to hits", offsets[i]);
-    require(batch[i] == kNoBatch || batch[i] < frame.num_batches, "batch", "must be one of the frame's", int{batch[i]});
-    require(stratum[i] == kNoStratum || stratum[i] < frame.strata.size(), "stratum", "must be one of the frame's", int{stratum[i]});
+  require(frame.num_batches >= 1 && frame.num_batches <= 64, "num_batches", "must lie in [1, 64]", frame.num_batches);
+  require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
+          "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());
+  for (size_t path = 0; path < size; ++path) validate_path(path);
+  for (const Hit& hit : *hits) validate_hit(hit, *scene);
+}
+
+void Paths::validate_path(size_t path) const {
+  const int count = num_bounces[path];
+  require(count >= 1 && count <= 64, "num_bounces", "must lie in [1, 64]", count);
+  require(offsets[path] >= 0 && offsets[path] <= num_hits() - count, "offsets", "must lead to hits", offsets[path]);
+  require(count == 64 || diffuse[path] >> count == 0, "diffuse", "must have no bits beyond num_bounces", diffuse[path]);
+  require(batch[path] == kNoBatch || batch[path] < frame.num_batches, "batch", "must be one of the frame's", int{batch[path]});
+  require(stratum[path] == kNoStratum || stratum[path] < frame.strata.size(), "stratum", "must be one of the frame's",
+          int{stratum[path]});
+  require(is_finite(weight[path]), "weight", "must be finite", weight[path]);
+  if (!curved_cell.empty()) {
+    const bool are_finite = std::all_of(curved_cell[path].begin(), curved_cell[path].end(), [](float x) { return std::isfinite(x); });
+    require(are_finite, "curved_cell", "must be finite, path", path);
   }
-  for (int64_t i = 0; i < num_hits(); ++i) {
-    const Hit& hit = (*hits)[static_cast<size_t>(i)];
-    require(hit.mesh_id < scene->meshes().size(), "mesh_id", "must be a mesh of the scene", hit.mesh_id);
-    const size_t num_triangles = scene->node_of(hit.mesh_id).mesh->triangles().size();
-    require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
+  if (!jones.empty()) {
+    require(std::all_of(jones[path].begin(), jones[path].end(), is_finite), "jones", "must be finite, path", path);
   }
 }
 

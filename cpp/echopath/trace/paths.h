@@ -109,6 +109,7 @@ struct Paths {
 
   // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
   void validate() const;
+  void validate_path(size_t path) const;
   // The paths where keep [P] is not 0, in order; shares the hits. Raises Cancelled when the job is.
   Paths select(const std::vector<uint8_t>& keep, Job* job = nullptr) const;
   // The same paths with only the hits that they use, in their order; hits that paths share stay shared.

@@ -58,7 +58,7 @@ bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surfa
                         PathBlock& block) const {
   if (!bounce(ray, surface, way, scratch)) return false;
   surface.point = met;
-  surface.receiver = Sight::kUnknown;
+  surface.receiver = ShadowState::kUnknown;
   if (!arrive(ray, surface, scratch, block)) return false;
   surface.chance = hit_chance(settings_.seed, ray.index, ray.depth);
   return true;

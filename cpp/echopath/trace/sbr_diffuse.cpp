@@ -92,7 +92,7 @@ void RayShooter::find_transmit_legs(const Surface& surface, int max_mirrors, Mir
   scratch.transmit.clear();
   if (skip == kDirect && transmitter_.beams.empty()) return;
   LegQuery query = legs_from(surface, max_mirrors, skip);
-  query.direct = Sight::kUnknown;
+  query.direct = ShadowState::kUnknown;
   legs_.find(query, transmitter_, scratch.transmit, scratch.search);
   std::erase_if(scratch.transmit, [&](const Leg& leg) { return surface.point.normal.dot(leg.to_antenna) < kGrazing; });
 }

@@ -191,7 +191,7 @@ void RayShooter::look_at_receiver(Packet& packet, PathBlock& block) const {
   }
   geometry_.occluded(packet.lifted, settings_.receiver, asked, blocked);
   for (size_t k = 0; k < kPacketSize; ++k) {
-    packet.receiver[k] = !asked[k] ? Sight::kUnknown : blocked[k] ? Sight::kBlocked : Sight::kOpen;
+    packet.receiver[k] = !asked[k] ? ShadowState::kUnknown : blocked[k] ? ShadowState::kBlocked : ShadowState::kOpen;
   }
 }
 
@@ -222,7 +222,7 @@ JonesMatrix entries_of(const LanesOf<float> (*from)[2], int lane) {
 // What a plain hit sends to the receiver, over the first hit of the current ray.
 void RayShooter::add_echoes(const Packet& packet, int lane, PathBlock& block) const {
   const auto k = static_cast<size_t>(lane);
-  if (packet.receiver[k] != Sight::kOpen) return;
+  if (packet.receiver[k] != ShadowState::kOpen) return;
   const int stratum = packet.places.strata[k];
   if (packet.coherent[lane] > 0) {
     block.add_prefix(1, 0, {packet.field_re[lane], packet.field_im[lane]}, stratum);

@@ -6,12 +6,12 @@
 
 #include "echopath/em/hit_modes.h"
 #include "echopath/em/jones.h"
+#include "echopath/trace/near_antenna.h"
 #include "echopath/trace/ray_differential.h"
 #include "echopath/trace/sbr.h"
 
 namespace echopath {
 
-inline constexpr double kNearAntenna = 1e-3;  // m: contributions nearer to an antenna are dropped
 inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
 // Rays leave this bounce and later ones by Russian roulette. Of a chain of diffuse hits its own bounces count, so that the
 // odds of its orders do not depend on how they were reached.
@@ -67,7 +67,7 @@ struct RayShooter::Surface {
   PolarizationMode mode = PolarizationMode::kTe;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
-  Sight receiver = Sight::kUnknown;  // as seen from here
+  ShadowState receiver = ShadowState::kUnknown;  // as seen from here
   HitChance chance;
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
@@ -94,7 +94,7 @@ struct RayShooter::Packet {
   LaneValues near_squared;   // m^2: to the nearest antenna
   EmbreeScene::Lanes arrives;              // whether the ray is at a hit that its stratum owns, or passes over a mirror
   std::array<bool, kPacketSize> is_owned;  // the former
-  std::array<Sight, kPacketSize> receiver;  // as seen from there
+  std::array<ShadowState, kPacketSize> receiver;  // as seen from there
   std::array<const SurfaceModel*, kPacketSize> models;
   std::array<PolarizationMode, kPacketSize> modes;
   LaneValues gamma_re, gamma_im, coherent, diffuse, facet;  // the responses

@@ -116,7 +116,8 @@ def random_paths(paths, num_hits: int, least: int, most: int):
         diffuse=draw.integers(0, 2**63, len(counts), np.uint64)
         & ((np.uint64(1) << counts.astype(np.uint64)) - np.uint64(1)),
         weight=none.astype(np.complex64), stratum=none.astype(np.uint16), batch=none.astype(np.uint8),
-        flags=none.astype(np.uint32), scene=paths.scene, radar=paths.radar, frame=paths.frame)
+        flags=none.astype(np.uint32), scene=paths.scene, radar=paths.radar, frame=paths.frame,
+        jones=np.zeros((len(none), 2, 2), np.complex64) if paths.frame.polarization == "jones" else None)
 
 
 def _rates(title: str, paths) -> dict:

@@ -5,7 +5,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..resolution import powers_of
+from ..resolution import mean_powers
 from .detections import NOISE
 
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
@@ -87,7 +87,8 @@ def families_of_labels(labels, cells) -> list:
 
 def resolved_families(paths, families) -> set:
     """The families whose mean received power the rays know."""
-    return {family for family, power in zip(families.families, powers_of(paths, families)[0]) if power.resolved}
+    powers = mean_powers(paths, families, {}).of_families
+    return {family for family, power in zip(families.families, powers) if power.resolved}
 
 
 def resolved_labels(labels) -> set:

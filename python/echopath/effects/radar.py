@@ -5,7 +5,6 @@ from ..polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_fiel
 from .rules import Case, meshes_or, rule
 
 
-
 @rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "AntennaPattern.kind", "AntennaPattern.peak_gain",
       "AntennaPattern.exponent")
 def _patterns(case: Case):
@@ -55,7 +54,7 @@ def _polarization(case: Case):
 @rule("depolarisation by roughness", "Material.cross_polarization")
 def _depolarisation(case: Case):
     if case.model != FIELD_VECTORS:
-        return False, 'polarization = "scalar"'
+        return False, "traced with one coefficient a hit"
     return meshes_or([mesh for mesh in case.diffuse if mesh.material.cross_polarization > 0.0],
                      "no rough material has a cross_polarization")
 

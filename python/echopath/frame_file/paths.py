@@ -64,8 +64,8 @@ def read_paths(group, scene, radar):
 
 def _check_indices(group, hits, columns: dict, scene) -> None:
     """Whatever indexes something else must stay inside it."""
-    offsets, ends = columns["offsets"], columns["offsets"] + columns["num_bounces"]
-    if len(offsets) and (offsets.min() < 0 or ends.max() > len(hits)):
+    offsets = columns["offsets"]
+    if np.any(offsets < 0) or np.any(offsets > len(hits) - columns["num_bounces"].astype(np.int64)):
         raise ep.FileError(f"{group.name}/paths/offsets: must lie within the {len(hits)} hits")
     meshes = list(scene.meshes)
     if len(hits) and hits["mesh_id"].max() >= len(meshes):

@@ -10,7 +10,7 @@ import echopath as ep
 from .. import _core, same_radar
 from ..keywords import known_keywords
 from ..path_subset import part_of_path
-from ..resolution import interval_of, powers_of
+from ..resolution import interval_of, mean_powers
 from ..visibility import appearing_in_frame, visibility_in_trace
 from .labels import Labels, is_occluded
 from .objects import family_cells, label_ghosts, label_objects
@@ -117,14 +117,17 @@ def label_partitions(request: Request, paths, families, family_powers, powers: d
     selections: {partition: {name: selection}}; settings: signal settings
     """
     whole = next(iter(powers.values())).whole
-    sorted_by = {partition: (part_of_path(paths, selections[partition]), len(of_parts.cells)) for partition, of_parts in powers.items()
-                 if [*selections.get(partition, ()), "other"] == list(of_parts.cells)}
-    of_families, of_partitions = powers_of(paths, families, sorted_by.values())
-    received = {partition: [interval_of(power) for power in found] for partition, found in zip(sorted_by, of_partitions)}
-    intervals = dict(zip(families.families, map(interval_of, of_families)))
+    groups = {}  # of the partitions whose parts are those of selections
+    for partition, of_parts in powers.items():
+        chosen = selections.get(partition, {})
+        if [*chosen, "other"] == list(of_parts.cells):
+            groups[partition] = part_of_path(paths, chosen), len(of_parts.cells)
+    mean = mean_powers(paths, families, groups)
+    received = {partition: [interval_of(power) for power in found] for partition, found in mean.of_parts.items()}
+    intervals = dict(zip(families.families, map(interval_of, mean.of_families)))
     scene_labels = _label_scene(request, paths, families, family_powers, intervals, whole, settings.get("progress"))
-    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition), scene_labels,
-                                    settings)
+    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition),
+                                    scene_labels, settings)
             for partition, of_parts in powers.items()}
 
 
@@ -145,8 +148,11 @@ def _label_scene(request: Request, paths, families, powers, intervals: dict, who
 
 
 def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict) -> Labels:
-    """Labels of a partition. powers: its ViewPowers; received: Interval in W of each part, None where the parts are not those of
-    selections; scene_labels: of `_label_scene`; settings: signal settings."""
+    """Labels of a partition.
+
+    powers: its ViewPowers; received: Interval in W of each part, None where the parts are not those of selections
+    scene_labels: of `_label_scene`; settings: signal settings
+    """
     names, plane = list(powers.cells), request.plane
     power = np.stack([powers.cells[name] for name in names])
     above_noise, mask = request.masks(powers.whole)
@@ -165,11 +171,11 @@ def label_frame(request: Request, paths, families, cubes: dict, family_cubes: di
 
     selections: {partition: {name: selection}}; settings: signal settings.
     """
-    def powers_of(view):
+    def cell_powers_of(view):
         return add_powers([CubeSet(request.radar, 1.0, {_PARTS: view})], request.plane)[_PARTS]
 
-    powers = {partition: powers_of(view) for partition, view in cubes.items()}
-    return label_partitions(request, paths, families, powers_of(family_cubes), powers, selections, settings)
+    powers = {partition: cell_powers_of(view) for partition, view in cubes.items()}
+    return label_partitions(request, paths, families, cell_powers_of(family_cubes), powers, selections, settings)
 
 
 def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict) -> Labels:

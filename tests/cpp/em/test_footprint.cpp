@@ -109,33 +109,55 @@ FootprintPhase turned(const FootprintPhase& phase, double angle) {
           s * s * phase.h11 + 2 * c * s * phase.h12 + c * c * phase.h22};
 }
 
-double hidden(const FootprintPhase& phase) { return hidden_part_of<ScalarMath>(phase); }
+double of_points(const FootprintPhase& phase) { return between_rays_of<ScalarMath>(phase).points; }
+double of_edges(const FootprintPhase& phase) { return between_rays_of<ScalarMath>(phase).edges; }
 
 // A point of reflection beside the middle of a cell, where a Gaussian about the middle sees nearly nothing of it: what it sends back
 // is that of all cells together, the ends of the integral apart.
-TEST(Footprint, HiddenIsAPointOfReflectionInTheCell) {
+TEST(Footprint, BetweenRaysIsAPointOfReflectionInTheCell) {
   const FootprintPhase bent{0.6 * 60.0, -0.5 * 50.0, 60.0, 0.0, -50.0};
   const double whole = integral_over(bent, -3.0, 3.0);
-  EXPECT_NEAR(hidden(bent) / whole, 1.0, 0.1);
+  EXPECT_NEAR(of_points(bent) / whole, 1.0, 0.1);
+  EXPECT_EQ(of_edges(bent), 0.0);
   EXPECT_LT(std::abs(second_order_footprint(bent, 0.65)), 0.8 * whole);
-  for (const double angle : {0.3, 1.1, 2.5}) EXPECT_NEAR(hidden(turned(bent, angle)) / hidden(bent), 1.0, kThreeSums);
+  for (const double angle : {0.3, 1.1, 2.5}) EXPECT_NEAR(of_points(turned(bent, angle)) / of_points(bent), 1.0, kThreeSums);
+}
+
+// |integral of e^{-j(gx + hx^2/2)} from -1/2 to the edge|, at its most over the places of the edge.
+double most_of_a_cut(double slope, double bend) {
+  constexpr int kSteps = 20000;
+  std::complex<double> sum = 0.0;
+  double most = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = (i + 0.5) / kSteps - 0.5;
+    sum += std::polar(1.0 / kSteps, -(slope * x + 0.5 * bend * x * x));
+    most = std::max(most, std::abs(sum));
+  }
+  return most;
 }
 
 // Without a point of reflection a cell that an edge cuts sends back what its part does, whichever that is.
-TEST(Footprint, HiddenBoundsACellThatAnEdgeCuts) {
+TEST(Footprint, BetweenRaysBoundsACellThatAnEdgeCuts) {
   for (const double slope : {4.0, 12.0, 45.0}) {
     const FootprintPhase level{slope, 0.0, 0.1, 0.0, 0.1};
-    double most = 0.0;
-    for (double edge = -0.5; edge <= 0.5; edge += 0.01) {
-      // Along x from -1/2 to the edge; along y the whole cell, which hardly turns.
-      most = std::max(most, std::abs(std::polar(1.0, -slope * edge) - std::polar(1.0, 0.5 * slope)) / slope);
-    }
-    EXPECT_GT(hidden(level), 0.8 * most);
-    EXPECT_LT(hidden(level), 1.01 * most);
+    EXPECT_EQ(of_points(level), 0.0);
+    EXPECT_GT(of_edges(level), 0.8 * most_of_a_cut(slope, 0.1));
+    EXPECT_LT(of_edges(level), 1.01 * most_of_a_cut(slope, 0.1));
   }
 }
 
-TEST(Footprint, NothingHidesWhereRaysFollowThePhase) { EXPECT_LT(hidden({0.3, -0.2, 0.2, 0.05, 0.1}), 0.02); }
+// Bent along one axis, with the line of stationary phase beside the middle, and cut across the other one.
+TEST(Footprint, BetweenRaysBoundsALineThatAnEdgeCuts) {
+  const FootprintPhase line{36.0, 12.0, 60.0, 0.0, 0.1};
+  const double along = integral_over({36.0, 0.0, 60.0, 0.0, 0.1}, -3.0, 3.0) / 6.0;  // its other axis counts six cells
+  for (const double angle : {0.0, 0.7, 2.0}) {
+    EXPECT_NEAR(of_edges(turned(line, angle)) / (along * most_of_a_cut(12.0, 0.1)), 1.0, 0.1);
+  }
+}
+
+TEST(Footprint, NothingIsBetweenRaysThatFollowThePhase) {
+  EXPECT_LT(of_edges({0.3, -0.2, 0.2, 0.05, 0.1}) + of_points({0.3, -0.2, 0.2, 0.05, 0.1}), 0.02);
+}
 
 }  // namespace
 }  // namespace echopath

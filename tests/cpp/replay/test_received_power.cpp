@@ -235,6 +235,7 @@ TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
       EXPECT_EQ(powers[g].high, alone.high);
       EXPECT_EQ(powers[g].half_density_field, alone.half_density_field);
       EXPECT_EQ(powers[g].unfiltered, alone.unfiltered);
+      EXPECT_EQ(powers[g].between_rays, alone.between_rays);
     }
   }
   EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), Sorting{{}, 1}), std::invalid_argument);

@@ -16,9 +16,9 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {"frequency", "incidence", "observation", "polarization", "num_rays",
-                                            "max_bounces", "seed", "model", "footprint", "sampler", "batches",
-                                            "target_error_db", "max_rays", "components", "return_error", "progress"};
+const std::vector<std::string> kKeywords = {
+    "frequency", "incidence", "observation", "polarization",    "num_rays", "max_bounces", "seed",         "model",
+    "footprint", "sampler",   "batches",     "target_error_db", "max_rays", "components",  "return_error", "progress"};
 
 enum class NamedChannel { kVv, kHh, kVh, kHv };  // transmitted, received
 constexpr auto kChannel = choice<NamedChannel>("polarization", "vv", "hh", "vh", "hv");

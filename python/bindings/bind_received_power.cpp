@@ -28,7 +28,8 @@ std::vector<ReceivedPower> powers_of(const Paths& paths, const Groups& groups, s
   return run_job("received power", progress, [&](Job& job) { return received_powers(paths, sorting, &job, {tx, rx}); });
 }
 
-std::vector<std::vector<ReceivedPower>> powers_of_sortings(const Paths& paths, const std::vector<std::pair<Groups, size_t>>& given,
+std::vector<std::vector<ReceivedPower>> powers_of_sortings(const Paths& paths,
+                                                           const std::vector<std::pair<Groups, size_t>>& given,
                                                            const py::object& progress) {
   std::vector<Sorting> sortings;
   for (const auto& [groups, num_groups] : given) sortings.push_back(as_sorting(groups, num_groups));
@@ -58,8 +59,7 @@ and are NaN for one batch.)")
       .def_readonly("coherent", &ReceivedPower::coherent,
                     "W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero")
       .def_readonly("coherent_error", &ReceivedPower::coherent_error, "W, standard error")
-      .def_readonly("diffuse", &ReceivedPower::diffuse,
-                    "W, sum over diffuse hits of |field of all paths over that hit|^2")
+      .def_readonly("diffuse", &ReceivedPower::diffuse, "W, sum over diffuse hits of |field of all paths over that hit|^2")
       .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
       .def_readonly("low", &ReceivedPower::low, "W, lower end of the 95 % interval, of bias and chance together")
       .def_readonly("high", &ReceivedPower::high, "W, upper end of it")
@@ -74,7 +74,8 @@ and are NaN for one batch.)")
       .def_readonly("num_coherent_paths", &ReceivedPower::num_coherent_paths, "number of coherent paths")
       .def_readonly("num_diffuse_hits", &ReceivedPower::num_diffuse_hits, "number of diffuse hits")
       .def_readonly("strongest_share", &ReceivedPower::strongest_share, "share of the diffuse power of its strongest hit")
-      .def_property_readonly("resolved", &ReceivedPower::resolved, "the interval reaches no further than 0.3 dB to either side")
+      .def_property_readonly("resolved", &ReceivedPower::resolved,
+                             "the interval reaches no further than 0.3 dB to either side")
       .def_property_readonly("interval_db", &ReceivedPower::interval_db,
                              "dB, half the interval, the larger one of its sides; infinite where it reaches down to nothing")
       .def_readonly("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors")
@@ -96,7 +97,8 @@ paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the 
 progress: callable(stage, fraction) or None
 Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
 are not there, KeyboardInterrupt on Ctrl-C.)");
-  m.def("received_powers_of_sortings", &powers_of_sortings, py::arg("paths"), py::arg("sortings"), py::arg("progress") = py::none(),
+  m.def("received_powers_of_sortings", &powers_of_sortings, py::arg("paths"), py::arg("sortings"),
+        py::arg("progress") = py::none(),
         "received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.");
 }
 

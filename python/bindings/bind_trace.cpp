@@ -104,10 +104,10 @@ interval of bias and chance), 1 000 000 at most; max_bounces: 1 to 64, hits on m
 and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces
 seed: the same seed gives the same bits
 start_time: s, first sample of the frame
-polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised), "jones"
-(field vectors, co- and cross-polar echoes; 32 bytes a path more), or, unless given, "auto": field vectors where the scene has
-coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas of several polarisations;
-`paths.effects` tells which and why
+polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised),
+"jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or, unless given, "auto": field vectors where the
+scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas of several
+polarisations; `paths.effects` tells which and why
 footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a flatter
 second order, for curved surfaces whose edges make the echo (a dish along its axis)
 sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"

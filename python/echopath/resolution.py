@@ -94,8 +94,8 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
     paths: of a trace; objects: as in `families`
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
     progress: callable (stage, fraction) or None
-    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar that no
-    ray has met is among them, with what three rays might have brought back from it as its upper end.
+    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
+    that no ray has met is among them, with what three rays might have brought back from it as its upper end.
     """
     families = families_of(paths, objects)
     powers = mean_powers(paths, families, {}, progress).of_families
@@ -103,7 +103,10 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
 
 
 def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, progress=None) -> list:
-    """`unresolved` from powers that are known. families: of the paths and objects; powers: [F] of these, as of `mean_powers`"""
+    """`unresolved` from powers that are known.
+
+    families: of the paths and objects; powers: [F] ep.ReceivedPower of these, in W
+    """
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power),
                         _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)

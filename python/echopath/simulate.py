@@ -117,7 +117,8 @@ class Frame:
     @cached_property
     def _mean_powers(self):
         """MeanPowers of the families, of each partition and, as the one part of _WHOLE, of all paths."""
-        groups = {partition: (part_of_path, len(self.parts[partition])) for partition, part_of_path in self.part_of_path.items()}
+        groups = {partition: (part_of_path, len(self.parts[partition]))
+                  for partition, part_of_path in self.part_of_path.items()}
         groups[_WHOLE] = np.zeros(self.paths.num_paths, np.uint32), 1
         return mean_powers(self.paths, self._families, groups)
 

@@ -64,5 +64,5 @@ def _geometry_of(scene):
 for _function, _of_core in ((trace, _core.trace), (rcs, _core.rcs)):
     _function.__doc__ = (_of_core.__doc__ + "\nWarns (TessellationWarning) of curved meshes that err by more than 0.3 dB, "
                          "with the edge length in m that would do.")
-trace.__doc__ += (" Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, or not every "
-                  "sequence of mirrors was tried.")
+trace.__doc__ += (" Warns (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, or not "
+                  "every sequence of mirrors was tried.")

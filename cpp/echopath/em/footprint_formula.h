@@ -68,10 +68,10 @@ struct BetweenRays {
   Real edges;   // waves of the edge of the surface, if that cuts the cell
 };
 
-// A ray of a coarse lattice misses a point of stationary phase by up to kReach cells. The filter then removes the wave of that point
-// with all others, although the surface sends it: the integral of e^{jhx^2/2}, sqrt(2 pi/|h|) along each axis of h. Where the phase
-// is not stationary along an axis, only a cut across it leaves a wave, of at most 2/|g|. Nothing is left out where phases hardly turn
-// across the cell, because such rays add up to what there is.
+// A ray of a coarse lattice misses a point of stationary phase by up to kReach cells. The filter then removes the wave of
+// that point with all others, although the surface sends it: the integral of e^{jhx^2/2}, sqrt(2 pi/|h|) along each axis of
+// h. Where the phase is not stationary along an axis, only a cut across it leaves a wave, of at most 2/|g|. Nothing is left
+// out where phases hardly turn across the cell, because such rays add up to what there is.
 template <class Math, class Real>
 ECHOPATH_INLINE BetweenRays<Real> between_rays_of(const FootprintPhaseOf<Real>& phase) {
   constexpr double kReach = 0.75, kTurn = 6.283185307179586, kTiny = 1e-300;
@@ -82,7 +82,8 @@ ECHOPATH_INLINE BetweenRays<Real> between_rays_of(const FootprintPhaseOf<Real>& 
   const Real all = phase.g1 * phase.g1 + phase.g2 * phase.g2, one = all * 0.0 + 1.0;
   const Real turned = half * (phase.g1 * phase.g1 - phase.g2 * phase.g2) + 2.0 * phase.h12 * phase.g1 * phase.g2;
   const Real along = 0.5 * (all + turned / (root + kTiny)), across = all - along;
-  const auto is_at_first = along <= (kReach * kReach) * first * first, is_at_second = across <= (kReach * kReach) * second * second;
+  const auto is_at_first = along <= (kReach * kReach) * first * first,
+             is_at_second = across <= (kReach * kReach) * second * second;
   const Real of_first = Math::smaller(one, kTurn / first), of_second = Math::smaller(one, kTurn / second);
   const Real slope = is_at_first ? across : is_at_second ? along : all;
   const Real of_edge = Math::smaller(one, 4.0 / (Math::magnitude(slope) + kTiny));

@@ -111,8 +111,8 @@ ECHOPATH_INLINE Real shadow_taper(const CellWaves<Real>& at) {
   return 4.0 * at.cos_in * at.cos_out / (sum * sum);
 }
 
-// Whether a cell is wider than the facets of its mesh, so that its own one tells nothing of the rest; by its narrower side, since
-// toward grazing the other one says how the ray lies, not how far apart rays are. product: CellShape::product.
+// Whether a cell is wider than the facets of its mesh, so that its own one tells nothing of the rest; by its narrower side,
+// since toward grazing the other one says how the ray lies, not how far apart rays are. product: CellShape::product.
 template <class Math, class Real>
 ECHOPATH_INLINE auto is_coarse_cell(const Real* product, double facet_area) {
   const Real half = 0.5 * (product[0] - product[2]);
@@ -122,7 +122,8 @@ ECHOPATH_INLINE auto is_coarse_cell(const Real* product, double facet_area) {
 
 // BetweenRays of a cell, of which a coarse one may hold all. is_coarse: a truth value, or a mask of lanes.
 template <class Math, class Shape, class Mask, class Real>
-ECHOPATH_INLINE Real between_rays_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at, const CellFilter& filter) {
+ECHOPATH_INLINE Real between_rays_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at,
+                                          const CellFilter& filter) {
   const BetweenRays<Real> found = between_rays_of<Math>(cell_phase(cell, at, filter));
   const Real zero = found.points * 0.0;
   if (filter.view.weight == CellWeight::kPoints) return is_coarse ? zero + 1.0 : found.points;

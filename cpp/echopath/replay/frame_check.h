@@ -50,8 +50,8 @@ class FrameCheck {
   void pose(size_t first, size_t count, Job* job = nullptr);
   // Thread-safe, as all that follows.
   Echo at_trace(const LocalPath& path, Scratch& scratch) const;
-  // Adds what becomes of a path at the posed times that it needs, whose echo at the trace time is `traced`; out: an echo for each
-  // of them.
+  // Adds what becomes of a path at the posed times that it needs, whose echo at the trace time is `traced`; out: an echo for
+  // each of them.
   void check(const LocalPath& path, const Echo& traced, int num_times, Scratch& scratch, PathFinding& found,
              std::vector<Echo>& out) const;
 

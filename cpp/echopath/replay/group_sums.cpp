@@ -172,7 +172,8 @@ class Block {
 
 }  // namespace
 
-std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings, Job* job) {
+std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
+                                               Job* job) {
   std::vector<Sums> sums;
   for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());

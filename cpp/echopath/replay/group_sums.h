@@ -27,9 +27,10 @@ struct Sorting {
   size_t num_groups = 0;
 };
 
-// [sorting, group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths over it in
-// its group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A job advances by
-// paths. Raises Cancelled.
-std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings, Job* job);
+// [sorting, group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths
+// over it in its group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A
+// job advances by paths. Raises Cancelled.
+std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
+                                               Job* job);
 
 }  // namespace echopath

@@ -36,8 +36,8 @@ class Localiser {
   bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
   // Each of its triangles is a plane in the mesh's frame for good.
   bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
-  // m^2, mean of the triangles of a mesh, with the scale that it has at the trace and the shape that it has at rest; kNoFacets where
-  // the mesh is smooth or a plane.
+  // m^2, mean of the triangles of a mesh, with the scale that it has at the trace and the shape that it has at rest;
+  // kNoFacets where the mesh is smooth or a plane.
   double facet_area(uint32_t mesh_id) const { return facet_area_[mesh_id]; }
   // Normals of its corners; false where facets are meant or the crease guard refuses this one.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
@@ -63,7 +63,7 @@ class Localiser {
   Instant trace_instant_;
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;
-  std::vector<double> facet_area_;     // by mesh ID
+  std::vector<double> facet_area_;  // by mesh ID
 };
 
 }  // namespace echopath

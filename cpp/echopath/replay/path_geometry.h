@@ -37,7 +37,7 @@ struct LaunchCell {
   bool is_curved = false;
   double turn[3] = {0.0, 0.0, 0.0};
   double ray_density = 0.0;
-  double facet_area = 0.0;          // m^2, Localiser::facet_area of its mesh
+  double facet_area = 0.0;  // m^2, Localiser::facet_area of its mesh
 };
 
 // What of a path does not depend on time.

@@ -62,7 +62,8 @@ double counting_error(const PowerEvidence& evidence) {
 // By chance. A power that is made of few hits is as uneven as their number: 95 % limits of a Poisson count, by its root.
 Reach chance_reach(const PowerEvidence& evidence, double power, double standard_error) {
   if (evidence.num_batches > 1) {
-    const double reach = std::max(standard_error * student_t95(evidence.num_batches - 1), kNormal * counting_error(evidence));
+    const double reach =
+        std::max(standard_error * student_t95(evidence.num_batches - 1), kNormal * counting_error(evidence));
     return {reach, reach};
   }
   if (power <= 0.0) return {kNormal * standard_error, 0.0};

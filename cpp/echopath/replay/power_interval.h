@@ -7,10 +7,10 @@
 
 namespace echopath {
 
-// How launch cells are looked at: as launched, a little finer, those of half as many rays, none at all (no filter), and what they
-// may hold between rays.
-inline constexpr CellView kCellViews[] = {{1.0}, {0.8}, {1.4142135623730951}, {0.0}, {1.0, CellWeight::kPoints},
-                                          {1.0, CellWeight::kEdges}};
+// How launch cells are looked at: as launched, a little finer, those of half as many rays, none at all (no filter), and what
+// they may hold between rays.
+inline constexpr CellView kCellViews[] = {
+    {1.0}, {0.8}, {1.4142135623730951}, {0.0}, {1.0, CellWeight::kPoints}, {1.0, CellWeight::kEdges}};
 enum CellViewIndex { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kPoints, kEdges, kNumCellViews };
 
 // What a set of paths is known by, of all rays.
@@ -34,20 +34,21 @@ struct PowerInterval {
   double chance = 0.0;           // W, standard error of the power; of one batch estimated from the record
 };
 
-// Power that launch cells may hold between rays, W: |a|^2 summed as in random phase, so that a few cells beside a point count
-// several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge. Each batch has cells of its own,
-// all of which hold the same.
+// Power that launch cells may hold between rays, W: |a|^2 summed as in random phase, so that a few cells beside a point
+// count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge. Each batch has
+// cells of its own, all of which hold the same.
 double power_between_rays(const PowerEvidence& evidence);
 
 // Bias: the footprint filter of cells sqrt(2) wider says how fast the coherent field F goes with the cells. With d its change
 // relative to |F|, the field may be off by kOfHalving d |F| where d is small; where it is not, cells are far too wide, and what
-// finer ones will find grows to several times the change (kOfHalvingMore). From there on, in full where d reaches kGone, the field
-// may also be as large as power_between_rays allows, times kOfBetween. Cells a little finer tell where the filter takes edges for a
-// surface without end; what is below kAliases there is the lattice showing through.
-// Chance: Student's t of the batches, and no less than half a hit in each of them, which errs by itself. Of one batch: directions
-// drawn at random give the variance sum p^2; a lattice errs along the outline of what it meets alone, so that its variance is
-// kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for fields: less so where the filter takes much away, as fields of
-// curved surfaces fade toward their outline. The factors are fitted to the coverage of `echopath bench crowd`.
+// finer ones will find grows to several times the change (kOfHalvingMore). From there on, in full where d reaches kGone, the
+// field may also be as large as power_between_rays allows, times kOfBetween. Cells a little finer tell where the filter
+// takes edges for a surface without end; what is below kAliases there is the lattice showing through.
+// Chance: Student's t of the batches, and no less than half a hit in each of them, which errs by itself. Of one batch:
+// directions drawn at random give the variance sum p^2; a lattice errs along the outline of what it meets alone, so that its
+// variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for fields: less so where the filter takes much
+// away, as fields of curved surfaces fade toward their outline. The factors are fitted to the coverage of
+// `echopath bench crowd`.
 PowerInterval power_interval(const PowerEvidence& evidence);
 
 // Student's t: two-sided 95 % quantile.

@@ -128,7 +128,8 @@ ReceivedPower with_interval(const GroupSums& sums) {
 
 void check(const Sorting& sorting, const Paths& paths) {
   const std::span<const uint32_t> group = sorting.group_of_path;
-  require(group.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path", group.size());
+  require(group.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path",
+          group.size());
   const auto last = std::max_element(group.begin(), group.end());
   require(last == group.end() || *last < sorting.num_groups, "group_of_path", "must lie below the number of groups",
           last == group.end() ? 0 : *last);

@@ -68,11 +68,12 @@ struct Channel {
 // Cancelled.
 ReceivedPower received_power(const Paths& paths, Job* job = nullptr, Channel channel = {});
 
-// Of groups of paths, [sorting, group], in one pass over the record: that of each group is, to the last bit, received_power of its
-// paths alone. Raises invalid_argument for other sizes or a group that is not there; Cancelled.
-std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std::span<const Sorting> sortings, Job* job = nullptr,
-                                                        Channel channel = {});
+// Of groups of paths, [sorting, group], in one pass over the record: that of each group is, to the last bit, received_power
+// of its paths alone. Raises invalid_argument for other sizes or a group that is not there; Cancelled.
+std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std::span<const Sorting> sortings,
+                                                        Job* job = nullptr, Channel channel = {});
 // Of one sorting, [group].
-std::vector<ReceivedPower> received_powers(const Paths& paths, const Sorting& sorting, Job* job = nullptr, Channel channel = {});
+std::vector<ReceivedPower> received_powers(const Paths& paths, const Sorting& sorting, Job* job = nullptr,
+                                           Channel channel = {});
 
 }  // namespace echopath

@@ -56,8 +56,8 @@ class Replayer {
   // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
-  // The same amplitudes [view, channel, P] with the weights of launch cells that are looked at in other ways: wider ones are those
-  // of fewer rays, sides of 0 switch the footprint filter off.
+  // The same amplitudes [view, channel, P] with the weights of launch cells that are looked at in other ways: wider ones are
+  // those of fewer rays, sides of 0 switch the footprint filter off.
   void evaluate(std::span<const int64_t> paths, double time, std::span<const CellView> cells, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 

@@ -13,8 +13,8 @@ namespace echopath {
 // figure, no image).
 double noise_power(const Radar& radar);
 
-// Noise power in the range-Doppler cell that all samples of a frame make with even weights, W, against the received power of an
-// echo there: that of a sample over their number, twice as much for real samples, whose maps hold half of their power.
+// Noise power in the range-Doppler cell that all samples of a frame make with even weights, W, against the received power of
+// an echo there: that of a sample over their number, twice as much for real samples, whose maps hold half of their power.
 double noise_power_in_cell(const Radar& radar);
 
 // Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise),

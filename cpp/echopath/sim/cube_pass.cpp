@@ -126,7 +126,8 @@ size_t CubePass::cube_bytes() const {
   return channels * samples * sizeof(std::complex<double>);
 }
 
-void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job, const RecordVisitor& visit) {
+void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job,
+                     const RecordVisitor& visit) {
   const KeyframeSettings& keyframes = settings.keyframes;
   const int count = num_keyframes(paths, radar, keyframes, settings.replay.specular, job);
   const std::vector<Stretch> stretches = stretches_of(radar, paths.frame.start_time, count);

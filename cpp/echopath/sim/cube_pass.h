@@ -50,9 +50,11 @@ class CubePass {
   std::vector<Synthesizer> synthesizers_;  // by way
 };
 
-// The records of a frame that needs several (settings.keyframes), stretch by stretch, each with the radar of its stretch and the
-// settings of a pass over it alone, whose signal belongs to the chirps from first_chirp on.
-using RecordVisitor = std::function<void(const Paths& record, const Radar& radar, const CubeSettings& settings, int first_chirp)>;
-void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job, const RecordVisitor& visit);
+// The records of a frame that needs several (settings.keyframes), stretch by stretch, each with the radar of its stretch and
+// the settings of a pass over it alone, whose signal belongs to the chirps from first_chirp on.
+using RecordVisitor =
+    std::function<void(const Paths& record, const Radar& radar, const CubeSettings& settings, int first_chirp)>;
+void for_each_record(const Paths& paths, const Radar& radar, const CubeSettings& settings, Job* job,
+                     const RecordVisitor& visit);
 
 }  // namespace echopath

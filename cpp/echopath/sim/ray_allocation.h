@@ -41,9 +41,9 @@ inline constexpr double kMostGrowth = 32.0;
 // so the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
-// A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a pilot of
-// an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where there is one stratum only, where
-// settings.shares says how, or where rays are few. Raises as `trace`.
+// A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a
+// pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where there is
+// one stratum only, where settings.shares says how, or where rays are few. Raises as `trace`.
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 

@@ -7,8 +7,8 @@ namespace echopath {
 
 using PlanePoints = std::vector<Eigen::Vector2d>;
 
-// Corners in order around it, counterclockwise (Andrew 1979). Points that are fewer than three, or the same, come back as they are,
-// each once.
+// Corners in order around it, counterclockwise (Andrew 1979). Points that are fewer than three, or the same, come back as
+// they are, each once.
 PlanePoints convex_hull(PlanePoints points);
 
 }  // namespace echopath

@@ -130,7 +130,8 @@ void extend_along_arc(const Vec3& from, const Vec3& to, const Vec3& up, Range& h
 }
 
 // Along the direction `along` of the plane; holds the hull between the corners.
-Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull, const std::vector<Vec3>& corners) {
+Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull,
+                    const std::vector<Vec3>& corners) {
   const Eigen::Vector2d aside(-along[1], along[0]);
   Range offsets{aside.dot(hull.front()), aside.dot(hull.front())};
   for (const Eigen::Vector2d& corner : hull) offsets.extend(aside.dot(corner));

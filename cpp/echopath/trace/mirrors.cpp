@@ -69,7 +69,8 @@ bool fills_outline(const Scene& scene, const EmbreeScene& geometry, const Mirror
 std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& corners) {
   const Vec3 first = mirror.normal.unitOrthogonal(), second = mirror.normal.cross(first);
   PlanePoints points;
-  for (const Vec3& corner : corners) points.emplace_back(first.dot(corner - mirror.point), second.dot(corner - mirror.point));
+  for (const Vec3& corner : corners)
+    points.emplace_back(first.dot(corner - mirror.point), second.dot(corner - mirror.point));
   std::vector<Vec3> outline;
   for (const Eigen::Vector2d& corner : convex_hull(std::move(points))) {
     outline.push_back(mirror.point + corner[0] * first + corner[1] * second);

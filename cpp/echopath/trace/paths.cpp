@@ -87,12 +87,14 @@ void Paths::validate_path(size_t path) const {
   require(count >= 1 && count <= 64, "num_bounces", "must lie in [1, 64]", count);
   require(offsets[path] >= 0 && offsets[path] <= num_hits() - count, "offsets", "must lead to hits", offsets[path]);
   require(count == 64 || diffuse[path] >> count == 0, "diffuse", "must have no bits beyond num_bounces", diffuse[path]);
-  require(batch[path] == kNoBatch || batch[path] < frame.num_batches, "batch", "must be one of the frame's", int{batch[path]});
+  require(batch[path] == kNoBatch || batch[path] < frame.num_batches, "batch", "must be one of the frame's",
+          int{batch[path]});
   require(stratum[path] == kNoStratum || stratum[path] < frame.strata.size(), "stratum", "must be one of the frame's",
           int{stratum[path]});
   require(is_finite(weight[path]), "weight", "must be finite", weight[path]);
   if (!curved_cell.empty()) {
-    const bool are_finite = std::all_of(curved_cell[path].begin(), curved_cell[path].end(), [](float x) { return std::isfinite(x); });
+    const bool are_finite =
+        std::all_of(curved_cell[path].begin(), curved_cell[path].end(), [](float x) { return std::isfinite(x); });
     require(are_finite, "curved_cell", "must be finite, path", path);
   }
   if (!jones.empty()) {

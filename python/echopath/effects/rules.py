@@ -48,7 +48,8 @@ class Case:
     @cached_property
     def model(self) -> str:
         """Of the polarisation: "scalar" or "jones"."""
-        return chosen_model(self.settings.polarization, self.scene, self.wavelength, antennas_of(self.radar), argument="polarization")
+        return chosen_model(self.settings.polarization, self.scene, self.wavelength, antennas_of(self.radar),
+                            argument="polarization")
 
     @cached_property
     def mirrors(self) -> list:

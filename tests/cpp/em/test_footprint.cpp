@@ -93,8 +93,8 @@ double integral_over(const FootprintPhase& phase, double from, double to) {
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {
       const double x = from + (i + 0.5) * step, y = from + (j + 0.5) * step;
-      sum += std::polar(1.0, -(phase.g1 * x + phase.g2 * y +
-                               0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y)));
+      sum += std::polar(
+          1.0, -(phase.g1 * x + phase.g2 * y + 0.5 * (phase.h11 * x * x + 2 * phase.h12 * x * y + phase.h22 * y * y)));
     }
   }
   return std::abs(sum) * step * step;
@@ -112,8 +112,8 @@ FootprintPhase turned(const FootprintPhase& phase, double angle) {
 double of_points(const FootprintPhase& phase) { return between_rays_of<ScalarMath>(phase).points; }
 double of_edges(const FootprintPhase& phase) { return between_rays_of<ScalarMath>(phase).edges; }
 
-// A point of reflection beside the middle of a cell, where a Gaussian about the middle sees nearly nothing of it: what it sends back
-// is that of all cells together, the ends of the integral apart.
+// A point of reflection beside the middle of a cell, where a Gaussian about the middle sees nearly nothing of it: what it
+// sends back is that of all cells together, the ends of the integral apart.
 TEST(Footprint, BetweenRaysIsAPointOfReflectionInTheCell) {
   const FootprintPhase bent{0.6 * 60.0, -0.5 * 50.0, 60.0, 0.0, -50.0};
   const double whole = integral_over(bent, -3.0, 3.0);

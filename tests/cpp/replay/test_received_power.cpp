@@ -238,7 +238,8 @@ TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
       EXPECT_EQ(powers[g].between_rays, alone.between_rays);
     }
   }
-  EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), Sorting{{}, 1}), std::invalid_argument);
+  EXPECT_THROW(received_powers(shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1), Sorting{{}, 1}),
+               std::invalid_argument);
 }
 
 // The sidelobe of a plate at 20 degrees is filtered away by 2048 rays, in all batches alike: its interval says so.

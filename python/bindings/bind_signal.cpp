@@ -78,8 +78,7 @@ Returns a new cube. Raises ValueError unless the cube has the shape that the rad
   m.def("noise_power", &noise_power, py::arg("radar"), "Noise power of one IF sample, W.");
   m.def("noise_power_in_cell", &noise_power_in_cell, py::arg("radar"),
         "Noise power of the range-Doppler cell that all samples of a frame make with even weights, W, against the received "
-        "power of "
-        "an echo there.");
+        "power of an echo there.");
   m.def("synthesize_echoes", &synthesize_echoes, py::arg("waveform"), py::arg("delays"), py::arg("amplitudes"),
         py::kw_only(), py::arg("method") = "auto", py::arg("tolerance") = 1e-7, py::arg("num_slots") = 1,
         R"(The IF signal of echoes given by their delays and amplitudes, for one channel.

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from . import _core
+from .names import first_names
 
 COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
 CO_POLARISED = 0.99    # cosine between the polarisations of two antennas that count as equal
@@ -33,11 +33,11 @@ def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> 
     coherent = [mesh.name for mesh in scene.meshes
                 if not mesh.material.mirror and coherent_share(mesh.material, wavelength) >= COHERENT_SHARE]
     if coherent:
-        return "coherent surfaces that are no flagged mirrors: " + _named(coherent)
+        return "coherent surfaces that are no flagged mirrors: " + first_names(coherent)
     turning = [mesh.name for mesh in scene.meshes
                if mesh.material.cross_polarization > 0.0 and coherent_share(mesh.material, wavelength) < 1.0]
     if turning:
-        return "rough surfaces that turn the polarisation: " + _named(turning)
+        return "rough surfaces that turn the polarisation: " + first_names(turning)
     return "antennas of other polarisation" if are_crossed(antennas) else ""
 
 
@@ -69,7 +69,3 @@ def _polarization_of(antenna) -> np.ndarray:
     real, imaginary = antenna.orientation[0], antenna.orientation[1:]
     cross = np.cross(imaginary, antenna.polarization)
     return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
-
-
-def _named(names: list, most: int = 3) -> str:
-    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")

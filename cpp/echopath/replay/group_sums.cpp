@@ -81,7 +81,8 @@ class Sums {
       sums.field[view][batch] += field;
       sums.coherent_power[view] += std::norm(field);
     }
-    if (has_cell) sums.edge_squares += std::norm(arriving[kEdges * stride]) * std::norm(arriving[kEdges * stride]);
+    const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
+    sums.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
     if (power > 0.0) {
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from functools import cached_property
 
 from .. import _core
+from ..names import first_names
 from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
-
-MAX_NAMES = 3  # of meshes in a reason
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,6 +126,4 @@ def meshes_or(meshes, otherwise: str):
 
 def named(meshes) -> str:
     """Count of meshes and the first of their names."""
-    names = list(dict.fromkeys(mesh.name for mesh in meshes))
-    shown = ", ".join(names[:MAX_NAMES]) + (", ..." if len(names) > MAX_NAMES else "")
-    return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {shown}"
+    return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {first_names(mesh.name for mesh in meshes)}"

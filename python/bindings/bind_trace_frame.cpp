@@ -16,7 +16,7 @@ void bind_trace_frame(py::module_& m) {
   py::class_<Stratum>(m, "Stratum", "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.")
       .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density,
                        std::string name, const py::object& across, double half_azimuth, double low, double high,
-                       int object, int num_mirrors) {
+                       int object, int num_mirrors, int focus_of) {
              Stratum made;
              made.axis = as_vec3(axis, "axis");
              made.versine = versine;
@@ -26,6 +26,7 @@ void bind_trace_frame(py::module_& m) {
              made.high = high;
              made.object = object;
              made.num_mirrors = num_mirrors;
+             made.focus_of = focus_of;
              made.num_rays = num_rays;
              made.ray_density = ray_density;
              made.name = std::move(name);
@@ -34,7 +35,7 @@ void bind_trace_frame(py::module_& m) {
            py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"),
            py::arg("name"), py::arg("across") = py::make_tuple(0.0, 0.0, 0.0), py::arg("half_azimuth") = 0.0,
            py::arg("low") = 0.0, py::arg("high") = 0.0, py::arg("object") = -1,
-           py::arg("num_mirrors") = 0)
+           py::arg("num_mirrors") = 0, py::arg("focus_of") = -1)
       .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
       .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle of a cone; 2 is the whole sphere")
       .def_property_readonly("across", [](const Stratum& self) { return to_numpy(self.across); },
@@ -46,6 +47,8 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_rays", &Stratum::num_rays, "launched in it")
       .def_readonly("name", &Stratum::name, "what it aims at")
       .def_readonly("num_mirrors", &Stratum::num_mirrors, "over which it aims there")
+      .def_readonly("focus_of", &Stratum::focus_of,
+                    "index of the stratum of which it takes over a part, with rays that lie closer; -1: none")
       .def_readonly("object", &Stratum::object, "index of the scene's node that it aims at; -1: none")
       .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
       .def("__repr__", [](const Stratum& self) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
@@ -50,12 +51,46 @@ struct OpenHit {
   std::complex<double> field = 0.0;
 };
 
+// Of which kind a coherent path is: the mesh that radiates and whether other surfaces come before it.
+uint64_t kind_of(const Paths& paths, int64_t path) {
+  constexpr uint64_t kMirrorsAlone = ~uint64_t{0};
+  const auto p = static_cast<size_t>(path);
+  const Hit* hits = paths.hits_of(path);
+  const bool is_reversed = (paths.flags[p] & kReversedPath) != 0;
+  uint64_t radiating = 0, count = 0;
+  for (int k = 0; k < paths.num_bounces[p]; ++k) {
+    const uint32_t mesh = hits[is_reversed ? paths.num_bounces[p] - 1 - k : k].mesh_id;
+    if (paths.scene->node_of(mesh).material->mirror) continue;
+    radiating = mesh;
+    ++count;
+  }
+  return count == 0 ? kMirrorsAlone : radiating << 1 | (count > 1);
+}
+
+// The kinds of a group that there are so far. Paths that follow each other are mostly of one kind.
+class KnownKinds {
+ public:
+  size_t index_of(uint64_t kind, std::vector<CoherentKind>& kinds) {
+    if (!kinds.empty() && kind == last_) return last_index_;
+    const auto [entry, is_new] = index_.try_emplace(kind, kinds.size());
+    if (is_new) kinds.emplace_back();
+    last_ = kind;
+    last_index_ = entry->second;
+    return last_index_;
+  }
+
+ private:
+  std::unordered_map<uint64_t, size_t> index_;
+  uint64_t last_ = 0;
+  size_t last_index_ = 0;
+};
+
 class Sums {
  public:
-  Sums(const Paths& paths, size_t num_groups) : paths_(paths), open_(num_groups), groups_(num_groups) {
+  Sums(const Paths& paths, size_t num_groups) : paths_(paths), open_(num_groups), kinds_(num_groups), groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.num_batches) + 1;
     for (GroupSums& group : groups_) {
-      for (auto& field : group.field) field.resize(num_entries);
+      group.field.resize(num_entries);
       group.power.resize(num_entries);
     }
   }
@@ -71,18 +106,19 @@ class Sums {
   }
 
   // amplitudes: one for each of kCellViews, `stride` apart.
-  void add_coherent(size_t group, int64_t path, const std::complex<double>* arriving, size_t stride) {
+  void add_coherent(size_t group, int64_t path, uint64_t kind, const std::complex<double>* arriving, size_t stride) {
     GroupSums& sums = groups_[group];
-    const size_t batch = batch_of(path);
+    sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
+    CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
     const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // else nothing is between rays
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
       const std::complex<double> field = arriving[view * stride];
-      sums.field[view][batch] += field;
-      sums.coherent_power[view] += std::norm(field);
+      of_kind.field[view] += field;
+      of_kind.power[view] += std::norm(field);
     }
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
-    sums.edge_squares += edge * edge;
+    of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
     if (power > 0.0) {
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
@@ -118,6 +154,7 @@ class Sums {
 
   const Paths& paths_;
   std::vector<OpenHit> open_;
+  std::vector<KnownKinds> kinds_;  // by group
   std::vector<GroupSums> groups_;
 };
 
@@ -130,9 +167,11 @@ class Block {
   void evaluate(int64_t begin, int64_t end) {
     diffuse_.clear();
     coherent_.clear();
+    kinds_.clear();
     for (int64_t path = begin; path < end; ++path) {
       (paths_.diffuse[static_cast<size_t>(path)] == 0 ? coherent_ : diffuse_).push_back(path);
     }
+    for (const int64_t path : coherent_) kinds_.push_back(kind_of(paths_, path));
     replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
     arrive(diffuse_.size(), 1, diffuse_fields_);
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
@@ -145,7 +184,7 @@ class Block {
     }
     for (size_t i = 0; i < coherent_.size(); ++i) {
       const uint32_t group = group_of_path[static_cast<size_t>(coherent_[i])];
-      sums.add_coherent(group, coherent_[i], coherent_fields_.data() + i, coherent_.size());
+      sums.add_coherent(group, coherent_[i], kinds_[i], coherent_fields_.data() + i, coherent_.size());
     }
   }
 
@@ -167,6 +206,7 @@ class Block {
   const Replayer replayer_;
   const double turns_per_metre_;
   std::vector<int64_t> diffuse_, coherent_;
+  std::vector<uint64_t> kinds_;  // of the coherent ones
   std::vector<double> lengths_;
   std::vector<std::complex<double>> diffuse_fields_, coherent_fields_;
 };

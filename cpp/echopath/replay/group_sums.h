@@ -11,10 +11,9 @@ namespace echopath {
 
 struct GroupSums {
   // [batches + 1] each; the last entry is of the paths that belong to no batch.
-  std::vector<std::complex<double>> field[kNumCellViews];  // sqrt(W), coherent paths as they arrive
+  std::vector<std::complex<double>> field;                 // sqrt(W), coherent paths as they arrive
   std::vector<double> power;                               // W, of diffuse hits
-  double coherent_power[kNumCellViews] = {};               // W, sum of |a|^2 of coherent paths
-  double edge_squares = 0.0;                               // W^2, sum of |a|^4 of kEdges (PowerEvidence)
+  std::vector<CoherentKind> kinds;                         // in the order in which they come
   double steady_power = 0.0, steady_squares = 0.0;         // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
   double lattice_squares = 0.0, drawn_squares = 0.0;       // W^2, of the powers of diffuse hits (PowerEvidence)
   double strongest_hit = 0.0;                              // W, of a diffuse hit

@@ -26,16 +26,52 @@ struct FieldBias {
   double above = 0.0, below = 0.0;
 };
 
+// Of several kinds: the size of their sum, and the root sum of squares of their sizes.
+class SumOfChanges {
+ public:
+  void add(std::complex<double> change) {
+    sum_ += change;
+    squares_ += std::norm(change);
+  }
+  double size() const { return std::max(std::abs(sum_), std::sqrt(squares_)); }
+
+ private:
+  std::complex<double> sum_ = 0.0;
+  double squares_ = 0.0;
+};
+
 FieldBias field_bias(const PowerEvidence& evidence) {
-  const double size = std::abs(evidence.field[kAsLaunched]);
-  const auto change = [&](CellViewIndex view) { return std::abs(evidence.field[view] - evidence.field[kAsLaunched]); };
-  const double between = kOfBetween * std::sqrt(power_between_rays(evidence));
-  if (size == 0.0) return {between, 0.0};
-  const double halving = change(kHalfDensity) / size;
-  const double finer = kOfFiner * std::max(0.0, change(kFiner) / size - kAliases);
-  const double all_gone = squared(std::min(halving / kGone, 1.0)) * between;
-  const double above = halving * std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
-  return {std::hypot(size * (above + finer), all_gone), size * (kOfHalving * halving + finer)};
+  SumOfChanges above, below;
+  double finer = 0.0, gone = 0.0;  // W
+  for (const CoherentKind& kind : evidence.kinds) {
+    const double size = std::abs(kind.field[kAsLaunched]);
+    const double between = squared(kOfBetween) * power_between_rays(kind, evidence.num_batches);
+    if (size == 0.0) {
+      gone += between;
+      continue;
+    }
+    const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
+    const double halving = std::abs(change) / size;
+    above.add(std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving) * change);
+    below.add(kOfHalving * change);
+    const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
+    finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
+    gone += squared(squared(std::min(halving / kGone, 1.0))) * between;
+  }
+  const double of_finer = std::sqrt(finer);
+  return {std::hypot(above.size() + of_finer, std::sqrt(gone)), below.size() + of_finer};
+}
+
+std::complex<double> field_of(const PowerEvidence& evidence) {
+  std::complex<double> field = 0.0;
+  for (const CoherentKind& kind : evidence.kinds) field += kind.field[kAsLaunched];
+  return field;
+}
+
+double power_of(const PowerEvidence& evidence, CellViewIndex view) {
+  double power = 0.0;
+  for (const CoherentKind& kind : evidence.kinds) power += kind.power[view];
+  return power;
 }
 
 // Standard error of the power of one batch, W.
@@ -43,10 +79,10 @@ double chance_of_record(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   const double diffuse = evidence.drawn_squares + squared(kOutline) * evidence.lattice_squares / std::sqrt(num_hits);
   const double num_rays = effective_number(evidence.steady_power, evidence.steady_squares);
-  const double unfiltered = evidence.coherent_power[kUnfiltered];
-  const double hard = unfiltered > 0.0 ? std::min(evidence.coherent_power[kAsLaunched] / unfiltered, 1.0) : 0.0;
+  const double unfiltered = power_of(evidence, kUnfiltered);
+  const double hard = unfiltered > 0.0 ? std::min(power_of(evidence, kAsLaunched) / unfiltered, 1.0) : 0.0;
   const double field = kOutlineOfFields * std::sqrt(hard * evidence.steady_power / std::sqrt(num_rays));
-  return std::hypot(2.0 * std::abs(evidence.field[kAsLaunched]) * field + field * field, std::sqrt(diffuse));
+  return std::hypot(2.0 * std::abs(field_of(evidence)) * field + field * field, std::sqrt(diffuse));
 }
 
 struct Reach {
@@ -74,11 +110,11 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
 
 }  // namespace
 
-double power_between_rays(const PowerEvidence& evidence) {
-  const double num_batches = evidence.num_batches, edges = evidence.coherent_power[kEdges];
-  const double num_cells = effective_number(edges, evidence.edge_squares) / num_batches;  // of each batch
+double power_between_rays(const CoherentKind& kind, int num_batches) {
+  const double edges = kind.power[kEdges];
+  const double num_cells = effective_number(edges, kind.edge_squares) / num_batches;  // of each batch
   const double of_edges = edges * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
-  return num_batches * (evidence.coherent_power[kPoints] + of_edges);
+  return num_batches * (kind.power[kPoints] + of_edges);
 }
 
 double student_t95(int degrees_of_freedom) {

@@ -2,6 +2,7 @@
 // The 95 % interval of a received power: what the launch cells take away and what chance adds, together.
 #include <complex>
 #include <cstdint>
+#include <vector>
 
 #include "echopath/replay/cell_formula.h"
 
@@ -13,12 +14,18 @@ inline constexpr CellView kCellViews[] = {
     {1.0}, {0.8}, {1.4142135623730951}, {0.0}, {1.0, CellWeight::kPoints}, {1.0, CellWeight::kEdges}};
 enum CellViewIndex { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kPoints, kEdges, kNumCellViews };
 
+// Coherent paths that radiate from one mesh, either where the wave has come straight or over flagged mirrors, or where it has
+// bounced off other surfaces before. What is known of one kind tells nothing of another.
+struct CoherentKind {
+  std::complex<double> field[kNumCellViews];  // sqrt(W)
+  double power[kNumCellViews] = {};           // W, sum of |a|^2
+  double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+};
+
 // What a set of paths is known by, of all rays.
 struct PowerEvidence {
   double coherent = 0.0, diffuse = 0.0;       // W, the estimates
-  std::complex<double> field[kNumCellViews];  // sqrt(W), of the coherent paths
-  double coherent_power[kNumCellViews] = {};  // W, sum of |a|^2 over them
-  double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+  std::vector<CoherentKind> kinds;
   // Of the coherent paths that hardly change at half the density, such as those of flat surfaces up to their edges: W, sum of
   // their |a|^2, and W^2, of its squares.
   double steady_power = 0.0, steady_squares = 0.0;
@@ -37,13 +44,15 @@ struct PowerInterval {
 // Power that launch cells may hold between rays, W: |a|^2 summed as in random phase, so that a few cells beside a point
 // count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge. Each batch has
 // cells of its own, all of which hold the same.
-double power_between_rays(const PowerEvidence& evidence);
+double power_between_rays(const CoherentKind& kind, int num_batches);
 
-// Bias: the footprint filter of cells sqrt(2) wider says how fast the coherent field F goes with the cells. With d its change
-// relative to |F|, the field may be off by kOfHalving d |F| where d is small; where it is not, cells are far too wide, and what
-// finer ones will find grows to several times the change (kOfHalvingMore). From there on, in full where d reaches kGone, the
+// Bias: the footprint filter of cells sqrt(2) wider says how fast the coherent field F of a kind goes with the cells. With d its
+// change relative to |F|, the field may be off by kOfHalving d |F| where d is small; where it is not, cells are far too wide, and
+// what finer ones will find grows to several times the change (kOfHalvingMore). From there on, in full where d reaches kGone, the
 // field may also be as large as power_between_rays allows, times kOfBetween. Cells a little finer tell where the filter
-// takes edges for a surface without end; what is below kAliases there is the lattice showing through.
+// takes edges for a surface without end; what is below kAliases there is the lattice showing through. The changes of all kinds add
+// up as fields, but to no less than their root sum of squares, and what else they may hold adds up as power: kinds whose
+// echoes cancel are known as well as they are one by one.
 // Chance: Student's t of the batches, and no less than half a hit in each of them, which errs by itself. Of one batch:
 // directions drawn at random give the variance sum p^2; a lattice errs along the outline of what it meets alone, so that its
 // variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for fields: less so where the filter takes much

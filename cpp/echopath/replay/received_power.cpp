@@ -35,7 +35,7 @@ struct Estimates {
 
 Estimates scaled_up(const GroupSums& sums) {
   Estimates estimates;
-  const std::vector<std::complex<double>>& field = sums.field[kAsLaunched];
+  const std::vector<std::complex<double>>& field = sums.field;
   const size_t num_batches = field.size() - 1;
   const auto scale = static_cast<double>(num_batches);
   for (size_t b = 0; b < num_batches; ++b) {
@@ -94,11 +94,7 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
   PowerEvidence evidence;
   evidence.coherent = power.coherent;
   evidence.diffuse = power.diffuse;
-  for (size_t view = 0; view < kNumCellViews; ++view) {
-    evidence.field[view] = std::accumulate(sums.field[view].begin(), sums.field[view].end(), std::complex<double>());
-    evidence.coherent_power[view] = sums.coherent_power[view];
-  }
-  evidence.edge_squares = sums.edge_squares;
+  evidence.kinds = sums.kinds;
   evidence.steady_power = sums.steady_power;
   evidence.steady_squares = sums.steady_squares;
   evidence.lattice_squares = sums.lattice_squares;
@@ -116,10 +112,12 @@ ReceivedPower with_interval(const GroupSums& sums) {
   out.high = interval.high;
   out.bias = interval.bias;
   out.chance = interval.chance;
-  out.field = evidence.field[kAsLaunched];
-  out.half_density_field = evidence.field[kHalfDensity];
-  out.unfiltered = evidence.coherent_power[kUnfiltered];
-  out.between_rays = power_between_rays(evidence);
+  for (const CoherentKind& kind : evidence.kinds) {
+    out.field += kind.field[kAsLaunched];
+    out.half_density_field += kind.field[kHalfDensity];
+    out.unfiltered += kind.power[kUnfiltered];
+    out.between_rays += power_between_rays(kind, out.num_batches);
+  }
   out.num_coherent_paths = sums.num_coherent_paths;
   out.num_diffuse_hits = sums.num_diffuse_hits;
   if (out.diffuse > 0) out.strongest_share = sums.strongest_hit / out.diffuse;

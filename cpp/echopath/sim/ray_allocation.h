@@ -13,6 +13,7 @@ namespace echopath {
 struct RayNeed {
   std::string stratum;     // its name
   double rays = 0.0;
+  double power = 0.0;      // W, of the echo as far as it is known
   double weight = 1.0;     // of images, below that of objects
   bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need any number more
 };
@@ -41,9 +42,13 @@ inline constexpr double kMostGrowth = 32.0;
 // so the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
+// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints (find_glints.h) that the rays of
+// their stratum are too far apart for: up to half of the rays of each stratum. Raises Cancelled.
+LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
+
 // A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a
 // pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where there is
-// one stratum only, where settings.shares says how, or where rays are few. Raises as `trace`.
+// one stratum only, where settings.guide says how, or where rays are few. Raises as `trace`.
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 

@@ -30,7 +30,7 @@ Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings
     const double wanted = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
     launch.num_rays = std::clamp(std::llround(wanted), std::min<long long>(2 * launch.num_rays, target.max_rays),
                                  static_cast<long long>(target.max_rays));
-    launch.shares = share_out(needs, static_cast<double>(launch.num_rays));
+    launch.guide = guide_rays(paths, needs, launch.num_rays, job);
   }
 }
 

@@ -1,17 +1,21 @@
 #include "echopath/trace/launch.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <map>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/trace/aim.h"
 #include "echopath/trace/launch_directions.h"
+#include "echopath/trace/paths.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kFieldShare = 0.15;
+constexpr int kInField = INT_MAX;     // in the field of view, whose index is not known yet
 constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
 // Each batch has a shift of its own in each stratum.
@@ -35,6 +39,36 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sa
   plan.strata.push_back(std::move(stratum));
 }
 
+struct Focus {
+  Stratum cone;
+  double share;
+};
+
+// The foci that are asked for in strata that there are, as far as a record can tell them apart.
+std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<Aim>& aims, const Stratum& field) {
+  std::vector<Focus> foci;
+  std::map<std::string, int> index;
+  for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, static_cast<int>(k));
+  const size_t room = kNoStratum - aims.size() - 1;
+  for (const LaunchFocus& one : asked) {
+    const auto found = index.find(one.of);
+    const bool is_in_field = found == index.end() && one.of == field.name;
+    if ((found == index.end() && !is_in_field) || foci.size() == room) continue;
+    Focus focus{is_in_field ? field : aims[static_cast<size_t>(found->second)].stratum, one.share};
+    focus.cone.axis = one.axis;
+    focus.cone.versine = one.versine;
+    focus.cone.across = Vec3::Zero();
+    focus.cone.half_azimuth = focus.cone.low = focus.cone.high = 0.0;
+    focus.cone.focus_of = is_in_field ? kInField : found->second;
+    focus.cone.name = one.of + ", focus " + std::to_string(foci.size() + 1);
+    foci.push_back(std::move(focus));
+  }
+  for (Focus& focus : foci) {
+    if (focus.cone.focus_of == kInField) focus.cone.focus_of = static_cast<int>(aims.size() + foci.size());
+  }
+  return foci;
+}
+
 // Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
 std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
@@ -50,7 +84,9 @@ std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns
   return shares;
 }
 
-std::vector<double> named_shares(const std::vector<Aim>& aims, const Stratum& field, const RayShares& shares) {
+// Those of the strata in the order of the plan.
+std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector<Focus>& foci, const Stratum& field,
+                                 const RayShares& shares) {
   double mean = 0.0;
   for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
   const auto share_of = [&](const std::string& name) {
@@ -59,6 +95,7 @@ std::vector<double> named_shares(const std::vector<Aim>& aims, const Stratum& fi
   };
   std::vector<double> out;
   for (const Aim& aim : aims) out.push_back(share_of(aim.stratum.name));
+  for (const Focus& focus : foci) out.push_back(focus.share);
   out.push_back(share_of(field.name));
   return out;
 }
@@ -97,22 +134,27 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   Aims found = aim_at_objects(scene, geometry, mirrors,
                               {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(),
                                settings.sampler == Sampler::kLattice});
-  const std::vector<double> shares = settings.shares.empty()
-                                         ? default_shares(found.aims, found.any_unaimed || !mirrors.empty())
-                                         : named_shares(found.aims, field, settings.shares);
+  const bool is_guided = !settings.guide.shares.empty();
+  std::vector<Focus> foci;
+  if (is_guided) foci = foci_of(settings.guide.foci, found.aims, field);
+  const std::vector<double> shares = is_guided ? named_shares(found.aims, foci, field, settings.guide.shares)
+                                               : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
   const std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
   LaunchPlan plan;
   plan.seed = settings.seed;
   plan.batches = settings.batches;
   plan.num_unaimed = found.num_left_out;
   plan.first_ray.assign(1, 0);
-  plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, static_cast<int>(found.aims.size()));
+  const int field_of_view = static_cast<int>(found.aims.size() + foci.size());
+  plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, field_of_view);
   for (size_t k = 0; k < found.aims.size(); ++k) {
     add_stratum(plan, std::move(found.aims[k].stratum), rays[k], settings.sampler);
     if (plan.strata[k].num_rays == 0) continue;
     for (const MirrorSequence sequence : found.aims[k].sequences) plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
   }
+  for (size_t i = 0; i < foci.size(); ++i) add_stratum(plan, std::move(foci[i].cone), rays[found.aims.size() + i], settings.sampler);
   add_stratum(plan, field, rays.back(), settings.sampler);
+  plan.foci = LaunchFoci(plan.strata);
   return plan;
 }
 

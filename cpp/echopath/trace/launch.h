@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "echopath/trace/launch_focus.h"
 #include "echopath/trace/mirror_beams.h"
 #include "echopath/trace/packet.h"
 #include "echopath/trace/ray_owners.h"
@@ -19,6 +20,7 @@ namespace echopath {
 // Unless told otherwise, objects that move have half of the rays that are aimed at least; otherwise objects
 // and images over one mirror share alike, and images over two have a quarter of that. The field of view has 15 % where it owns
 // anything. A stratum that would get fewer than kFewestRays has none: what it would own belongs to the field of view.
+// A guide may set foci into the strata (launch_focus.h), which stand between the images and the field of view.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 
@@ -32,6 +34,7 @@ struct LaunchPlan {
   std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
   std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
   RayOwners owners;
+  LaunchFoci foci;
   uint64_t seed = 0;
   int batches = 1;
   int64_t num_unaimed = 0;  // objects and images that have no stratum of their own because there are too many of them
@@ -44,7 +47,8 @@ struct LaunchPlan {
   Eigen::Vector2d point_of(int stratum, int64_t ray) const;
   // Of `count` rays in a row.
   void place(int64_t begin, int count, Places& out) const;
-  bool is_field_of_view(int stratum) const { return stratum == owners.field_of_view(); }
+  // The field of view, or a focus in it.
+  bool is_field_of_view(int stratum) const { return foci.owner(stratum) == owners.field_of_view(); }
 };
 
 struct LaunchSettings {
@@ -56,7 +60,7 @@ struct LaunchSettings {
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
-  RayShares shares;  // empty: the rule above
+  LaunchGuide guide;  // without shares: the rule above, and no foci
 };
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

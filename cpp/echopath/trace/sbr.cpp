@@ -66,7 +66,7 @@ bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surfa
 
 // Whether the rays of a stratum count what first hits on a mesh over these mirrors send.
 bool RayShooter::is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const {
-  return plan_.owners.owner(mesh_id, sequence) == stratum;
+  return plan_.owners.owner(mesh_id, sequence) == plan_.foci.owner(stratum);
 }
 
 // Whether they are on their way to what they aim at when they meet this mesh.

@@ -55,7 +55,7 @@ void RayShooter::connect(const Ray& ray, const Surface& surface, Scratch& scratc
 void RayShooter::connect_coherent(const Ray& ray, const Surface& surface, const Scratch& scratch, PathBlock& block) const {
   // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
-  const double launch_area = tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
+  const double launch_area = ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
   const double sign = ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0;
   // Polarised, all coefficients are in the matrix.
   const std::complex<double> scalar =
@@ -133,13 +133,13 @@ double RayShooter::density_over(uint32_t mesh_id, const Leg& leg) const {
 }
 
 // The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here, the ray's own
-// way and the `others`.
+// way and the `others`, times what the ray stands for.
 double RayShooter::material_area(const Ray& ray, const Surface& surface, const std::vector<Leg>& others) const {
   double hits_per_area = ray.launch_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
   for (const Leg& leg : others) {
     hits_per_area += density_over(surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
   }
-  return 1.0 / hits_per_area;
+  return ray.stands_for / hits_per_area;
 }
 
 void RayShooter::connect_all_pairs(const Ray& ray, const Surface& surface, Scratch& scratch, PathBlock& block) const {

@@ -40,7 +40,7 @@ SurfaceResponse RayShooter::response_toward(const Surface& surface, const Vec3& 
 void RayShooter::begin_chain(const Ray& ray, const Surface& surface, double probability, Scratch& scratch) const {
   Chain& chain = scratch.chain;
   chain.begin(ray.depth - 1);
-  chain.density = probability / surface.area;
+  chain.density = probability * ray.stands_for / surface.area;
   if (ray.sequence == kOther) {
     chain.odds = 0.0;
     chain.back.emplace();

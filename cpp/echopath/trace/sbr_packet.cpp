@@ -126,7 +126,11 @@ void RayShooter::launch_packet(Packet& packet) const {
     const int stratum = places.strata[static_cast<size_t>(lanes.begin)];
     while (lanes.end < packet.count && places.strata[static_cast<size_t>(lanes.end)] == stratum) ++lanes.end;
     directions_.launch(stratum, places.x, places.y, lanes, packet.directions);
-    for (int lane = lanes.begin; lane < lanes.end; ++lane) packet.densities[lane] = plan_.density(stratum);
+    const double density = plan_.density(plan_.foci.owner(stratum));
+    const bool has_foci = plan_.foci.has_any(stratum);
+    for (int lane = lanes.begin; lane < lanes.end; ++lane) {
+      packet.densities[lane] = has_foci ? density / plan_.foci.rays_of_owner(stratum, packet.directions[lane]) : density;
+    }
   }
   packet.chance.draw(settings_.seed, packet.begin, packet.count, places.batches.data());
 }
@@ -145,7 +149,7 @@ void RayShooter::arrive_packet(Packet& packet, PathBlock& block) const {
     const uint32_t mesh = packet.hits.met[k].mesh_id;
     const bool passes_on = passes(packet.places.strata[k], mesh);
     packet.is_owned[k] = !passes_on && is_owner(packet.places.strata[k], mesh, kDirect);
-    packet.arrives[k] = packet.is_owned[k] || passes_on;
+    packet.arrives[k] = (packet.is_owned[k] || passes_on) && std::isfinite(packet.densities[lane]);  // else foci have it all
     if (!packet.arrives[k]) continue;
     ++block.statistics.num_hits;
     look_at_surface(packet, lane);
@@ -253,7 +257,9 @@ RayShooter::RayAtHit& RayShooter::start(const Packet& packet, int lane, Scratch&
   ray.stratum = packet.places.strata[k];
   ray.direction = ray.launch_direction = packet.directions[lane];
   ray.is_owned = packet.is_owned[k];
-  ray.leg_density = ray.launch_density = packet.densities[lane];
+  ray.launch_density = plan_.density(plan_.foci.owner(ray.stratum));
+  ray.leg_density = packet.densities[lane];
+  ray.stands_for = ray.launch_density / ray.leg_density;
   if (settings_.is_polarized) ray.polarized = launched_fields(ray.direction);
   if (has_smooth_) ray.rays = RayDifferential::from_point(ray.direction);
   surface.point = packet.hits[lane];

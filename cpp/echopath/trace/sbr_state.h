@@ -40,7 +40,8 @@ struct RayShooter::Ray {
   MirrorSequence sequence = kDirect;  // how the transmitter was left
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
   bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
-  double launch_density = 0.0;        // rays per sr of its stratum
+  double launch_density = 0.0;        // rays per sr of its stratum; in a focus, of the stratum that this is in
+  double stands_for = 1.0;            // so many of these rays (LaunchFoci)
   // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
   // probabilities included.
   double leg_length = 0.0, leg_density = 0.0;
@@ -85,7 +86,7 @@ struct RayShooter::Packet {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  LaneValues densities;  // rays per sr of their strata
+  LaneValues densities;  // rays per sr that they stand for
   PacketChance chance;
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;        // the hits, off their surfaces

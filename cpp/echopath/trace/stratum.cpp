@@ -16,7 +16,10 @@ bool Stratum::contains(const Vec3& direction) const {
 
 RayShares shares_of(const std::vector<Stratum>& strata) {
   RayShares shares;
-  for (const Stratum& stratum : strata) shares[stratum.name] = static_cast<double>(stratum.num_rays);
+  for (const Stratum& stratum : strata) {
+    const Stratum& owner = stratum.is_focus() ? strata[static_cast<size_t>(stratum.focus_of)] : stratum;
+    shares[owner.name] += static_cast<double>(stratum.num_rays);
+  }
   return shares;
 }
 

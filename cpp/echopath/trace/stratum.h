@@ -22,15 +22,17 @@ struct Stratum {
   std::string name;            // what it aims at
   int object = -1;             // node of the scene that it aims at (a child of the root); -1: none
   int num_mirrors = 0;         // over which it aims there
+  int focus_of = -1;           // index of the stratum in which it is a focus (launch_focus.h); -1: none
 
   bool is_strip() const { return half_azimuth > 0.0; }
+  bool is_focus() const { return focus_of >= 0; }
   double solid_angle() const;                  // sr
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
 // Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
 using RayShares = std::map<std::string, double>;
-// Those of a plan that was carried out.
+// Those of a plan that was carried out, with the rays of foci in the strata that they are in.
 RayShares shares_of(const std::vector<Stratum>& strata);
 
 }  // namespace echopath

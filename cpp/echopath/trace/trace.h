@@ -1,6 +1,7 @@
 #pragma once
 // The trace: scene and radar at mid-frame -> paths.
 #include "echopath/base/job.h"
+#include "echopath/trace/launch_focus.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {
@@ -18,7 +19,7 @@ struct TraceSettings {
   // rays.
   int batches = 1;
   Sampler sampler = Sampler::kLattice;  // of the launch directions
-  RayShares shares;  // of the strata; empty: the rule of launch.h
+  LaunchGuide guide;  // without shares: the rule of launch.h
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -70,7 +70,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
   launch.seed = settings.seed;
   launch.sampler = settings.sampler;
   launch.batches = settings.batches;
-  launch.shares = settings.shares;
+  launch.guide = settings.guide;
   launch.max_image_mirrors = std::min(kMaxLegMirrors, settings.max_bounces - 1);
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

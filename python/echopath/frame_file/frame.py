@@ -21,7 +21,7 @@ from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
 
 FORMAT = "echopath frame"
-SCHEMA_VERSION = 2  # grows when a reader of the old layout would misread the new one
+SCHEMA_VERSION = 3  # grows when a reader of the old layout would misread the new one
 CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace")
 

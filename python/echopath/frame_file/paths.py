@@ -92,6 +92,7 @@ def _write_frame(group, frame) -> None:
     write_array(group, "stratum_across", np.array([stratum.across for stratum in strata], np.float64).reshape(-1, 3))
     write_array(group, "stratum_num_mirrors", np.array([stratum.num_mirrors for stratum in strata], np.int64))
     write_array(group, "stratum_object", np.array([stratum.object for stratum in strata], np.int64))
+    write_array(group, "stratum_focus_of", np.array([stratum.focus_of for stratum in strata], np.int64))
     strips = [[stratum.half_azimuth, stratum.low, stratum.high] for stratum in strata]
     write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
 
@@ -105,11 +106,12 @@ def _read_frame(group):
     across = read_array(group, "stratum_across", np.float64, (len(names), 3))
     mirrors = read_array(group, "stratum_num_mirrors", np.int64, (len(names),))
     aimed_at = read_array(group, "stratum_object", np.int64, (len(names),))
+    focus_of = read_array(group, "stratum_focus_of", np.int64, (len(names),))
     strip = read_array(group, "stratum_strip", np.float64, (len(names), 3))
     strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
                          ray_density=float(ray_density[i]), name=names[i], across=across[i],
                          half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
-                         object=int(aimed_at[i]), num_mirrors=int(mirrors[i]))
+                         object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
     statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
     return ep.TraceFrame(

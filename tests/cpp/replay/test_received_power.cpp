@@ -267,5 +267,37 @@ TEST(ReceivedPower, OfNothingIsZero) {
   EXPECT_FALSE(power.resolved());
 }
 
+// An echo that is known to a thousandth says nothing of one whose rays are too far apart, for which the filter leaves nothing.
+TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
+  CoherentKind known, lost;
+  for (std::complex<double>& field : known.field) field = 1.0;
+  known.field[kHalfDensity] = 0.999;
+  known.power[kAsLaunched] = known.power[kUnfiltered] = 1e-3;
+  lost.field[kAsLaunched] = 1e-6;
+  lost.power[kPoints] = 0.01;
+  PowerEvidence evidence;
+  evidence.coherent = 1.0;
+  evidence.kinds = {known};
+  EXPECT_LT(power_interval(evidence).high, 1.02);
+  evidence.kinds = {known, lost};
+  EXPECT_GT(power_interval(evidence).high, 1.2);  // the field may be a tenth larger at least
+}
+
+// Two kinds that cancel, each known to a hundredth: the sum is known to a hundredth of either, not of itself.
+TEST(PowerInterval, KindsThatCancelAreKnownAsWellAsOneByOne) {
+  PowerEvidence evidence;
+  for (const double sign : {1.0, -0.95}) {
+    CoherentKind kind;
+    for (std::complex<double>& field : kind.field) field = sign;
+    kind.field[kHalfDensity] = 0.99 * sign;
+    kind.power[kPoints] = 1.0;
+    evidence.kinds.push_back(kind);
+  }
+  evidence.coherent = 0.05 * 0.05;
+  const double above = std::sqrt(power_interval(evidence).high) - 0.05;
+  EXPECT_GT(above, 1.2 * 0.01);
+  EXPECT_LT(above, 2.0 * 1.4 * 0.01 + 0.01);
+}
+
 }  // namespace
 }  // namespace echopath

@@ -1,0 +1,116 @@
+#include "echopath/scene/reflection_point.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/scene/smooth.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kOutside = 0.02;  // of an edge
+constexpr double kLost = 1.0;      // of an edge: from there no step comes back
+constexpr int kSteps = 8;
+constexpr double kArrived = 1e-4;  // of an edge
+
+// The length of the way about a point of the surface, in its tangent plane.
+struct Way {
+  std::array<Vec3, 2> tangents;
+  Eigen::Vector2d slope;
+  Eigen::Matrix2d bend;
+};
+
+Way way_over(const SmoothPoint& at, const Vec3& first, const Vec3& second) {
+  const Vec3 lines[2] = {first - at.position, second - at.position};
+  Way way{{at.normal.unitOrthogonal(), {}}, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  way.tangents[1] = at.normal.cross(way.tangents[0]);
+  for (const Vec3& line : lines) {
+    const double distance = line.norm();
+    const Vec3 direction = line / distance;
+    for (int i = 0; i < 2; ++i) {
+      const Vec3& along = way.tangents[static_cast<size_t>(i)];
+      way.slope[i] -= direction.dot(along);
+      for (int j = 0; j < 2; ++j) {
+        const Vec3& other = way.tangents[static_cast<size_t>(j)];
+        way.bend(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
+                          direction.dot(at.normal) * along.dot(at.curvature * other);
+      }
+    }
+  }
+  return way;
+}
+
+bool is_inside(double u, double v, double margin) { return u >= -margin && v >= -margin && u + v <= 1.0 + margin; }
+
+SmoothPoint point_at(const ReflectingTriangle& triangle, double u, double v) {
+  if (!triangle.is_flat()) return smooth_point(triangle.corners, triangle.normals, u, v);
+  const auto& [a, b, c] = triangle.corners;
+  return {a + u * (b - a) + v * (c - a), triangle.facet_normal, Mat3::Zero(), 1.0};
+}
+
+// By the image of one point: a plane has one such point.
+Eigen::Vector2d on_plane(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
+  const auto& [a, b, c] = triangle.corners;
+  const double here = triangle.facet_normal.dot(first - a), there = triangle.facet_normal.dot(second - a);
+  const Vec3 foot_of_first = first - here * triangle.facet_normal, foot_of_second = second - there * triangle.facet_normal;
+  const Vec3 point = foot_of_first + here / (here + there) * (foot_of_second - foot_of_first);
+  return edge_coordinates(b - a, c - a, triangle.facet_normal, point - a);
+}
+
+// By Newton's method from the middle.
+std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
+  const auto& [a, b, c] = triangle.corners;
+  Eigen::Vector2d place(1.0 / 3.0, 1.0 / 3.0);
+  for (int step = 0; step < kSteps; ++step) {
+    const SmoothPoint at = point_at(triangle, place[0], place[1]);
+    const Way way = way_over(at, first, second);
+    const Eigen::Vector2d away = -way.bend.inverse() * way.slope;
+    const Eigen::Vector2d moved = edge_coordinates(b - a, c - a, at.normal, away[0] * way.tangents[0] + away[1] * way.tangents[1]);
+    place += moved;
+    if (!is_inside(place[0], place[1], kLost)) return std::nullopt;
+    if (moved.cwiseAbs().maxCoeff() < kArrived) return place;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals) {
+  ReflectingTriangle out{corners, normals, (corners[0] + corners[1] + corners[2]) / 3.0,
+                         (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized()};
+  if (!is_smooth_facet(out.facet_normal, normals)) out.normals.fill(out.facet_normal);
+  for (size_t i = 0; i < 3; ++i) {
+    out.radius = std::max(out.radius, (corners[i] - out.centre).norm());
+    out.turn = std::max(out.turn, (out.normals[i] - out.facet_normal).norm());
+  }
+  constexpr double kPlane = 1e-6;
+  if (out.turn < kPlane) out.turn = 0.0;
+  return out;
+}
+
+std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
+  const Vec3 to_first = first - triangle.centre, to_second = second - triangle.centre;
+  const double side = triangle.facet_normal.dot(to_first);
+  if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
+  // The line that halves the angle turns by no more than half of these over the triangle.
+  const double near = to_first.norm(), far = to_second.norm(), reach = triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
+  const Vec3 half = (to_first / near + to_second / far).normalized();
+  const Vec3 normal = side > 0 ? triangle.facet_normal : Vec3(-triangle.facet_normal);
+  if ((half - normal).squaredNorm() > reach * reach) return std::nullopt;
+  const std::optional<Eigen::Vector2d> place =
+      triangle.is_flat() ? std::optional(on_plane(triangle, first, second)) : on_curve(triangle, first, second);
+  if (!place || !is_inside((*place)[0], (*place)[1], kOutside)) return std::nullopt;
+  const SmoothPoint at = point_at(triangle, (*place)[0], (*place)[1]);
+  const Way way = way_over(at, first, second);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(way.bend);
+  ReflectionPoint found{at.position, {}, {solver.eigenvalues()[0], solver.eigenvalues()[1]}};
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d axis = solver.eigenvectors().col(i);
+    found.axes[static_cast<size_t>(i)] = axis[0] * way.tangents[0] + axis[1] * way.tangents[1];
+  }
+  return found;
+}
+
+}  // namespace echopath

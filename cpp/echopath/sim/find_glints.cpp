@@ -1,0 +1,205 @@
+#include "echopath/sim/find_glints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/replay/replay.h"
+#include "echopath/scene/reflection_point.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kBeside = 1.5;     // cells: how far from a point of reflection a path may be that tells that it is seen
+constexpr double kSamePoint = 0.5;  // cells
+
+// Ways over the same mirrors to the same mesh and on, of the rays of one stratum and batch.
+struct WayKind {
+  uint16_t stratum;
+  uint32_t mesh;
+  std::vector<uint32_t> before, behind;  // meshes of the mirrors, from antenna to antenna
+
+  bool operator<(const WayKind& other) const {
+    return std::tie(stratum, mesh, before, behind) < std::tie(other.stratum, other.mesh, other.before, other.behind);
+  }
+};
+
+// Its paths, as the launch sees them.
+struct SeenPath {
+  Vec3 direction;
+  int64_t path;
+  double amplitude = 0.0;
+};
+
+struct Plane {
+  Vec3 point, normal;
+  Vec3 image(const Vec3& at) const { return at - 2.0 * normal.dot(at - point) * normal; }
+  Vec3 turned(const Vec3& direction) const { return direction - 2.0 * normal.dot(direction) * normal; }
+};
+
+// With one antenna each, where rays start and end.
+Radar radar_of_rays(const Radar& radar) {
+  Radar one = radar;
+  for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
+    const Vec3 mean = mean_position(*antennas, Transform::Identity());
+    antennas->resize(1);
+    antennas->front().position = mean;
+  }
+  return one;
+}
+
+class GlintSearch {
+ public:
+  GlintSearch(const Paths& paths, Job* job) : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
+    sort_paths();
+    weigh_paths(job);
+    std::vector<uint8_t> is_met(triangles_.size(), 0);
+    for (const auto& [kind, seen] : kinds_) is_met[kind.mesh] = 1;
+    parallel_for(std::ssize(is_met), [&](int64_t mesh) {
+      if (is_met[static_cast<size_t>(mesh)]) triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
+    });
+  }
+
+  std::vector<Glint> find() const {
+    std::vector<const Kinds::value_type*> kinds;
+    for (const auto& kind : kinds_) kinds.push_back(&kind);
+    std::vector<std::vector<Glint>> found(kinds.size());
+    parallel_for(std::ssize(kinds), [&](int64_t i) {
+      const auto k = static_cast<size_t>(i);
+      found[k] = glints_of(kinds[k]->first, kinds[k]->second);
+    });
+    std::vector<Glint> glints;
+    for (std::vector<Glint>& of_kind : found) std::move(of_kind.begin(), of_kind.end(), std::back_inserter(glints));
+    return glints;
+  }
+
+ private:
+  using Kinds = std::map<WayKind, std::vector<SeenPath>>;
+
+  void sort_paths() {
+    const Scene& scene = *paths_.scene;
+    for (int64_t path = 0; path < paths_.num_paths(); ++path) {
+      const auto p = static_cast<size_t>(path);
+      if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) continue;
+      const Hit* hits = paths_.hits_of(path);
+      WayKind kind{paths_.stratum[p], 0, {}, {}};
+      int surfaces = 0;
+      for (int k = 0; k < paths_.num_bounces[p]; ++k) {
+        const uint32_t mesh = hits[k].mesh_id;
+        if (!scene.node_of(mesh).material->mirror) {
+          kind.mesh = mesh;
+          ++surfaces;
+        } else {
+          (surfaces == 0 ? kind.before : kind.behind).push_back(mesh);
+        }
+      }
+      if (surfaces != 1) continue;
+      const auto [a, b, c] = pose_.world_triangle(hits[0].mesh_id, hits[0].triangle_id);
+      const Vec3 met = a + hits[0].u * (b - a) + hits[0].v * (c - a);
+      kinds_[std::move(kind)].push_back({(met - paths_.frame.transmitter).normalized(), path});
+    }
+  }
+
+  // Without a filter: what one launch cell sends.
+  void weigh_paths(Job* job) {
+    std::vector<int64_t> indices;
+    for (const auto& [kind, seen] : kinds_) {
+      for (const SeenPath& one : seen) indices.push_back(one.path);
+    }
+    if (indices.empty()) return;
+    const Radar radar = radar_of_rays(paths_.radar);
+    const CellView unfiltered{0.0};
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    Replayer(paths_, radar).evaluate(indices, paths_.frame.trace_time, {&unfiltered, 1}, lengths, amplitudes, job);
+    size_t next = 0;
+    for (auto& [kind, seen] : kinds_) {
+      for (SeenPath& one : seen) one.amplitude = std::abs(amplitudes[next++]);
+    }
+  }
+
+  std::vector<ReflectingTriangle> triangles_of(uint32_t mesh_id) const {
+    const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
+    std::vector<ReflectingTriangle> out;
+    for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
+      out.push_back(reflecting_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, {normals[t[0]], normals[t[1]], normals[t[2]]}));
+    }
+    return out;
+  }
+
+  Plane plane_of(uint32_t mirror) const {
+    const auto [a, b, c] = pose_.world_triangle(mirror, 0);
+    return {a, (b - a).cross(c - a).normalized()};
+  }
+
+  std::vector<Glint> glints_of(const WayKind& kind, const std::vector<SeenPath>& seen) const {
+    std::vector<Plane> before;
+    for (const uint32_t mirror : kind.before) before.push_back(plane_of(mirror));
+    Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;
+    for (const Plane& plane : before) first = plane.image(first);
+    for (size_t k = kind.behind.size(); k-- > 0;) second = plane_of(kind.behind[k]).image(second);
+    std::vector<Glint> glints;
+    for (const ReflectingTriangle& triangle : triangles_[kind.mesh]) {
+      const std::optional<ReflectionPoint> point = find_reflection(triangle, first, second);
+      if (!point) continue;
+      Glint glint = glint_at(*point, first, kind.stratum);
+      for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].turned(glint.direction);
+      if (const SeenPath* beside = nearest(seen, glint)) {
+        const double field = beside->amplitude * glint.narrow * glint.wide / (glint.cell * glint.cell);
+        glint.power = field * field;
+        glints.push_back(glint);
+      }
+    }
+    return glints;
+  }
+
+  Glint glint_at(const ReflectionPoint& point, const Vec3& first, size_t stratum) const {
+    const double wavenumber = kTwoPi * paths_.radar.waveform.start_frequency / kSpeedOfLight;
+    const Vec3 line = point.position - first;
+    const double distance = line.norm();
+    double sizes[2];
+    for (size_t i = 0; i < 2; ++i) {
+      const Vec3 zone = std::sqrt(kTwoPi / (wavenumber * std::abs(point.bends[i]) + 1e-12)) * point.axes[i];
+      sizes[i] = zone.cross(line).norm() / (distance * distance);
+    }
+    const std::vector<Stratum>& strata = paths_.frame.strata;
+    const Stratum& of = strata[stratum].is_focus() ? strata[static_cast<size_t>(strata[stratum].focus_of)] : strata[stratum];
+    return {of.name, line / distance, 0.0, std::min(sizes[0], sizes[1]), std::max(sizes[0], sizes[1]),
+            1.0 / std::sqrt(paths_.frame.lattice_density(stratum))};
+  }
+
+  // The path beside a glint, if there is one.
+  static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint) {
+    const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
+    const auto found = std::min_element(seen.begin(), seen.end(), [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
+    return away(*found) <= kBeside * kBeside * glint.cell * glint.cell ? &*found : nullptr;
+  }
+
+  const Paths& paths_;
+  const Pose pose_;
+  Kinds kinds_;
+  std::vector<std::vector<ReflectingTriangle>> triangles_;  // by mesh, of those that are met
+};
+
+bool is_same(const Glint& a, const Glint& b) {
+  const double reach = kSamePoint * std::min(a.cell, b.cell);
+  return a.of == b.of && (a.direction - b.direction).squaredNorm() < reach * reach;
+}
+
+}  // namespace
+
+std::vector<Glint> find_glints(const Paths& paths, Job* job) {
+  std::vector<Glint> glints = GlintSearch(paths, job).find(), kept;
+  std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
+  for (Glint& glint : glints) {
+    if (std::none_of(kept.begin(), kept.end(), [&](const Glint& other) { return is_same(glint, other); })) kept.push_back(std::move(glint));
+  }
+  return kept;
+}
+
+}  // namespace echopath

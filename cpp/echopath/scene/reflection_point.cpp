@@ -67,7 +67,8 @@ std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, cons
     const SmoothPoint at = point_at(triangle, place[0], place[1]);
     const Way way = way_over(at, first, second);
     const Eigen::Vector2d away = -way.bend.inverse() * way.slope;
-    const Eigen::Vector2d moved = edge_coordinates(b - a, c - a, at.normal, away[0] * way.tangents[0] + away[1] * way.tangents[1]);
+    const Vec3 step_there = away[0] * way.tangents[0] + away[1] * way.tangents[1];
+    const Eigen::Vector2d moved = edge_coordinates(b - a, c - a, at.normal, step_there);
     place += moved;
     if (!is_inside(place[0], place[1], kLost)) return std::nullopt;
     if (moved.cwiseAbs().maxCoeff() < kArrived) return place;
@@ -95,7 +96,8 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   const double side = triangle.facet_normal.dot(to_first);
   if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
   // The line that halves the angle turns by no more than half of these over the triangle.
-  const double near = to_first.norm(), far = to_second.norm(), reach = triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
+  const double near = to_first.norm(), far = to_second.norm();
+  const double reach = triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
   const Vec3 half = (to_first / near + to_second / far).normalized();
   const Vec3 normal = side > 0 ? triangle.facet_normal : Vec3(-triangle.facet_normal);
   if ((half - normal).squaredNorm() > reach * reach) return std::nullopt;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <span>
+#include <optional>
 #include <tuple>
 
 #include "echopath/base/constants.h"
@@ -18,7 +18,7 @@ namespace {
 constexpr double kBeside = 1.5;     // cells: how far from a point of reflection a path may be that tells that it is seen
 constexpr double kSamePoint = 0.5;  // cells
 
-// Ways over the same mirrors to the same mesh and on, of the rays of one stratum and batch.
+// Ways of the rays of one stratum over the same flagged mirrors to the same mesh and on.
 struct WayKind {
   uint16_t stratum;
   uint32_t mesh;
@@ -55,7 +55,8 @@ Radar radar_of_rays(const Radar& radar) {
 
 class GlintSearch {
  public:
-  GlintSearch(const Paths& paths, Job* job) : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
+  GlintSearch(const Paths& paths, Job* job)
+      : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
     sort_paths();
     weigh_paths(job);
     std::vector<uint8_t> is_met(triangles_.size(), 0);
@@ -82,27 +83,34 @@ class GlintSearch {
   using Kinds = std::map<WayKind, std::vector<SeenPath>>;
 
   void sort_paths() {
-    const Scene& scene = *paths_.scene;
     for (int64_t path = 0; path < paths_.num_paths(); ++path) {
-      const auto p = static_cast<size_t>(path);
-      if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) continue;
-      const Hit* hits = paths_.hits_of(path);
-      WayKind kind{paths_.stratum[p], 0, {}, {}};
-      int surfaces = 0;
-      for (int k = 0; k < paths_.num_bounces[p]; ++k) {
-        const uint32_t mesh = hits[k].mesh_id;
-        if (!scene.node_of(mesh).material->mirror) {
-          kind.mesh = mesh;
-          ++surfaces;
-        } else {
-          (surfaces == 0 ? kind.before : kind.behind).push_back(mesh);
-        }
-      }
-      if (surfaces != 1) continue;
-      const auto [a, b, c] = pose_.world_triangle(hits[0].mesh_id, hits[0].triangle_id);
-      const Vec3 met = a + hits[0].u * (b - a) + hits[0].v * (c - a);
-      kinds_[std::move(kind)].push_back({(met - paths_.frame.transmitter).normalized(), path});
+      std::optional<WayKind> kind = kind_of(path);
+      if (kind) kinds_[std::move(*kind)].push_back({direction_of_launch(path), path});
     }
+  }
+
+  // None of paths that are diffuse, reversed or over other mirrors than flagged ones.
+  std::optional<WayKind> kind_of(int64_t path) const {
+    const auto p = static_cast<size_t>(path);
+    if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
+    WayKind kind{paths_.stratum[p], 0, {}, {}};
+    int surfaces = 0;
+    for (int k = 0; k < paths_.num_bounces[p]; ++k) {
+      const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
+      if (paths_.scene->node_of(mesh).material->mirror) {
+        (surfaces == 0 ? kind.before : kind.behind).push_back(mesh);
+      } else {
+        kind.mesh = mesh;
+        ++surfaces;
+      }
+    }
+    return surfaces == 1 ? std::optional(std::move(kind)) : std::nullopt;
+  }
+
+  Vec3 direction_of_launch(int64_t path) const {
+    const Hit& first = paths_.hits_of(path)[0];
+    const auto [a, b, c] = pose_.world_triangle(first.mesh_id, first.triangle_id);
+    return (a + first.u * (b - a) + first.v * (c - a) - paths_.frame.transmitter).normalized();
   }
 
   // Without a filter: what one launch cell sends.
@@ -127,7 +135,8 @@ class GlintSearch {
     const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
     std::vector<ReflectingTriangle> out;
     for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
-      out.push_back(reflecting_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, {normals[t[0]], normals[t[1]], normals[t[2]]}));
+      out.push_back(reflecting_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]},
+                                        {normals[t[0]], normals[t[1]], normals[t[2]]}));
     }
     return out;
   }
@@ -176,7 +185,8 @@ class GlintSearch {
   // The path beside a glint, if there is one.
   static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
-    const auto found = std::min_element(seen.begin(), seen.end(), [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
+    const auto found = std::min_element(seen.begin(), seen.end(),
+                                        [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
     return away(*found) <= kBeside * kBeside * glint.cell * glint.cell ? &*found : nullptr;
   }
 
@@ -197,7 +207,8 @@ std::vector<Glint> find_glints(const Paths& paths, Job* job) {
   std::vector<Glint> glints = GlintSearch(paths, job).find(), kept;
   std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
   for (Glint& glint : glints) {
-    if (std::none_of(kept.begin(), kept.end(), [&](const Glint& other) { return is_same(glint, other); })) kept.push_back(std::move(glint));
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Glint& other) { return is_same(glint, other); });
+    if (is_new) kept.push_back(std::move(glint));
   }
   return kept;
 }

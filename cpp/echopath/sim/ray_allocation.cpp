@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
+#include <numeric>
 
-#include "echopath/base/constants.h"
 #include "echopath/replay/received_power.h"
-#include "echopath/sim/find_glints.h"
+#include "echopath/sim/plan_foci.h"
 #include "echopath/signal/noise.h"
 #include "echopath/trace/aim.h"
 
@@ -20,17 +19,13 @@ constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;    // beside that of the aim
 constexpr double kServedFirst = 0.75;   // of the rays
+constexpr double kFieldShare = 0.1;    // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
-constexpr double kMiss = 0.5;           // cells of the pilot, by which a glint may be elsewhere
-constexpr double kZones = 2.0;          // of a glint, up to which its focus has it alone
-constexpr double kWidestFocus = 0.5;    // rad
-constexpr double kLeastGain = 1.5;      // of a focus over the density of rays without it
-constexpr double kFaintest = 1e-3;      // of the strongest glint of a stratum
-constexpr size_t kMostFoci = 12;        // in a stratum
-constexpr double kLargestPart = 0.25;   // of the stratum's solid angle
-constexpr double kFocusShare = 0.5;     // of its rays
-
 constexpr int64_t kFewestPilotRays = 2048;
+
+double sum_of(const RayShares& shares) {
+  return std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const auto& share) { return sum + share.second; });
+}
 
 // Of the echoes of each, with its foci.
 std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
@@ -74,6 +69,7 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   // The field of view sees many surfaces, of which the strongest would speak for all: it keeps what it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMostGrowth;
+  need.is_resolved = missing <= target_db;
   need.rays = growth * num_rays;
   return need;
 }
@@ -97,7 +93,8 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     if (stratum.is_focus()) continue;
     const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
-    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, is_moving ? kMovingTarget * target_db : target_db));
+    const double target = is_moving ? kMovingTarget * target_db : target_db;
+    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
     if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
@@ -119,77 +116,14 @@ RayShares share_out(const RayNeeds& needs, double num_rays) {
 
 namespace {
 
-// Rays of a trace to come and what their echoes are like.
-struct StratumPlan {
-  double rays = 0.0;         // with those of its foci
-  double solid_angle = 0.0;  // sr
-  double power = 0.0;        // W, of its echo, as far as it is known
-  double of_glints = 0.0, of_foci = 0.0;  // W, of glints one by one
-  std::vector<LaunchFocus> foci;
-};
-
-// The cone about a glint in which rays are to lie closer. It asks for rays by its zones; the fainter it is, the less its own
-// error counts.
-LaunchFocus focus_on(const Glint& glint) {
-  LaunchFocus focus;
-  focus.of = glint.of;
-  focus.axis = glint.direction;
-  const double radius = (kMiss * glint.cell + kZones * glint.wide) / kFocusCore;
-  focus.versine = 1.0 - std::cos(std::min(radius, kWidestFocus));
-  focus.share = focus.versine / (glint.narrow * glint.narrow) * std::sqrt(glint.power);
-  return focus;
-}
-
-double radius_of(const LaunchFocus& focus) { return std::acos(1.0 - focus.versine); }
-double angle_between(const Vec3& a, const Vec3& b) { return 2.0 * std::asin(0.5 * (a - b).norm()); }
-
-// Whether the glint in the middle of `other` lies where `focus` fades, with its first zone.
-bool cuts(const LaunchFocus& focus, const LaunchFocus& other) {
-  return angle_between(focus.axis, other.axis) < radius_of(focus) + 0.5 * kFocusCore * radius_of(other);
-}
-
-// The cone that holds both, with the closer rays of the two.
-LaunchFocus around(const LaunchFocus& a, const LaunchFocus& b) {
-  const double away = angle_between(a.axis, b.axis), first = radius_of(a), second = radius_of(b);
-  LaunchFocus both = first >= second ? a : b;
-  const double radius = std::max({first, second, 0.5 * (away + first + second)});
-  if (radius > std::max(first, second)) {
-    const double from_a = (radius - first) / away;
-    both.axis = ((1.0 - from_a) * a.axis + from_a * b.axis).normalized();
-  }
-  both.versine = 1.0 - std::cos(radius);
-  both.share = both.versine * std::max(a.share / a.versine, b.share / b.versine);
-  return both;
-}
-
-// Glints come strongest first. One that another focus would cut shares one with it, if that is still small.
-void add_glint(const Glint& glint, StratumPlan& plan) {
-  plan.of_glints += glint.power;
-  if (glint.power < kFaintest * std::max(plan.power, plan.of_glints)) return;
-  const auto fits = [&](const LaunchFocus& focus) { return kTwoPi * focus.versine <= kLargestPart * plan.solid_angle; };
-  const LaunchFocus focus = focus_on(glint);
-  if (!fits(focus)) return;
-  for (LaunchFocus& other : plan.foci) {
-    const LaunchFocus both = around(other, focus);
-    if (!cuts(other, focus) || !fits(both)) continue;
-    other = both;
-    plan.of_foci += glint.power;
-    return;
-  }
-  if (plan.foci.size() == kMostFoci) return;
-  plan.of_foci += glint.power;
-  plan.foci.push_back(focus);
-}
-
-// Rays for the foci of a stratum, by their part of its field; none for those that would have them hardly closer than without.
-void give_rays(StratumPlan& plan) {
-  const double part = std::sqrt(plan.of_foci / std::max({plan.power, plan.of_glints, 1e-300}));
-  const double given = kFocusShare * std::min(1.0, part) * plan.rays;
-  double asked = 0.0;
-  for (const LaunchFocus& focus : plan.foci) asked += focus.share;
-  for (LaunchFocus& focus : plan.foci) focus.share *= given / asked;
-  const double density = plan.rays / plan.solid_angle;
-  std::erase_if(plan.foci, [&](const LaunchFocus& focus) { return focus.share < kLeastGain * density * kTwoPi * focus.versine; });
+// The field of view keeps the rays that it has, but where its echo is not resolved and a glint makes it.
+void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
+  const std::string& field = frame.strata.back().name;
+  const auto of_field = [&](const auto& one) { return one == field; };
+  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return of_field(glint.of); });
+  const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
+                                       [&](const RayNeed& need) { return !of_field(need.stratum) || need.is_resolved; });
+  if (has_glints && !is_resolved) shares.at(field) = std::max(shares.at(field), kFieldShare * sum_of(shares));
 }
 
 }  // namespace
@@ -197,20 +131,13 @@ void give_rays(StratumPlan& plan) {
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job) {
   LaunchGuide guide;
   guide.shares = share_out(needs, static_cast<double>(num_rays));
-  double all = 0.0;
-  for (const auto& [name, share] : guide.shares) all += share;
-  for (auto& [name, share] : guide.shares) share *= static_cast<double>(num_rays) / all;
-  std::map<std::string, StratumPlan> plans;
-  for (const Stratum& stratum : paths.frame.strata) {
-    if (!stratum.is_focus()) plans[stratum.name] = {guide.shares.at(stratum.name), stratum.solid_angle(), 0.0, 0.0, 0.0, {}};
-  }
-  for (const RayNeed& need : needs.strata) plans.at(need.stratum).power = need.power;
-  for (const Glint& glint : find_glints(paths, job)) add_glint(glint, plans.at(glint.of));
-  for (auto& [name, plan] : plans) {
-    give_rays(plan);
-    for (const LaunchFocus& focus : plan.foci) guide.shares.at(name) -= focus.share;
-    std::move(plan.foci.begin(), plan.foci.end(), std::back_inserter(guide.foci));
-  }
+  const std::vector<Glint> glints = find_glints(paths, job);
+  raise_field_of_view(paths.frame, needs, glints, guide.shares);
+  const double rays_per_share = static_cast<double>(num_rays) / sum_of(guide.shares);
+  for (auto& [name, share] : guide.shares) share *= rays_per_share;
+  std::map<std::string, double> power;
+  for (const RayNeed& need : needs.strata) power[need.stratum] = need.power;
+  set_foci(paths.frame.strata, power, glints, guide);
   return guide;
 }
 
@@ -222,9 +149,6 @@ Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings&
   if (!kept) kept = &own;
   Job unseen(job);  // its progress is that of the trace
   const Paths pilot = trace(scene, radar, launch, &unseen, kept);
-  const auto num_launched = std::count_if(pilot.frame.strata.begin(), pilot.frame.strata.end(),
-                                          [](const Stratum& stratum) { return stratum.num_rays > 0; });
-  if (num_launched < 2) return trace(scene, radar, settings, job, kept);
   launch.num_rays = settings.num_rays;
   launch.guide = guide_rays(pilot, ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), settings.num_rays, &unseen);
   return trace(scene, radar, launch, job, kept);

@@ -14,6 +14,7 @@ struct RayNeed {
   std::string stratum;     // its name
   double rays = 0.0;
   double power = 0.0;      // W, of the echo as far as it is known
+  bool is_resolved = true; // to the target, or below the floor
   double weight = 1.0;     // of images, below that of objects
   bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need any number more
 };
@@ -42,8 +43,8 @@ inline constexpr double kMostGrowth = 32.0;
 // so the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
-// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints (find_glints.h) that the rays of
-// their stratum are too far apart for: up to half of the rays of each stratum. Raises Cancelled.
+// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints
+// (plan_foci.h). Raises Cancelled.
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
 
 // A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a

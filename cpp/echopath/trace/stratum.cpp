@@ -14,6 +14,13 @@ bool Stratum::contains(const Vec3& direction) const {
   return height >= low && height <= high && std::abs(std::atan2(direction.dot(across), direction.dot(axis))) <= half_azimuth;
 }
 
+double versine_of(double half_angle) {
+  const double sine = std::sin(0.5 * half_angle);
+  return 2.0 * sine * sine;
+}
+
+double half_angle_of(double versine) { return 2.0 * std::asin(std::sqrt(0.5 * versine)); }
+
 RayShares shares_of(const std::vector<Stratum>& strata) {
   RayShares shares;
   for (const Stratum& stratum : strata) {

@@ -30,6 +30,10 @@ struct Stratum {
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
+// Of a cone: 1 - cos of its half angle in rad and back, without cancellation for narrow ones.
+double versine_of(double half_angle);
+double half_angle_of(double versine);
+
 // Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
 using RayShares = std::map<std::string, double>;
 // Those of a plan that was carried out, with the rays of foci in the strata that they are in.

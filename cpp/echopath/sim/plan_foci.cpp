@@ -1,0 +1,110 @@
+#include "echopath/sim/plan_foci.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+namespace {
+
+// Up to where a focus has a glint alone: Fresnel zones, and cells of its stratum, whose second-order footprints reach that far
+// and would count it once more.
+constexpr double kZones = 2.0, kCells = 1.5;
+constexpr double kWidest = 0.5;        // rad
+constexpr double kFaintest = 1e-3;     // of the power of a stratum
+constexpr size_t kMostFoci = 12;       // in a stratum
+constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
+constexpr double kMostRays = 0.5;      // of the stratum's rays, for all its foci
+constexpr double kLeastGain = 1.5;     // of a focus, over the density of rays without it
+
+// A stratum of the trace to come.
+struct StratumPlan {
+  double rays = 0.0;         // with those of its foci
+  double solid_angle = 0.0;  // sr
+  double cell = 0.0;         // rad, side of the launch cells that foci leave it
+  double power = 0.0;        // W, of its echo, as far as it is known
+  double of_glints = 0.0, of_foci = 0.0;  // W, of glints one by one, of all and of those in a focus
+  std::vector<LaunchFocus> foci;
+};
+
+// The cone about a glint in which rays are to lie closer. Its share is relative to other foci of the stratum.
+LaunchFocus focus_on(const Glint& glint, double cell) {
+  LaunchFocus focus;
+  focus.of = glint.of;
+  focus.axis = glint.direction;
+  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * cell) / kFocusCore, kWidest));
+  focus.share = focus.versine / (glint.narrow * glint.narrow) * std::sqrt(glint.power);
+  return focus;
+}
+
+double radius_of(const LaunchFocus& focus) { return half_angle_of(focus.versine); }
+double angle_between(const Vec3& a, const Vec3& b) { return 2.0 * std::asin(0.5 * (a - b).norm()); }
+
+// Whether the glint in the middle of `other` lies where `focus` fades, with its first zone.
+bool cuts(const LaunchFocus& focus, const LaunchFocus& other) {
+  return angle_between(focus.axis, other.axis) < radius_of(focus) + 0.5 * kFocusCore * radius_of(other);
+}
+
+// The cone that holds both, with the closer rays of the two.
+LaunchFocus around(const LaunchFocus& a, const LaunchFocus& b) {
+  const double away = angle_between(a.axis, b.axis), first = radius_of(a), second = radius_of(b);
+  LaunchFocus both = first >= second ? a : b;
+  const double radius = std::max({first, second, 0.5 * (away + first + second)});
+  if (radius > std::max(first, second)) {
+    const double from_a = (radius - first) / away;
+    both.axis = ((1.0 - from_a) * a.axis + from_a * b.axis).normalized();
+  }
+  both.versine = versine_of(radius);
+  both.share = both.versine * std::max(a.share / a.versine, b.share / b.versine);
+  return both;
+}
+
+// A glint that another focus would cut shares one with it, if that is still small.
+void add_glint(const Glint& glint, StratumPlan& plan) {
+  plan.of_glints += glint.power;
+  const auto fits = [&](const LaunchFocus& focus) { return kTwoPi * focus.versine <= kLargestPart * plan.solid_angle; };
+  const LaunchFocus focus = focus_on(glint, plan.cell);
+  if (!fits(focus) || glint.power < kFaintest * std::max(plan.power, plan.of_glints)) return;
+  const auto shared = std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) {
+    return cuts(other, focus) && fits(around(other, focus));
+  });
+  if (shared == plan.foci.end() && plan.foci.size() == kMostFoci) return;
+  plan.of_foci += glint.power;
+  if (shared == plan.foci.end()) plan.foci.push_back(focus);
+  else *shared = around(*shared, focus);
+}
+
+// Those that would have rays hardly closer than without them go.
+void give_rays(StratumPlan& plan) {
+  const double part = std::sqrt(plan.of_foci / std::max({plan.power, plan.of_glints, 1e-300}));
+  const double given = kMostRays * std::min(1.0, part) * plan.rays, density = plan.rays / plan.solid_angle;
+  double asked = 0.0;
+  for (const LaunchFocus& focus : plan.foci) asked += focus.share;
+  for (LaunchFocus& focus : plan.foci) focus.share *= given / asked;
+  std::erase_if(plan.foci, [&](const LaunchFocus& focus) { return !(focus.share >= kLeastGain * density * kTwoPi * focus.versine); });
+}
+
+}  // namespace
+
+void set_foci(const std::vector<Stratum>& strata, const std::map<std::string, double>& power, const std::vector<Glint>& glints,
+              LaunchGuide& guide) {
+  std::map<std::string, StratumPlan> plans;
+  for (const Stratum& stratum : strata) {
+    if (stratum.is_focus()) continue;
+    StratumPlan& plan = plans[stratum.name];
+    plan.rays = guide.shares.at(stratum.name);
+    plan.solid_angle = stratum.solid_angle();
+    plan.cell = std::sqrt(plan.solid_angle / ((1.0 - kMostRays) * std::max(plan.rays, 1.0)));
+    plan.power = power.at(stratum.name);
+  }
+  for (const Glint& glint : glints) add_glint(glint, plans.at(glint.of));
+  for (auto& [name, plan] : plans) {
+    give_rays(plan);
+    for (const LaunchFocus& focus : plan.foci) guide.shares.at(name) -= focus.share;
+    std::move(plan.foci.begin(), plan.foci.end(), std::back_inserter(guide.foci));
+  }
+}
+
+}  // namespace echopath

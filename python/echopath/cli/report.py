@@ -22,7 +22,7 @@ def _power_text(power: float) -> str:
 
 def line(label: str, value: str) -> str:
     """One line of a report."""
-    return f"  {label:<{LABEL_WIDTH}}{value}"
+    return f"  {label + ' ':<{LABEL_WIDTH}}{value}"
 
 
 def counts(paths) -> list[str]:

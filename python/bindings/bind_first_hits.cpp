@@ -49,7 +49,7 @@ FirstHits find_first_hits(const Scene& scene, double time, const Vec3& near, con
   return found;
 }
 
-py::tuple first_hits(const Scene& scene, const py::object& origins, const py::object& directions, double time) {
+py::tuple first_hits(Scene scene, const py::object& origins, const py::object& directions, double time) {
   const std::vector<Vec3> from = as_points(origins, "origins"), along = as_points(directions, "directions");
   require(from.size() == along.size(), "directions", "must be as many as origins, rows", along.size());
   const Vec3 near = from.empty() ? Vec3(Vec3::Zero()) : from.front();
@@ -59,7 +59,7 @@ py::tuple first_hits(const Scene& scene, const py::object& origins, const py::ob
                         numpy_take(std::move(found.distance)), numpy_take(std::move(found.is_false)));
 }
 
-py::array blocked(const Scene& scene, const py::object& starts, const py::object& ends, double time) {
+py::array blocked(Scene scene, const py::object& starts, const py::object& ends, double time) {
   const std::vector<Vec3> from = as_points(starts, "starts"), to = as_points(ends, "ends");
   require(from.size() == to.size(), "ends", "must be as many as starts, rows", to.size());
   const Vec3 near = from.empty() ? Vec3(Vec3::Zero()) : from.front();

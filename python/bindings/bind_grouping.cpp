@@ -75,7 +75,7 @@ py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects)
   return py::make_tuple(names, found.families, numpy_take(std::move(found.family_of_path)), families_grouping(surfaces));
 }
 
-std::vector<ObjectVisibility> visibility_of(const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
+std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, const std::optional<Objects>& objects,
                                             std::optional<double> time, int num_directions, const py::object& progress) {
   const double at = time.value_or(0.5 * radar.frame_duration());
   return run_job("visibility", progress, [&](Job& job) {

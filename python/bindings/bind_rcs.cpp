@@ -120,7 +120,7 @@ void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, doubl
   warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
 }
 
-py::object rcs_of(const Scene& scene, double frequency, const py::object& incidence, const py::object& observation,
+py::object rcs_of(Scene scene, double frequency, const py::object& incidence, const py::object& observation,
                   const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
                   std::optional<double> target_error_db, int64_t max_rays, bool components, bool return_error,

@@ -290,7 +290,7 @@ struct NamedOverlap {
   std::string first, second;
 };
 
-std::vector<NamedOverlap> named_overlaps(const Scene& scene, double time, double max_distance) {
+std::vector<NamedOverlap> named_overlaps(Scene scene, double time, double max_distance) {
   const auto found = run_job("coplanar overlaps", py::none(),
                              [&](Job& job) { return coplanar_overlaps(scene, time, max_distance, &job); });
   std::vector<NamedOverlap> named;

@@ -31,7 +31,7 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
   return toward(target, std::nullopt, batches);
 }
 
-PathsPtr trace_paths(const Scene& scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
+PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
                      uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
                      int64_t max_rays, const py::object& progress, KeptGeometry* kept, const py::kwargs& unknown) {
@@ -98,7 +98,8 @@ void bind_trace(py::module_& m) {
         R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
 num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away, tells how
-many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get more. Unless given,
+many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get more; up to half of
+those of each lie closer about its points of reflection (strata with focus_of). Unless given,
 and without target_error_db, there are as many as bring the echo of each object that stands above the noise to 0.3 dB (95 %
 interval of bias and chance), 1 000 000 at most; max_bounces: 1 to 64, hits on mirrors count. Between a target
 and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces

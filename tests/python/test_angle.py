@@ -15,7 +15,6 @@ C = ep.speed_of_light
 WAVELENGTH = C / 77.5e9
 HALF = 0.5 * WAVELENGTH
 DEGREE = np.pi / 180.0
-ROUNDING = 1e-10             # relative to the peak, of sums of some hundred terms
 TARGET_RADIUS = 0.05         # m, of the spheres that stand for points
 # A sphere's echo comes from its point nearest to the antennas, within the footprint's error; beams of 7 to 30 degrees.
 DIRECTION_TOLERANCE = 0.15 * DEGREE
@@ -26,7 +25,7 @@ SLOT_PHASE = 1e-4     # rad: of an echo beside the middle of its cell; 3e-5 foun
 SPEED_CELL = 0.2      # m/s: of the nearest cell, which are 0.34 m/s wide
 NEAR_BEAM = 0.6       # degrees: from the nearest point of the grid, 1 degree wide
 WIDE_BEAM = 0.1       # degrees: the places are points of the grid
-ROUNDING = 1e-12
+ROUNDING = 1e-12      # relative to the peak, of sums of some hundred terms
 
 
 def waveform(num_chirps=32, num_samples=128, start_frequency=77e9):

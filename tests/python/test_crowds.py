@@ -7,7 +7,7 @@ from echopath.bench import crowd, crowd_scenes
 from support.radars import build_radar
 
 ALONE_DB = 0.3      # what is asked of each object of a crowd
-FOCUSED_DB = 0.7    # claimed for a smooth car at 40 m, at most; it was 3.7
+FOCUSED_DB = 1.0    # claimed for a smooth car at 40 m, at most; even rays claim 3.7
 POLE_DB = 0.5       # of poles, resolved or not: cones about spheres left 2 dB and more
 ORDERS_DB = 0.05    # of both orders over a rough mirror: one lattice each, tilted against the other
 SCATTER = 0.01      # relative, of the diffuse part of a person's direct power
@@ -35,7 +35,7 @@ def test_poles_and_people_of_a_street_are_those_alone(mirrors):
 
 @pytest.mark.filterwarnings("ignore")
 def test_smooth_cars_of_a_street_are_resolved_by_foci_on_their_glints():
-    """With even rays over all of a car, 17 000 of 300 000, the one at 40 m was 1.2 dB low and the one at 15 m not resolved."""
+    """With even rays over all of a car, 17 000 of 300 000, the one at 40 m is 1.2 dB low and the one at 15 m not resolved."""
     names, radar = ("car_smooth_15", "car_lofted_25", "car_smooth_40"), crowd_scenes.radar()
     paths = ep.trace(crowd_scenes.street(mirrors=False), radar, num_rays=300_000)
     strata = list(paths.frame.strata)

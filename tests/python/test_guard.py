@@ -41,7 +41,7 @@ def paths():
 
 
 def slow_samples(paths, probe, radar):
-    """What the probe drew, from lengths and amplitudes of all paths at the middle of the chirp: the model of PHYSICS 2.1."""
+    """What the probe drew, from lengths and amplitudes of all paths at the middle of the chirp."""
     waveform, start = radar.waveform, paths.frame.start_time
     slope, step = waveform.slope, 1e-7  # s
     centre = (waveform.num_samples - 1) / (2 * waveform.sampling_rate)

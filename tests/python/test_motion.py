@@ -6,8 +6,7 @@ import pytest
 
 import echopath as ep
 
-ROUNDING = 1e-13  # of a few operations on numbers of order 1
-ROUNDING = 1e-12  # m
+ROUNDING = 1e-12  # m: of a few operations on metres
 
 
 def quaternion_about_z(angle):

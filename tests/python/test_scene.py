@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.radars import build_radar
 
-ROUNDING = 1e-13  # of a few operations on numbers of order 10
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 SQUARE = [[0, 1, 2], [0, 2, 3]]
 ROUNDING = 1e-12     # of lengths and areas of some metres
@@ -274,3 +274,17 @@ def test_reprs_are_short(square):
     assert repr(scene) == "Scene(1 nodes, 1 meshes, 2 triangles)"
     assert repr(scene.meshes) == "[SceneMesh(0, 'wall', 2 triangles)]"
     assert repr(scene.nodes) == "[Node('wall', mesh)]"
+
+
+def test_a_trace_sees_the_scene_as_it_was_when_it_was_asked():
+    """The pilot of a trace and the trace itself used to see what was added between them."""
+    scene, plate = ep.Scene(), ep.actors.plate(1.0, 1.0)
+    for i in range(20):
+        scene.add(plate, name=f"first {i}", material="metal", position=(10, 2 * i, 0))
+    added = []
+
+    def add_one(stage, fraction):
+        added.append(scene.add(plate, name=f"later {len(added)}", material="metal", position=(20, 2 * len(added), 0)))
+
+    paths = ep.trace(scene, build_radar([(0, 0, 0)], [(0, 0, 0)]), num_rays=1_000_000, max_bounces=2, progress=add_one)
+    assert added and [mesh.name for mesh in paths.scene.meshes] == [f"first {i}" for i in range(20)]

@@ -12,7 +12,7 @@ import echopath as ep
 
 BLEND_TOLERANCE = 1e-12        # m: a few dozen operations on numbers of order 1
 SPLINE_TOLERANCE = 1e-8        # m: keyframes 5 ms apart, 5/384 h^4 times the fourth derivative (below 100 m/s^4)
-SPEED_TOLERANCE = 0.01         # relative, of PHYSICS.md 5
+SPEED_TOLERANCE = 0.01         # relative: a map's cells
 SAME_LENGTH = 1e-12            # m
 SEAM_TOLERANCE = 1e-6          # of the field: float weights of rays that a seam would bend by degrees
 GRAVITY, START_ANGLE = 9.81, np.radians(30)
@@ -72,7 +72,7 @@ def test_a_skinned_pendulum_is_where_the_closed_form_says(share):
 
 
 def test_a_skinned_pendulum_has_the_doppler_of_its_tip():
-    """PHYSICS.md 5: l = 1 m, 30 degrees: 1.62129 m/s and 838.25 Hz at the lowest point."""
+    """By the energy of a pendulum, v = sqrt(2 g l (1 - cos 30 degrees)), l = 1 m: 1.62129 m/s and 838.25 Hz at the lowest point."""
     mesh, skin = pendulum()
     scene = ep.Scene()
     scene.add(mesh, name="pendulum", material=lambert(0.5), motion=skin, position=(8, 0, 1))

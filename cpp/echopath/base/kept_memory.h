@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -35,13 +36,16 @@ class KeptMemory {
     return std::make_unique<T>();
   }
 
-  // Frees it where there would be more than kMost.
-  void leave(std::unique_ptr<T> memory) {
+  // Frees it where there would be more than kMost, or where there is no memory to keep it: destructors call this.
+  void leave(std::unique_ptr<T> memory) noexcept {
     const size_t num_bytes = memory->num_bytes();
     const std::lock_guard lock(mutex_);
     if (num_bytes_ + num_bytes > kMost) return;
-    num_bytes_ += num_bytes;
-    kept_.push_back(std::move(memory));
+    try {
+      kept_.push_back(std::move(memory));
+      num_bytes_ += num_bytes;
+    } catch (const std::bad_alloc&) {
+    }
   }
 
  private:

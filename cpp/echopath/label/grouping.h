@@ -18,7 +18,7 @@ Grouping by_selections(std::vector<NamedSelection> parts);
 // find_families.
 Grouping by_families(SurfaceMap surfaces);
 
-// What error bars are made from (PHYSICS 7): the coherent and the diffuse paths of each batch of rays, "batch 0 coherent",
+// What error bars are made from: the coherent and the diffuse paths of each batch of rays, "batch 0 coherent",
 // "batch 0 diffuse", ...; last "all batches", the paths by images, which stand in each batch's estimate in full.
 Grouping by_batches();
 inline constexpr const char* kAllBatches = "all batches";

@@ -30,7 +30,7 @@ struct SurfaceMap {
 // glob that takes no mesh (naming the nearest names) or an object that is left without one by those before it.
 SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objects);
 
-// The objects of PHYSICS 1.2: children of the root, without their flagged mirrors, whose bounding sphere at `time` (s) does
+// The objects that rays are aimed at: children of the root, without their flagged mirrors, whose bounding sphere at `time` (s) does
 // not hold `antenna` (world); in the order of the scene.
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
 

@@ -161,16 +161,19 @@ bool NodeLevels::fits(int polynomial, uint32_t mesh_id) const {
   return true;
 }
 
+// Sets them all or, where it throws, none: std::call_once then calls it again.
 void NodeLevels::find_mesh_levels() const {
   const std::lock_guard lock(mutex_);
+  std::vector<int> levels;
   const TimeSpan frame{paths_.frame.start_time, paths_.frame.start_time + radar_.frame_duration()};
   const double of_radar = turn_rate(radar_, frame);
   for (uint32_t id = 0; id < paths_.scene->meshes().size(); ++id) {
     const bool moves = paths_.scene->is_moving(id) || radar_.motion;
-    int& needed = mesh_level_.emplace_back(moves ? 1 : 0);
+    int& needed = levels.emplace_back(moves ? 1 : 0);
     const double rate = moves ? turn_rate(*paths_.scene, id, frame) + of_radar : 0.0;
     while (moves && needed <= num_polynomials() && !(can_follow(needed, rate) && fits(needed, id))) ++needed;
   }
+  mesh_level_ = std::move(levels);
 }
 
 const std::vector<int>& NodeLevels::mesh_levels() const {

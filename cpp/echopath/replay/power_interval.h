@@ -15,7 +15,8 @@ inline constexpr CellView kCellViews[] = {
 enum CellViewIndex { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kPoints, kEdges, kNumCellViews };
 
 // Coherent paths that radiate from one mesh, either where the wave has come straight or over flagged mirrors, or where it has
-// bounced off other surfaces before. What is known of one kind tells nothing of another.
+// bounced off other surfaces before; or those over flagged mirrors alone. What is known of one kind tells nothing of another, so
+// that the interval of a body depends a little on the meshes that it is made of.
 struct CoherentKind {
   std::complex<double> field[kNumCellViews];  // sqrt(W)
   double power[kNumCellViews] = {};           // W, sum of |a|^2

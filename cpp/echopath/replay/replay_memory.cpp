@@ -8,7 +8,7 @@ namespace echopath {
 
 std::unique_ptr<ReplayMemory> ReplayMemory::take() { return KeptMemory<ReplayMemory>::of_process().take(); }
 
-void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) {
+void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) noexcept {
   KeptMemory<ReplayMemory>::of_process().leave(std::move(memory));
 }
 

@@ -21,7 +21,7 @@ class ReplayMemory {
  public:
   // What another left, or new; see KeptMemory.
   static std::unique_ptr<ReplayMemory> take();
-  static void leave(std::unique_ptr<ReplayMemory> memory);
+  static void leave(std::unique_ptr<ReplayMemory> memory) noexcept;
 
   SpareEchoes echoes;
   std::unique_ptr<ReplayWorkspace> take_workspace();

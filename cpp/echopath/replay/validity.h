@@ -34,6 +34,7 @@ inline constexpr double kObjectLimit = 0.05;     // likewise of the power of an 
 inline constexpr double kObjectErrorDb = 0.5;    // of the power of an object over the frame, likewise
 inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
 inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
+inline constexpr int kMostKeyframes = 1000000;   // that are advised; no frame has as many chirps
 inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
 
 // [P] each, hits in the order of the record; empty unless asked for.

@@ -95,12 +95,14 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   const Vec3 to_first = first - triangle.centre, to_second = second - triangle.centre;
   const double side = triangle.facet_normal.dot(to_first);
   if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
-  // The line that halves the angle turns by no more than half of these over the triangle.
-  const double near = to_first.norm(), far = to_second.norm();
-  const double reach = triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
-  const Vec3 half = (to_first / near + to_second / far).normalized();
-  const Vec3 normal = side > 0 ? triangle.facet_normal : Vec3(-triangle.facet_normal);
-  if ((half - normal).squaredNorm() > reach * reach) return std::nullopt;
+  // Where the way is stationary, the sum of both unit vectors lies along the normal. Over the triangle they turn by no more than
+  // its radius over their distances, and the normal by `turn`.
+  const double near = to_first.norm() - triangle.radius, far = to_second.norm() - triangle.radius;
+  if (near > 0.0 && far > 0.0) {
+    const double reach = 2.0 * triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
+    const Vec3 sum = to_first.normalized() + to_second.normalized();
+    if ((sum - sum.dot(triangle.facet_normal) * triangle.facet_normal).squaredNorm() > reach * reach) return std::nullopt;
+  }
   const std::optional<Eigen::Vector2d> place =
       triangle.is_flat() ? std::optional(on_plane(triangle, first, second)) : on_curve(triangle, first, second);
   if (!place || !is_inside((*place)[0], (*place)[1], kOutside)) return std::nullopt;

@@ -9,7 +9,7 @@ namespace echopath {
 
 std::unique_ptr<SynthesisMemory> SynthesisMemory::take() { return KeptMemory<SynthesisMemory>::of_process().take(); }
 
-void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) {
+void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) noexcept {
   KeptMemory<SynthesisMemory>::of_process().leave(std::move(memory));
 }
 

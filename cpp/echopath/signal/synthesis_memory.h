@@ -16,7 +16,7 @@ class SynthesisMemory {
  public:
   // What another left, or new; see KeptMemory.
   static std::unique_ptr<SynthesisMemory> take();
-  static void leave(std::unique_ptr<SynthesisMemory> memory);
+  static void leave(std::unique_ptr<SynthesisMemory> memory) noexcept;
 
   EchoTiles tiles;
   // Room for `count` values, which are not set.

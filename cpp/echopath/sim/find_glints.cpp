@@ -16,7 +16,7 @@ namespace echopath {
 namespace {
 
 constexpr double kBeside = 1.5;     // cells: how far from a point of reflection a path may be that tells that it is seen
-constexpr double kSamePoint = 0.5;  // cells
+constexpr double kSamePoint = 0.5;  // Fresnel zones, the narrower way
 
 // Ways of the rays of one stratum over the same flagged mirrors to the same mesh and on.
 struct WayKind {
@@ -57,23 +57,25 @@ class GlintSearch {
  public:
   GlintSearch(const Paths& paths, Job* job)
       : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
-    sort_paths();
+    sort_paths(job);
     weigh_paths(job);
     std::vector<uint8_t> is_met(triangles_.size(), 0);
     for (const auto& [kind, seen] : kinds_) is_met[kind.mesh] = 1;
+    Job unseen(job);
     parallel_for(std::ssize(is_met), [&](int64_t mesh) {
       if (is_met[static_cast<size_t>(mesh)]) triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
-    });
+    }, &unseen);
   }
 
-  std::vector<Glint> find() const {
+  std::vector<Glint> find(Job* job) const {
     std::vector<const Kinds::value_type*> kinds;
     for (const auto& kind : kinds_) kinds.push_back(&kind);
     std::vector<std::vector<Glint>> found(kinds.size());
+    Job unseen(job);
     parallel_for(std::ssize(kinds), [&](int64_t i) {
       const auto k = static_cast<size_t>(i);
       found[k] = glints_of(kinds[k]->first, kinds[k]->second);
-    });
+    }, &unseen);
     std::vector<Glint> glints;
     for (std::vector<Glint>& of_kind : found) std::move(of_kind.begin(), of_kind.end(), std::back_inserter(glints));
     return glints;
@@ -82,8 +84,10 @@ class GlintSearch {
  private:
   using Kinds = std::map<WayKind, std::vector<SeenPath>>;
 
-  void sort_paths() {
+  void sort_paths(Job* job) {
+    constexpr int64_t kTogether = 1 << 16;
     for (int64_t path = 0; path < paths_.num_paths(); ++path) {
+      if (job && path % kTogether == 0) job->throw_if_cancelled();
       std::optional<WayKind> kind = kind_of(path);
       if (kind) kinds_[std::move(*kind)].push_back({direction_of_launch(path), path});
     }
@@ -141,9 +145,17 @@ class GlintSearch {
     return out;
   }
 
+  // Of its largest triangle: the others lie in it to a tenth of a millimetre.
   Plane plane_of(uint32_t mirror) const {
-    const auto [a, b, c] = pose_.world_triangle(mirror, 0);
-    return {a, (b - a).cross(c - a).normalized()};
+    const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
+    Plane largest{Vec3::Zero(), Vec3::Zero()};  // its normal as long as twice the area
+    for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
+      const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
+      const Vec3 normal = (b - a).cross(c - a);
+      if (normal.squaredNorm() > largest.normal.squaredNorm()) largest = {a, normal};
+    }
+    largest.normal.normalize();
+    return largest;
   }
 
   std::vector<Glint> glints_of(const WayKind& kind, const std::vector<SeenPath>& seen) const {
@@ -158,8 +170,8 @@ class GlintSearch {
       if (!point) continue;
       Glint glint = glint_at(*point, first, kind.stratum);
       for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].turned(glint.direction);
-      if (const SeenPath* beside = nearest(seen, glint)) {
-        const double field = beside->amplitude * glint.narrow * glint.wide / (glint.cell * glint.cell);
+      if (const SeenPath* beside = nearest(seen, glint, cell_of(kind.stratum))) {
+        const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[kind.stratum].ray_density;
         glint.power = field * field;
         glints.push_back(glint);
       }
@@ -176,18 +188,19 @@ class GlintSearch {
       const Vec3 zone = std::sqrt(kTwoPi / (wavenumber * std::abs(point.bends[i]) + 1e-12)) * point.axes[i];
       sizes[i] = zone.cross(line).norm() / (distance * distance);
     }
-    const std::vector<Stratum>& strata = paths_.frame.strata;
-    const Stratum& of = strata[stratum].is_focus() ? strata[static_cast<size_t>(strata[stratum].focus_of)] : strata[stratum];
-    return {of.name, line / distance, 0.0, std::min(sizes[0], sizes[1]), std::max(sizes[0], sizes[1]),
-            1.0 / std::sqrt(paths_.frame.lattice_density(stratum))};
+    const Stratum& of = paths_.frame.strata[stratum];
+    return {of.is_focus() ? of.focus_of : static_cast<int>(stratum), line / distance, 0.0, std::min(sizes[0], sizes[1]),
+            std::max(sizes[0], sizes[1])};
   }
 
+  double cell_of(size_t stratum) const { return 1.0 / std::sqrt(paths_.frame.lattice_density(stratum)); }  // rad
+
   // The path beside a glint, if there is one.
-  static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint) {
+  static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
     const auto found = std::min_element(seen.begin(), seen.end(),
                                         [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
-    return away(*found) <= kBeside * kBeside * glint.cell * glint.cell ? &*found : nullptr;
+    return away(*found) <= kBeside * kBeside * cell * cell ? &*found : nullptr;
   }
 
   const Paths& paths_;
@@ -196,19 +209,24 @@ class GlintSearch {
   std::vector<std::vector<ReflectingTriangle>> triangles_;  // by mesh, of those that are met
 };
 
+// Neighbouring triangles, and several records of one way, find the same point.
 bool is_same(const Glint& a, const Glint& b) {
-  const double reach = kSamePoint * std::min(a.cell, b.cell);
-  return a.of == b.of && (a.direction - b.direction).squaredNorm() < reach * reach;
+  const double reach = kSamePoint * std::min(a.narrow, b.narrow);
+  return (a.direction - b.direction).squaredNorm() < reach * reach;
 }
 
 }  // namespace
 
 std::vector<Glint> find_glints(const Paths& paths, Job* job) {
-  std::vector<Glint> glints = GlintSearch(paths, job).find(), kept;
+  std::vector<Glint> glints = GlintSearch(paths, job).find(job), kept;
   std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
-  for (Glint& glint : glints) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Glint& other) { return is_same(glint, other); });
-    if (is_new) kept.push_back(std::move(glint));
+  std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
+  for (const Glint& glint : glints) {
+    std::vector<Glint>& others = of_stratum[static_cast<size_t>(glint.stratum)];
+    if (others.size() == kMostGlints) continue;
+    if (std::any_of(others.begin(), others.end(), [&](const Glint& other) { return is_same(glint, other); })) continue;
+    others.push_back(glint);
+    kept.push_back(glint);
   }
   return kept;
 }

@@ -85,7 +85,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
   if (retrace_ == Retrace::kAlways) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
-    settings.guide.shares = shares_of(paths_.frame.strata);
+    settings.guide = guide_like(paths_.frame.strata);
     return {trace(*paths_.scene, stretch.radar, settings, job_, &kept_)};
   }
   std::vector<Paths> records;

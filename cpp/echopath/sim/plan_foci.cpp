@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
 
 #include "echopath/base/constants.h"
 
@@ -21,21 +22,25 @@ constexpr double kLeastGain = 1.5;     // of a focus, over the density of rays w
 
 // A stratum of the trace to come.
 struct StratumPlan {
+  std::string name;
   double rays = 0.0;         // with those of its foci
   double solid_angle = 0.0;  // sr
   double cell = 0.0;         // rad, side of the launch cells that foci leave it
-  double power = 0.0;        // W, of its echo, as far as it is known
+  KnownEcho echo;
   double of_glints = 0.0, of_foci = 0.0;  // W, of glints one by one, of all and of those in a focus
+  double power() const { return std::max(echo.power, of_glints); }
   std::vector<LaunchFocus> foci;
 };
 
 // The cone about a glint in which rays are to lie closer. Its share is relative to other foci of the stratum.
-LaunchFocus focus_on(const Glint& glint, double cell) {
+LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) {
   LaunchFocus focus;
-  focus.of = glint.of;
+  focus.of = plan.name;
   focus.axis = glint.direction;
-  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * cell) / kFocusCore, kWidest));
-  focus.share = focus.versine / (glint.narrow * glint.narrow) * std::sqrt(glint.power);
+  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell) / kFocusCore, kWidest));
+  // Zones that are narrower than the cells of all rays together stay unresolved with any.
+  const double finest = kTwoPi * focus.versine / (kMostRays * std::max(plan.rays, 1.0));
+  focus.share = focus.versine / std::max(glint.narrow * glint.narrow, finest) * std::sqrt(power);
   return focus;
 }
 
@@ -63,22 +68,24 @@ LaunchFocus around(const LaunchFocus& a, const LaunchFocus& b) {
 
 // A glint that another focus would cut shares one with it, if that is still small.
 void add_glint(const Glint& glint, StratumPlan& plan) {
-  plan.of_glints += glint.power;
+  // By stationary phase a surface that is smaller than its zone, or that focuses, would send more than there is.
+  const double power = std::min(glint.power, plan.echo.high);
+  plan.of_glints += power;
   const auto fits = [&](const LaunchFocus& focus) { return kTwoPi * focus.versine <= kLargestPart * plan.solid_angle; };
-  const LaunchFocus focus = focus_on(glint, plan.cell);
-  if (!fits(focus) || glint.power < kFaintest * std::max(plan.power, plan.of_glints)) return;
+  const LaunchFocus focus = focus_on(glint, power, plan);
+  if (!fits(focus) || !(power >= kFaintest * plan.power())) return;
   const auto shared = std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) {
     return cuts(other, focus) && fits(around(other, focus));
   });
   if (shared == plan.foci.end() && plan.foci.size() == kMostFoci) return;
-  plan.of_foci += glint.power;
+  plan.of_foci += power;
   if (shared == plan.foci.end()) plan.foci.push_back(focus);
   else *shared = around(*shared, focus);
 }
 
 // Those that would have rays hardly closer than without them go.
 void give_rays(StratumPlan& plan) {
-  const double part = std::sqrt(plan.of_foci / std::max({plan.power, plan.of_glints, 1e-300}));
+  const double part = std::sqrt(plan.of_foci / std::max(plan.power(), 1e-300));
   const double given = kMostRays * std::min(1.0, part) * plan.rays, density = plan.rays / plan.solid_angle;
   double asked = 0.0;
   for (const LaunchFocus& focus : plan.foci) asked += focus.share;
@@ -88,21 +95,24 @@ void give_rays(StratumPlan& plan) {
 
 }  // namespace
 
-void set_foci(const std::vector<Stratum>& strata, const std::map<std::string, double>& power, const std::vector<Glint>& glints,
-              LaunchGuide& guide) {
-  std::map<std::string, StratumPlan> plans;
-  for (const Stratum& stratum : strata) {
+void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints, LaunchGuide& guide) {
+  std::vector<StratumPlan> plans(frame.strata.size());
+  for (size_t k = 0; k < plans.size(); ++k) {
+    const Stratum& stratum = frame.strata[k];
     if (stratum.is_focus()) continue;
-    StratumPlan& plan = plans[stratum.name];
+    StratumPlan& plan = plans[k];
+    plan.name = stratum.name;
     plan.rays = guide.shares.at(stratum.name);
     plan.solid_angle = stratum.solid_angle();
-    plan.cell = std::sqrt(plan.solid_angle / ((1.0 - kMostRays) * std::max(plan.rays, 1.0)));
-    plan.power = power.at(stratum.name);
+    const double of_each_batch = (1.0 - kMostRays) * std::max(plan.rays, 1.0) / frame.num_batches;
+    plan.cell = std::sqrt(plan.solid_angle / of_each_batch);
+    plan.echo = echoes[k];
   }
-  for (const Glint& glint : glints) add_glint(glint, plans.at(glint.of));
-  for (auto& [name, plan] : plans) {
+  for (const Glint& glint : glints) add_glint(glint, plans[static_cast<size_t>(glint.stratum)]);
+  for (StratumPlan& plan : plans) {
+    if (plan.foci.empty()) continue;
     give_rays(plan);
-    for (const LaunchFocus& focus : plan.foci) guide.shares.at(name) -= focus.share;
+    for (const LaunchFocus& focus : plan.foci) guide.shares.at(plan.name) -= focus.share;
     std::move(plan.foci.begin(), plan.foci.end(), std::back_inserter(guide.foci));
   }
 }

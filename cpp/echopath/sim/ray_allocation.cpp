@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "echopath/replay/received_power.h"
@@ -19,7 +18,7 @@ constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;    // beside that of the aim
 constexpr double kServedFirst = 0.75;   // of the rays
-constexpr double kFieldShare = 0.1;    // of the field of view, at least, where it has a glint that is not resolved
+constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
 
@@ -63,13 +62,12 @@ std::vector<bool> moving_objects(const Scene& scene) {
 RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double missing, double target_db) {
   RayNeed need;
   need.stratum = stratum.name;
-  need.power = power.power;
+  need.echo = {power.power, power.high};
   need.weight = weight_of_aim(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
   double growth = power.high > 0 ? std::clamp(missing / target_db, kLeastGrowth, kMostGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all: it keeps what it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMostGrowth;
-  need.is_resolved = missing <= target_db;
   need.rays = growth * num_rays;
   return need;
 }
@@ -95,6 +93,7 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
     const double target = is_moving ? kMovingTarget * target_db : target_db;
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
+    needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
     if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
@@ -118,12 +117,22 @@ namespace {
 
 // The field of view keeps the rays that it has, but where its echo is not resolved and a glint makes it.
 void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
-  const std::string& field = frame.strata.back().name;
-  const auto of_field = [&](const auto& one) { return one == field; };
-  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return of_field(glint.of); });
+  const int field = static_cast<int>(frame.strata.size()) - 1;
+  const std::string& name = frame.strata.back().name;
+  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
   const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
-                                       [&](const RayNeed& need) { return !of_field(need.stratum) || need.is_resolved; });
-  if (has_glints && !is_resolved) shares.at(field) = std::max(shares.at(field), kFieldShare * sum_of(shares));
+                                       [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
+  if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
+}
+
+// By index of the strata.
+std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
+  std::vector<KnownEcho> echoes(frame.strata.size());
+  size_t next = 0;
+  for (size_t k = 0; k < echoes.size(); ++k) {
+    if (!frame.strata[k].is_focus()) echoes[k] = needs.strata[next++].echo;
+  }
+  return echoes;
 }
 
 }  // namespace
@@ -135,9 +144,7 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   raise_field_of_view(paths.frame, needs, glints, guide.shares);
   const double rays_per_share = static_cast<double>(num_rays) / sum_of(guide.shares);
   for (auto& [name, share] : guide.shares) share *= rays_per_share;
-  std::map<std::string, double> power;
-  for (const RayNeed& need : needs.strata) power[need.stratum] = need.power;
-  set_foci(paths.frame.strata, power, glints, guide);
+  set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
   return guide;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
+#include "echopath/sim/plan_foci.h"
 #include "echopath/trace/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
@@ -13,8 +14,8 @@ namespace echopath {
 struct RayNeed {
   std::string stratum;     // its name
   double rays = 0.0;
-  double power = 0.0;      // W, of the echo as far as it is known
-  bool is_resolved = true; // to the target, or below the floor
+  KnownEcho echo;
+  bool is_resolved = true;  // to the target, or below the floor
   double weight = 1.0;     // of images, below that of objects
   bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need any number more
 };
@@ -26,7 +27,7 @@ enum class EchoFloor {
 };
 
 struct RayNeeds {
-  std::vector<RayNeed> strata;
+  std::vector<RayNeed> strata;  // in the order of the trace's, without foci
   double worst_db = 0.0;  // largest half interval of an echo above the floor
 
   double num_rays() const;
@@ -43,13 +44,13 @@ inline constexpr double kMostGrowth = 32.0;
 // so the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
-// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints
-// (plan_foci.h). Raises Cancelled.
+// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints (plan_foci.h). Raises
+// Cancelled.
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
 
 // A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a
-// pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where there is
-// one stratum only, where settings.guide says how, or where rays are few. Raises as `trace`.
+// pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where
+// settings.guide says how, or where rays are few. Raises as `trace`.
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 

@@ -1,6 +1,7 @@
 #include "echopath/spectrum/range_doppler.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -100,6 +101,8 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   radar.validate();
   require(zero_pad >= 1 && zero_pad <= kMaxZeroPad, "zero_pad", "must be in [1, 64]", zero_pad);
   const ChirpSequence& waveform = radar.waveform;
+  const int64_t longest = int64_t{zero_pad} * std::max(waveform.num_samples, waveform.num_chirps);
+  require(longest <= std::numeric_limits<int>::max(), "zero_pad", "times num_samples and num_chirps must be below 2^31", longest);
   const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
   const int64_t num_rows = num_maps * waveform.num_chirps;
   require(size == num_rows * waveform.num_samples, "cube",

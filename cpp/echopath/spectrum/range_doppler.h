@@ -40,7 +40,7 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
 std::vector<double> mean_power(const RangeDoppler& map, Job* job = nullptr);
 
 // Mean power of white noise in a cell of a map, W: sample_power ENBW_range ENBW_velocity/(num_samples num_chirps) with the
-// equivalent noise bandwidths of the window (PHYSICS 2.3); padding does not change it. sample_power (W): of complex samples;
+// equivalent noise bandwidths of the window (Harris 1978); padding does not change it. sample_power (W): of complex samples;
 // for real ones twice theirs, because a map holds their positive frequencies times sqrt 2.
 double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window);
 

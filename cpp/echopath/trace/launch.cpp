@@ -1,9 +1,9 @@
 #include "echopath/trace/launch.h"
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
@@ -15,7 +15,6 @@ namespace echopath {
 namespace {
 
 constexpr double kFieldShare = 0.15;
-constexpr int kInField = INT_MAX;     // in the field of view, whose index is not known yet
 constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
 // Each batch has a shift of its own in each stratum.
@@ -39,34 +38,34 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sa
   plan.strata.push_back(std::move(stratum));
 }
 
+// A focus of an aim or, where `of` is their number, of the field of view.
 struct Focus {
-  Stratum cone;
-  double share;
+  const LaunchFocus* asked;
+  size_t of;
 };
 
-// The foci that are asked for in strata that there are, as far as a record can tell them apart.
+// The foci that are asked for in strata that there are, as far as a record can tell strata apart.
 std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<Aim>& aims, const Stratum& field) {
+  std::map<std::string, size_t> index{{field.name, aims.size()}};
+  for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, k);
   std::vector<Focus> foci;
-  std::map<std::string, int> index;
-  for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, static_cast<int>(k));
-  const size_t room = kNoStratum - aims.size() - 1;
   for (const LaunchFocus& one : asked) {
     const auto found = index.find(one.of);
-    const bool is_in_field = found == index.end() && one.of == field.name;
-    if ((found == index.end() && !is_in_field) || foci.size() == room) continue;
-    Focus focus{is_in_field ? field : aims[static_cast<size_t>(found->second)].stratum, one.share};
-    focus.cone.axis = one.axis;
-    focus.cone.versine = one.versine;
-    focus.cone.across = Vec3::Zero();
-    focus.cone.half_azimuth = focus.cone.low = focus.cone.high = 0.0;
-    focus.cone.focus_of = is_in_field ? kInField : found->second;
-    focus.cone.name = one.of + ", focus " + std::to_string(foci.size() + 1);
-    foci.push_back(std::move(focus));
-  }
-  for (Focus& focus : foci) {
-    if (focus.cone.focus_of == kInField) focus.cone.focus_of = static_cast<int>(aims.size() + foci.size());
+    if (found != index.end() && aims.size() + foci.size() + 1 < kNoStratum) foci.push_back({&one, found->second});
   }
   return foci;
+}
+
+// Named by the order of the foci of one stratum.
+Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_of_owner, int number) {
+  Stratum cone;
+  cone.axis = asked.axis;
+  cone.versine = asked.versine;
+  cone.name = owner.name + ", focus " + std::to_string(number);
+  cone.object = owner.object;
+  cone.num_mirrors = owner.num_mirrors;
+  cone.focus_of = index_of_owner;
+  return cone;
 }
 
 // Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
@@ -95,7 +94,7 @@ std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector
   };
   std::vector<double> out;
   for (const Aim& aim : aims) out.push_back(share_of(aim.stratum.name));
-  for (const Focus& focus : foci) out.push_back(focus.share);
+  for (const Focus& focus : foci) out.push_back(focus.asked->share);
   out.push_back(share_of(field.name));
   return out;
 }
@@ -139,7 +138,10 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   if (is_guided) foci = foci_of(settings.guide.foci, found.aims, field);
   const std::vector<double> shares = is_guided ? named_shares(found.aims, foci, field, settings.guide.shares)
                                                : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
-  const std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
+  std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
+  for (size_t i = 0; i < foci.size(); ++i) {  // what has no rays of its own owns nothing
+    if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0) rays.back() += std::exchange(rays[found.aims.size() + i], 0);
+  }
   LaunchPlan plan;
   plan.seed = settings.seed;
   plan.batches = settings.batches;
@@ -148,11 +150,18 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   const int field_of_view = static_cast<int>(found.aims.size() + foci.size());
   plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, field_of_view);
   for (size_t k = 0; k < found.aims.size(); ++k) {
-    add_stratum(plan, std::move(found.aims[k].stratum), rays[k], settings.sampler);
+    add_stratum(plan, found.aims[k].stratum, rays[k], settings.sampler);
     if (plan.strata[k].num_rays == 0) continue;
     for (const MirrorSequence sequence : found.aims[k].sequences) plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
   }
-  for (size_t i = 0; i < foci.size(); ++i) add_stratum(plan, std::move(foci[i].cone), rays[found.aims.size() + i], settings.sampler);
+  std::map<size_t, int> numbers;
+  for (size_t i = 0; i < foci.size(); ++i) {
+    const bool is_in_field = foci[i].of == found.aims.size();
+    const Stratum& owner = is_in_field ? field : found.aims[foci[i].of].stratum;
+    const int index_of_owner = is_in_field ? field_of_view : static_cast<int>(foci[i].of);
+    const Stratum cone = focus_stratum(*foci[i].asked, owner, index_of_owner, ++numbers[foci[i].of]);
+    add_stratum(plan, cone, rays[found.aims.size() + i], settings.sampler);
+  }
   add_stratum(plan, field, rays.back(), settings.sampler);
   plan.foci = LaunchFoci(plan.strata);
   return plan;

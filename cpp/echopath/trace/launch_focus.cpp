@@ -3,7 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/errors.h"
+
 namespace echopath {
+
+void LaunchGuide::validate() const {
+  double sum = 0.0;
+  for (const auto& [name, share] : shares) {
+    require(std::isfinite(share) && share >= 0.0, "guide.shares", "must be finite and not negative", share);
+    sum += share;
+  }
+  require(shares.empty() || sum > 0.0, "guide.shares", "must not all be zero", sum);
+  require(foci.empty() || !shares.empty(), "guide.foci", "need the shares of the strata", foci.size());
+  for (const LaunchFocus& focus : foci) {
+    require(std::abs(focus.axis.norm() - 1.0) < 1e-9, "guide.foci", "must have axes of unit length", focus.axis.norm());
+    require(focus.versine > 0.0 && focus.versine <= 2.0, "guide.foci", "must have versines in (0, 2]", focus.versine);
+    require(std::isfinite(focus.share) && focus.share >= 0.0, "guide.foci", "must have finite shares", focus.share);
+  }
+}
+
+LaunchGuide guide_like(const std::vector<Stratum>& strata) {
+  LaunchGuide guide;
+  for (const Stratum& stratum : strata) {
+    const auto rays = static_cast<double>(stratum.num_rays);
+    if (!stratum.is_focus()) {
+      guide.shares[stratum.name] = rays;
+    } else {
+      guide.foci.push_back({strata[static_cast<size_t>(stratum.focus_of)].name, stratum.axis, stratum.versine, rays});
+    }
+  }
+  return guide;
+}
 
 double focus_weight(const Stratum& focus, const Vec3& direction) {
   const double radius = std::sqrt(0.5 * (direction - focus.axis).squaredNorm() / focus.versine);

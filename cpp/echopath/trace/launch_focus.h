@@ -19,7 +19,13 @@ struct LaunchFocus {
 struct LaunchGuide {
   RayShares shares;
   std::vector<LaunchFocus> foci;
+
+  // Raises invalid_argument naming the field, the rule and the value.
+  void validate() const;
 };
+
+// That of a plan that was carried out, to do the same once more.
+LaunchGuide guide_like(const std::vector<Stratum>& strata);
 
 // How much of a direction belongs to a focus: 1 up to kFocusCore of its radius, and from there on smoothly (with two continuous
 // derivatives) down to 0 at its rim. An edge there would cut the surface, and radiate.

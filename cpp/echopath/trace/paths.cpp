@@ -67,6 +67,14 @@ HitSet used_hits(const Paths& paths) {
   return used;
 }
 
+void validate_foci(const std::vector<Stratum>& strata) {
+  for (const Stratum& stratum : strata) {
+    const bool is_valid = stratum.focus_of == -1 || (stratum.focus_of >= 0 && stratum.focus_of < std::ssize(strata) &&
+                                                     !strata[static_cast<size_t>(stratum.focus_of)].is_focus());
+    require(is_valid, "focus_of", "must be -1 or the index of a stratum that is no focus", stratum.focus_of);
+  }
+}
+
 }  // namespace
 
 void Paths::validate() const {
@@ -78,6 +86,7 @@ void Paths::validate() const {
   require(frame.num_batches >= 1 && frame.num_batches <= 64, "num_batches", "must lie in [1, 64]", frame.num_batches);
   require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
           "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());
+  validate_foci(frame.strata);
   for (size_t path = 0; path < size; ++path) validate_path(path);
   for (const Hit& hit : *hits) validate_hit(hit, *scene);
 }

@@ -9,8 +9,9 @@ namespace echopath {
 
 // Every first hit on a surface, straight from the transmitter or over flagged mirrors, belongs to one stratum: the one that aims at
 // its object (or at that image of it), which holds all of it, else the field of view. Rays of other strata that come there end.
-// The echo of an object is thus that of one lattice of one density, as if the object were alone; what it stands for is one
-// over that density, whatever else is aimed at. Diffuse hits on flagged mirrors belong to the field of view.
+// The echo of an object is thus that of one lattice, or of several that share each direction (launch_focus.h), as if the object
+// were alone: weights that combine kinds of rays take the density of the owner. Diffuse hits on flagged mirrors belong to the field of
+// view.
 class RayOwners {
  public:
   // `object_of_mesh` [meshes]: -1 for meshes that nothing aims at.

@@ -86,7 +86,7 @@ struct RayShooter::Packet {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  LaneValues densities;  // rays per sr that they stand for
+  LaneValues densities;  // rays per sr, if each counted in full: of the owner over what a ray stands for; infinite where foci have all
   PacketChance chance;
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;        // the hits, off their surfaces

@@ -11,6 +11,7 @@ void TraceSettings::validate() const {
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
   require(std::isfinite(start_time), "start_time", "must be finite", start_time);
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
+  guide.validate();
 }
 
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace echopath {
 namespace {
@@ -18,6 +19,7 @@ struct Work {
   size_t num_bytes() const { return bytes; }
 };
 using Kept = KeptMemory<Work>;
+static_assert(noexcept(std::declval<Kept&>().leave(nullptr)), "destructors leave memory");
 
 std::unique_ptr<Work> work_of(size_t bytes) {
   auto work = std::make_unique<Work>();

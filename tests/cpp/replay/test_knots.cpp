@@ -91,5 +91,47 @@ TEST(MotionKnots, PolynomialsBetweenThemFollowLongFrames) {
   EXPECT_LT(error, kPhaseTolerance);
 }
 
+// Goes straight on, but cannot tell how fast it turns when it is asked for the first time.
+class ForgetfulMotion : public LinearMotion {
+ public:
+  ForgetfulMotion() : LinearMotion({1, 0, 0}) {}
+  double turn_rate(const TimeSpan& during) const override {
+    if (num_asked_++ == 0) throw std::runtime_error("what was the question?");
+    return LinearMotion::turn_rate(during);
+  }
+
+ private:
+  mutable int num_asked_ = 0;
+};
+
+// Behind a limb that sways and needs more.
+Paths forgetful_record(const Radar& radar) {
+  const Paths swayed = record(radar);
+  Scene scene = *swayed.scene;
+  Surface surface = ellipsoid(Vec3::Zero(), {.1, .1, .1}, 2);
+  Node node;
+  node.name = "ball";
+  node.placement = Eigen::Translation3d(12, -2, 0) * Transform::Identity();
+  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  node.material = lambert(0.4);
+  node.motion = std::make_shared<ForgetfulMotion>();
+  scene.add(node);
+  TraceSettings settings;
+  settings.num_rays = 2000;
+  settings.max_bounces = 1;
+  settings.start_time = 0.05;
+  return trace(scene, radar, settings);
+}
+
+TEST(NodeLevels, AreThoseOfTheirMeshesAfterAnErrorToo) {
+  const Radar radar = long_frame();
+  const Paths paths = forgetful_record(radar);
+  const Replayer asked_twice(paths, radar), asked_once(paths, radar);
+  EXPECT_THROW(asked_twice.levels().first_level(0), std::runtime_error);
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    EXPECT_EQ(asked_twice.levels().first_level(path), asked_once.levels().first_level(path)) << path;
+  }
+}
+
 }  // namespace
 }  // namespace echopath

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "echopath/base/random.h"
 #include "echopath/replay/received_power.h"
@@ -15,6 +17,8 @@ using namespace testing;
 
 constexpr double kRounding = 1e-12;
 constexpr double kDiffuse = 5e-3;   // relative, of the power of 20 000 hits of a lattice
+constexpr double kWeakest = 1e-3;   // of the whole, of ways that are compared
+constexpr double kOfAWay = 0.05;    // relative, of ways over two diffuse hits, which are drawn at random
 constexpr double kFlank = 1e-3;     // relative, of the rim of a focus
 constexpr double kSphereDb = 0.1;   // of a metal sphere of 1280 facets against geometrical optics, with foci or without
 
@@ -114,6 +118,80 @@ TEST(LaunchFoci, LeaveTheEchoOfASphereAsItIs) {
     const double power = received_power(of_left(shot(scene, guide(), batches))).power;
     EXPECT_NEAR(10.0 * std::log10(power / expected), 0.0, kSphereDb) << batches;
   }
+}
+
+// W, by the meshes that paths touch, in order.
+std::map<std::vector<uint32_t>, double> power_by_way(const Paths& paths) {
+  std::map<std::vector<uint32_t>, uint32_t> group_of_way;
+  std::vector<uint32_t> group;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    std::vector<uint32_t> way;
+    for (int k = 0; k < paths.num_bounces[static_cast<size_t>(path)]; ++k) way.push_back(paths.hits_of(path)[k].mesh_id);
+    group.push_back(group_of_way.try_emplace(std::move(way), static_cast<uint32_t>(group_of_way.size())).first->second);
+  }
+  const std::vector<ReceivedPower> powers = received_powers(paths, Sorting{group, group_of_way.size()});
+  std::map<std::vector<uint32_t>, double> out;
+  for (const auto& [way, index] : group_of_way) out[way] = powers[index].power;
+  return out;
+}
+
+// Rough balls before a rough flagged wall: pairs of legs, chains of two diffuse hits and their opposite orders, images.
+TEST(LaunchFoci, LeaveEveryWayAsItIsInBothPolarisations) {
+  Scene scene = two_balls(true);
+  Material wall;
+  wall.permittivity = std::complex<double>(5.0, -0.3);
+  wall.scattering = 0.4;
+  wall.mirror = true;
+  add_rectangle(scene, "wall", {5, 2.5, -3}, {12, 0, 0}, {0, 0, 6}, share(wall));
+  for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
+    TraceSettings settings;
+    settings.num_rays = 400000;
+    settings.max_bounces = 3;
+    settings.polarization = model;
+    const Paths even = trace(scene, radar(), settings);
+    settings.guide = guide_like(even.frame.strata);
+    for (const Stratum& stratum : even.frame.strata) {
+      settings.guide.shares[stratum.name] *= 0.7;
+      const double versine = std::min(0.3 * stratum.versine, 0.05);  // some hang over the rim of what they are in
+      const Vec3 aside = (stratum.axis + 0.8 * std::sqrt(2.0 * versine) * stratum.axis.unitOrthogonal()).normalized();
+      settings.guide.foci.push_back({stratum.name, aside, versine, 0.3 * static_cast<double>(stratum.num_rays)});
+    }
+    const auto with = power_by_way(trace(scene, radar(), settings)), without = power_by_way(even);
+    double whole = 0.0;
+    for (const auto& [way, power] : without) whole += power;
+    int num_compared = 0;
+    for (const auto& [way, power] : without) {
+      if (power < kWeakest * whole) continue;
+      EXPECT_NEAR(with.at(way) / power, 1.0, kOfAWay) << way.size() << " bounces, first " << way.front();
+      ++num_compared;
+    }
+    EXPECT_GE(num_compared, 6);
+  }
+}
+
+TEST(LaunchFoci, AGuideOfATraceRepeatsIt) {
+  const Scene scene = two_balls(false);
+  const Paths first = shot(scene, guide()), second = shot(scene, guide_like(first.frame.strata));
+  ASSERT_EQ(second.frame.strata.size(), first.frame.strata.size());
+  for (size_t k = 0; k < first.frame.strata.size(); ++k) {
+    EXPECT_EQ(second.frame.strata[k].num_rays, first.frame.strata[k].num_rays) << first.frame.strata[k].name;
+    EXPECT_EQ(second.frame.strata[k].name, first.frame.strata[k].name);
+  }
+  EXPECT_EQ(second.weight, first.weight);
+}
+
+TEST(LaunchFoci, OfNoStratumOrOfNoSizeAreRefused) {
+  const Scene scene = two_balls(false);
+  LaunchGuide flat = guide(), endless = guide(), alone = guide();
+  flat.foci[0].versine = 0.0;
+  endless.foci[1].share = std::numeric_limits<double>::infinity();
+  alone.shares.clear();
+  for (const LaunchGuide& bad : {flat, endless, alone}) EXPECT_THROW(shot(scene, bad), std::invalid_argument);
+  Paths paths = shot(scene, guide());
+  paths.frame.strata[2].focus_of = 3;
+  EXPECT_THROW(paths.validate(), std::invalid_argument);
+  paths.frame.strata[2].focus_of = 99;
+  EXPECT_THROW(paths.validate(), std::invalid_argument);
 }
 
 }  // namespace

@@ -32,6 +32,19 @@ TEST(ReflectionPoint, OfAPlaneLiesOnTheLineToTheImage) {
   EXPECT_NEAR(std::abs(found->axes[1].dot((second - first).cross(Vec3::UnitZ()).normalized())), 1.0, kRounding);
 }
 
+// Between antennas that see each other over the surface, the line that halves the angle turns fast from place to place.
+TEST(ReflectionPoint, IsFoundAtAnyAngleAnywhereInTheTriangle) {
+  for (const double height : {0.05, 0.3, 1.0, 5.0}) {
+    for (const double across : {-1.9, -1.0, 0.0, 1.0, 1.9}) {
+      const std::array<Vec3, 3> corners = {Vec3(0, across - 2.0, 0), Vec3(2.165, across + 2.0, 0), Vec3(-2.165, across + 2.0, 0)};
+      const auto found = find_reflection(reflecting_triangle(corners, {Vec3::UnitZ(), Vec3::UnitZ(), Vec3::UnitZ()}),
+                                         Vec3(-10, 0, height), Vec3(10, 0, height));
+      ASSERT_TRUE(found) << height << " " << across;
+      EXPECT_LT(found->position.norm(), kRounding);
+    }
+  }
+}
+
 TEST(ReflectionPoint, IsNotBesideTheTriangleNorBetweenItsSides) {
   EXPECT_FALSE(find_reflection(on_floor(0.1), Vec3(-3, 0.4, 2), Vec3(4, -0.2, 1)));
   EXPECT_FALSE(find_reflection(on_floor(10), Vec3(0, 0, 2), Vec3(0, 0, -2)));

@@ -140,5 +140,17 @@ TEST(RangeDoppler, BadInputIsAnError) {
   EXPECT_THROW(range_doppler(std::vector<Complex>(512), radar, {}, 1, &job), Cancelled);
 }
 
+TEST(RangeDoppler, RefusesMapsThatNoTransformCanIndex) {
+  Radar radar = small_radar();
+  radar.waveform.num_samples = 1 << 26;
+  radar.waveform.chirp_interval = 10.0;
+  try {
+    range_doppler(nullptr, 0, radar, {}, 64);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("below 2^31"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace echopath

@@ -86,7 +86,7 @@ TEST(Trace, PacketsWriteDownWhatRaysDoOneByOne) {
   add_rectangle(mirrored, "mirror", {-2.9, -2.0, 0.0}, 0.01 * across, 0.01 * up, share(Material::metal(true)));
   const auto mirror = static_cast<uint32_t>(mirrored.meshes().size() - 1);
   const Paths by_one = trace(mirrored, radar, settings);
-  settings.guide.shares = shares_of(by_one.frame.strata);  // the same rays
+  settings.guide = guide_like(by_one.frame.strata);  // the same rays
   const std::vector<Row> together = rows_of(trace(alone, radar, settings), mirror), one_by_one = rows_of(by_one, mirror);
   ASSERT_EQ(together.size(), one_by_one.size());
   int num_coherent = 0, num_diffuse = 0, num_long = 0;

@@ -13,7 +13,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/base/parallel.h"
-#include "echopath/replay/path_power.h"
+#include "echopath/power/path_power.h"
 #include "echopath/replay/replay.h"
 #include "run_job.h"
 

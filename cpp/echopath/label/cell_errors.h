@@ -32,7 +32,7 @@ struct ShareErrors {
 //   x_b = 2 f (Re[mean(C)* C_b] - |mean C|^2) + B |d_b|^2 - D,   f^2 = max(U, 0)/|mean C|^2,
 //   SE^2 = sum x_b^2/(B (B - 1)) + n,
 // where n = s^4/(B (B - 1)), s^2 the variance of the C_b, is what noise alone has (second order), as in
-// replay/received_power.h. Errors of shares and of their differences: jackknife over the shares of P - x_b/(B - 1), which
+// power/received_power.h. Errors of shares and of their differences: jackknife over the shares of P - x_b/(B - 1), which
 // has in it the covariance of parts by the same rays and that a share is no linear function of powers; and n as above.
 // s^4 takes the channels as copies of each other, which for the elements of one array seen from one cell they are, but
 // for a phase;

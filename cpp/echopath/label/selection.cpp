@@ -9,7 +9,7 @@
 #include "echopath/base/simd.h"
 #include "echopath/label/automaton.h"
 #include "echopath/label/selection_text.h"
-#include "echopath/replay/path_power.h"
+#include "echopath/power/path_power.h"
 
 namespace echopath {
 

@@ -49,7 +49,7 @@ class Selection {
   // Paths with their first (last) hit on a mesh that the glob takes: T 'glob' .* R (T .* 'glob' R).
   static Selection first(std::string_view glob);
   static Selection last(std::string_view glob);
-  // Paths whose power (replay/path_power.h) compares so with a finite power in W.
+  // Paths whose power (power/path_power.h) compares so with a finite power in W.
   enum class Comparison { kBelow, kAtMost, kAbove, kAtLeast };
   static Selection power(Comparison comparison, double watts);
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "echopath/base/errors.h"
-#include "echopath/replay/new_surface.h"
-#include "echopath/replay/renewal.h"
-#include "echopath/replay/validity.h"
 #include "echopath/trace/trace.h"
+#include "echopath/validity/new_surface.h"
+#include "echopath/validity/renewal.h"
+#include "echopath/validity/validity.h"
 
 namespace echopath {
 namespace {

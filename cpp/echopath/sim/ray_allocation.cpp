@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "echopath/replay/received_power.h"
-#include "echopath/sim/plan_foci.h"
+#include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
+#include "echopath/sim/plan_foci.h"
 #include "echopath/trace/aim.h"
 
 namespace echopath {

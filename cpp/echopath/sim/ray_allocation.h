@@ -34,7 +34,7 @@ struct RayNeeds {
 };
 
 // Every stratum whose echo may stand above the floor asks for as many rays as bring its interval
-// (replay/received_power.h) to `target_db`, those of objects that move to a quarter of it: the interval of a coherent echo falls
+// (power/received_power.h) to `target_db`, those of objects that move to a quarter of it: the interval of a coherent echo falls
 // about with the rays, that of a diffuse one with their root, so that both ask in proportion to what they miss, within a factor
 // of kMostGrowth. What is known better gives rays back, down to a sixteenth; what no ray has met keeps a quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
@@ -48,7 +48,7 @@ RayShares share_out(const RayNeeds& needs, double num_rays);
 // Cancelled.
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
 
-// A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (replay/received_power.h): a
+// A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h): a
 // pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where
 // settings.guide says how, or where rays are few. Raises as `trace`.
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,

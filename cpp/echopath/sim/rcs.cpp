@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/replay/received_power.h"
+#include "echopath/power/received_power.h"
 
 namespace echopath {
 namespace {

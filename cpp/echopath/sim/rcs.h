@@ -49,7 +49,7 @@ struct RcsSettings {
   void validate() const;
 };
 
-// All in m^2, with the standard errors of replay/received_power.h: NaN for one batch. Coherent echoes add as fields;
+// All in m^2, with the standard errors of power/received_power.h: NaN for one batch. Coherent echoes add as fields;
 // diffuse ones, whose phases are random, as powers: their mean over realisations of the roughness. With batches the
 // coherent part is free of bias by noise, which can take it below zero where it is not resolved.
 struct RadarCrossSection {

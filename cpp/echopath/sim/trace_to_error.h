@@ -21,7 +21,7 @@ struct ErrorTarget {
 
 // Traces with settings.num_rays and then, as long as the echo of some stratum above the floor is known to less than the
 // target, with at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays. The error
-// is half the 95 % interval of the worst of them (replay/received_power.h), of the footprint's bias and chance together.
+// is half the 95 % interval of the worst of them (power/received_power.h), of the footprint's bias and chance together.
 // Each trace is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the
 // square root only; all traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the
 // outcome. Stops at once where no ray meets anything. Raises as trace. All traces share one geometry: `kept`, as in `trace`,

@@ -65,9 +65,9 @@ ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LaneVectors* lane
 
 }  // namespace
 
-HitChance hit_chance(uint64_t seed, int64_t ray, int depth) {
+HitSamples hit_samples(uint64_t seed, int64_t ray, int depth) {
   double re, im;
-  HitChance chance;
+  HitSamples chance;
   draw_chance<1>(seed, static_cast<uint64_t>(ray), static_cast<uint32_t>(depth),
                  {&re, &im, &chance.axis_coin, &chance.lobe_coin, &chance.survival_coin});
   chance.phase = {re, im};

@@ -39,9 +39,9 @@ void RayShooter::follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock&
   for (RayHit met;;) {
     connect(ray, surface, scratch, block);
     if (ray.depth == settings_.max_bounces) return;
-    const Departure way = depart(ray, surface, scratch.chain, block.current_batch);
-    if (way.ends || ask(way.from, way.direction, met, block) != EmbreeScene::Verdict::kHit) return;
-    if (!travel(ray, way, met, surface, scratch, block)) return;
+    const ScatterSample sample = scatter(ray, surface, scratch.chain, block.current_batch);
+    if (sample.ends || ask(sample.from, sample.direction, met, block) != EmbreeScene::Verdict::kHit) return;
+    if (!travel(ray, sample, met, surface, scratch, block)) return;
   }
 }
 
@@ -54,13 +54,13 @@ EmbreeScene::Verdict RayShooter::ask(const Vec3& from, const Vec3& direction, Ra
 
 // From the hit of `surface` to the one that is met next. What the bounce makes of a ray is worked out only then: most meet
 // nothing.
-bool RayShooter::travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch,
+bool RayShooter::travel(Ray& ray, const ScatterSample& sample, const RayHit& met, Surface& surface, Scratch& scratch,
                         PathBlock& block) const {
-  if (!bounce(ray, surface, way, scratch)) return false;
+  if (!bounce(ray, surface, sample, scratch)) return false;
   surface.point = met;
   surface.receiver = ShadowState::kUnknown;
   if (!arrive(ray, surface, scratch, block)) return false;
-  surface.chance = hit_chance(settings_.seed, ray.index, ray.depth);
+  surface.chance = hit_samples(settings_.seed, ray.index, ray.depth);
   return true;
 }
 
@@ -97,12 +97,12 @@ bool RayShooter::arrive(Ray& ray, Surface& surface, const Scratch& scratch, Path
     if (!passes_on && !ray.is_owned) return false;
   }
   ++block.statistics.num_hits;
-  settle(ray, surface);
+  record_hit(ray, surface);
   return true;
 }
 
 // At a hit whose response is known.
-void RayShooter::settle(Ray& ray, Surface& surface) const {
+void RayShooter::record_hit(Ray& ray, Surface& surface) const {
   surface.material = &surface.model->material();
   ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
   ray.leg_length += surface.point.distance;

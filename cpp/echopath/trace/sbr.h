@@ -50,12 +50,12 @@ class RayShooter {
   struct Surface;  // where it is
   struct RayAtHit;
   struct Scratch;
-  struct Odds {    // of going on
+  struct LobeProbabilities {    // of going on
     double specular = 0.0, diffuse = 0.0;
   };
-  static constexpr Odds kPassingOn{1.0, 0.0};  // of rays that are not yet where they aim at
+  static constexpr LobeProbabilities kPassingOn{1.0, 0.0};  // of rays that are not yet where they aim at
   struct Packet;   // of neighbouring rays up to their first hits
-  struct Departure;  // of a ray from a hit
+  struct ScatterSample;  // of a ray from a hit
   struct Chain;    // of diffuse hits
   struct PathEnd;
   struct OrderShares {  // of a ray's echo, in its own order and in the opposite one
@@ -74,16 +74,16 @@ class RayShooter {
   void look_at_receiver(Packet& packet, PathBlock& block) const;
   void shoot_lane(const Packet& packet, int lane, Scratch& scratch, PathBlock& block) const;
   void add_echoes(const Packet& packet, int lane, PathBlock& block) const;
-  static Departure departure_of(const Packet& packet, int lane);
+  static ScatterSample sample_of(const Packet& packet, int lane);
   RayAtHit& start(const Packet& packet, int lane, Scratch& scratch) const;
   // One ray.
   void follow(Ray& ray, Surface& surface, Scratch& scratch, PathBlock& block) const;
   EmbreeScene::Verdict ask(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
-  bool travel(Ray& ray, const Departure& way, const RayHit& met, Surface& surface, Scratch& scratch, PathBlock& block) const;
+  bool travel(Ray& ray, const ScatterSample& sample, const RayHit& met, Surface& surface, Scratch& scratch, PathBlock& block) const;
   bool arrive(Ray& ray, Surface& surface, const Scratch& scratch, PathBlock& block) const;
   bool is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const;
   bool passes(int stratum, uint32_t mesh_id) const;
-  void settle(Ray& ray, Surface& surface) const;
+  void record_hit(Ray& ray, Surface& surface) const;
   void follow_tube(Ray& ray, Surface& surface) const;
   std::array<float, 7> cell_behind_curves(const Ray& ray, const Surface& surface) const;
   // sbr_orders.cpp: unflagged surfaces as mirrors, and which of a path's two orders stands.
@@ -108,13 +108,13 @@ class RayShooter {
   void record_fan(const Ray& ray, const Surface& surface, std::complex<double> weight, Scratch& scratch,
                   PathBlock& block) const;
   // sbr_bounce.cpp
-  Departure depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const;
-  bool bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
-  void bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
+  ScatterSample scatter(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const;
+  bool bounce(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const;
+  void bounce_specular(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const;
   void reflect_tube(Ray& ray, const Surface& surface) const;
-  void bounce_diffuse(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const;
+  void bounce_diffuse(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const;
   Vec3 scatter_lobe(const Ray& ray, int batch) const;
-  Odds odds_of(const SurfaceModel& model, const SurfaceResponse& response) const;
+  LobeProbabilities odds_of(const SurfaceModel& model, const SurfaceResponse& response) const;
   static double survival_of(const SurfaceResponse& response, int num_bounces);  // of the roulette behind that many bounces
   SurfaceResponse response_toward(const Surface& surface, const Vec3& direction) const;
   // sbr_diffuse.cpp: chains of several diffuse hits.
@@ -152,7 +152,7 @@ class RayShooter {
   AntennaView transmitter_, receiver_;
   std::vector<int> mirror_of_mesh_;  // by mesh ID, -1: none
   std::vector<SurfaceModel> models_;  // by mesh ID
-  std::vector<Odds> constant_odds_;   // by mesh ID, of models that are constant
+  std::vector<LobeProbabilities> constant_odds_;   // by mesh ID, of models that are constant
   std::vector<double> mesh_width_;   // by mesh ID, m: of smooth ones (sbr_orders.cpp)
   double wavelength_;                // m
   bool has_smooth_ = false;          // differentials are followed only then

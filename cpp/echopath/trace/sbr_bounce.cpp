@@ -23,44 +23,44 @@ double RayShooter::survival_of(const SurfaceResponse& response, int num_bounces)
   return std::min(1.0, std::max(std::norm(response.gamma), facet));
 }
 
-RayShooter::Odds RayShooter::odds_of(const SurfaceModel& model, const SurfaceResponse& response) const {
-  const Odds shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
+RayShooter::LobeProbabilities RayShooter::odds_of(const SurfaceModel& model, const SurfaceResponse& response) const {
+  const LobeProbabilities shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
   const bool is_asked = settings_.specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
   // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
   if (!is_asked || model.material().mirror) return shares;
   return {settings_.specular_probability, 1.0 - settings_.specular_probability};
 }
 
-RayShooter::Departure RayShooter::depart(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const {
+RayShooter::ScatterSample RayShooter::scatter(const Ray& ray, const Surface& surface, const Chain& chain, int batch) const {
   const SurfaceResponse& response = surface.response;
-  const Odds odds = ray.is_owned ? odds_of(*surface.model, response) : kPassingOn;
-  Departure way;
-  way.survival = survival_of(response, ray.coherent ? ray.depth : ray.depth - chain.first);
-  way.ends = surface.chance.survival_coin >= way.survival || std::norm(response.gamma) == 0;
-  if (way.ends) return way;
-  way.is_specular = surface.chance.lobe_coin < odds.specular;
-  way.odds = way.is_specular ? odds.specular : odds.diffuse;
+  const LobeProbabilities odds = ray.is_owned ? odds_of(*surface.model, response) : kPassingOn;
+  ScatterSample sample;
+  sample.survival = survival_of(response, ray.coherent ? ray.depth : ray.depth - chain.first);
+  sample.ends = surface.chance.survival_coin >= sample.survival || std::norm(response.gamma) == 0;
+  if (sample.ends) return sample;
+  sample.is_specular = surface.chance.lobe_coin < odds.specular;
+  sample.odds = sample.is_specular ? odds.specular : odds.diffuse;
   const Vec3& normal = surface.point.normal;
-  way.from = geometry_.lifted(surface.point.position, normal);
-  way.direction = packed(way.is_specular ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
+  sample.from = geometry_.lifted(surface.point.position, normal);
+  sample.direction = packed(sample.is_specular ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
                                          : over_surface(unpacked(normal), unpacked(scatter_lobe(ray, batch))));
-  return way;
+  return sample;
 }
 
 // What becomes of the ray on its way. False: nothing that counts.
-bool RayShooter::bounce(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
-  if (!way.is_specular && !ray.holds_zones) return false;
-  if (way.is_specular) bounce_specular(ray, surface, way, scratch);
-  else bounce_diffuse(ray, surface, way, scratch);
-  ray.direction = way.direction;
+bool RayShooter::bounce(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const {
+  if (!sample.is_specular && !ray.holds_zones) return false;
+  if (sample.is_specular) bounce_specular(ray, surface, sample, scratch);
+  else bounce_diffuse(ray, surface, sample, scratch);
+  ray.direction = sample.direction;
   return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
 }
 
-void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
+void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const {
   Chain& chain = scratch.chain;
   const SurfaceResponse& response = surface.response;
   const RayHit& point = surface.point;
-  ray.field_factor /= way.probability();
+  ray.field_factor /= sample.probability();
   if (ray.coherent && has_smooth_) reflect_tube(ray, surface);
   if (settings_.is_polarized) reflect_polarized(ray, surface, ray.polarized);
   if (settings_.is_polarized && !ray.coherent && chain.back) reflect_polarized(ray, surface, chain.fields);
@@ -69,8 +69,8 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departu
     ray.coefficient *= mirror_sign(*surface.material, surface.mode, settings_.polarization, ray.direction, point.normal);
   }
   ray.coefficient *= response.gamma * response.coherent;
-  ray.leg_density *= way.probability();
-  ray.chain_share *= way.odds;
+  ray.leg_density *= sample.probability();
+  ray.chain_share *= sample.odds;
   const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
   ray.sequence = is_leg ? extended(ray.sequence, mirror, mirrors_.size()) : kOther;
   if (is_leg) ray.is_owned = false;  // what is met next may have another owner
@@ -80,7 +80,7 @@ void RayShooter::bounce_specular(Ray& ray, const Surface& surface, const Departu
     scratch.mirror = point;
     scratch.mirror_arrival = ray.direction;
   }
-  if (!ray.coherent) leave_specular(ray, surface, way.probability(), chain);
+  if (!ray.coherent) leave_specular(ray, surface, sample.probability(), chain);
 }
 
 // The tube of a coherent ray, before its direction changes.
@@ -99,8 +99,8 @@ Vec3 RayShooter::scatter_lobe(const Ray& ray, int batch) const {
   return cosine_lobe(uniform2(settings_.seed, Stream::kBounce, index, static_cast<uint32_t>(ray.depth)));
 }
 
-void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, const Departure& way, Scratch& scratch) const {
-  if (ray.coherent) begin_chain(ray, surface, way.probability(), scratch);
+void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, const ScatterSample& sample, Scratch& scratch) const {
+  if (ray.coherent) begin_chain(ray, surface, sample.probability(), scratch);
   ray.coefficient *= diffuse_coefficient(surface.response);
   ray.area *= surface.area;
   ray.diffuse |= uint64_t{1} << (ray.depth - 1);
@@ -108,10 +108,10 @@ void RayShooter::bounce_diffuse(Ray& ray, const Surface& surface, const Departur
   ray.sequence = kOther;
   ray.num_mirrors = 0;
   ray.last_was_mirror = false;
-  leave_diffuse(ray, surface, way.direction, way.probability(), scratch.chain);
-  if (settings_.is_polarized) scatter_polarized(ray, surface, way.direction);
+  leave_diffuse(ray, surface, sample.direction, sample.probability(), scratch.chain);
+  if (settings_.is_polarized) scatter_polarized(ray, surface, sample.direction);
   ray.leg_length = 0.0;
-  ray.leg_density = way.probability() * std::max(surface.point.normal.dot(way.direction), 1e-9) / kPi;
+  ray.leg_density = sample.probability() * std::max(surface.point.normal.dot(sample.direction), 1e-9) / kPi;
 }
 
 }  // namespace echopath

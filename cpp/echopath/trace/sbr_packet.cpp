@@ -165,7 +165,7 @@ void RayShooter::look_at_surface(Packet& packet, int lane) const {
   packet.modes[k] = is_constant ? PolarizationMode::kTe
                                 : mode_along(model, settings_.polarization, packet.directions[lane], packet.hits.normal[lane]);
   const SurfaceResponse response = model.respond(packet.cos_incidence[lane], packet.modes[k]);
-  const Odds odds = !packet.is_owned[k] ? kPassingOn : is_constant ? constant_odds_[mesh] : odds_of(model, response);
+  const LobeProbabilities odds = !packet.is_owned[k] ? kPassingOn : is_constant ? constant_odds_[mesh] : odds_of(model, response);
   packet.set_response(lane, response, odds);
   if (settings_.is_polarized && has_only_direct_legs_) look_at_modes(packet, lane);
   packet.goes_on[k] = settings_.max_bounces > 1 && response.gamma != 0.0;
@@ -210,7 +210,7 @@ void RayShooter::shoot_lane(const Packet& packet, int lane, Scratch& scratch, Pa
   if (packet.is_plain[k] && !goes_on) return block.end_ray(&packet.hits.met[k]);
   auto& [ray, surface] = start(packet, lane, scratch);
   if (!packet.is_plain[k]) connect(ray, surface, scratch, block);
-  if (goes_on && travel(ray, departure_of(packet, lane), met, surface, scratch, block)) follow(ray, surface, scratch, block);
+  if (goes_on && travel(ray, sample_of(packet, lane), met, surface, scratch, block)) follow(ray, surface, scratch, block);
   block.end_ray(ray.hits.data());
 }
 
@@ -238,14 +238,14 @@ void RayShooter::add_echoes(const Packet& packet, int lane, PathBlock& block) co
   }
 }
 
-RayShooter::Departure RayShooter::departure_of(const Packet& packet, int lane) {
+RayShooter::ScatterSample RayShooter::sample_of(const Packet& packet, int lane) {
   static_assert(kRouletteBounce > 1, "first hits know of no roulette");
-  Departure way;
-  way.from = packet.lifted[lane];
-  way.direction = packet.out[lane];
-  way.is_specular = packet.chance.lobe_coin[lane] < packet.specular_odds[lane];
-  way.odds = way.is_specular ? packet.specular_odds[lane] : packet.diffuse_odds[lane];
-  return way;
+  ScatterSample sample;
+  sample.from = packet.lifted[lane];
+  sample.direction = packet.out[lane];
+  sample.is_specular = packet.chance.lobe_coin[lane] < packet.specular_odds[lane];
+  sample.odds = sample.is_specular ? packet.specular_odds[lane] : packet.diffuse_odds[lane];
+  return sample;
 }
 
 // The ray of a lane at its first hit.
@@ -269,7 +269,7 @@ RayShooter::RayAtHit& RayShooter::start(const Packet& packet, int lane, Scratch&
   surface.model = packet.models[k];
   surface.mode = packet.modes[k];
   surface.response = packet.response(lane);
-  settle(ray, surface);
+  record_hit(ray, surface);
   return scratch.first;
 }
 

@@ -69,7 +69,7 @@ struct RayShooter::Surface {
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
   ShadowState receiver = ShadowState::kUnknown;  // as seen from here
-  HitChance chance;
+  HitSamples chance;
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 };
 
@@ -110,7 +110,7 @@ struct RayShooter::Packet {
   LaneValues cross_share, axis_cosine, axis_sine;  // of diffuse hits
   LanesOf<float> field_jones[4][2], power_jones[4][2];  // [entry][re, im]
 
-  void set_response(int lane, const SurfaceResponse& response, const Odds& odds) {
+  void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& odds) {
     gamma_re[lane] = response.gamma.real();
     gamma_im[lane] = response.gamma.imag();
     coherent[lane] = response.coherent;
@@ -126,7 +126,7 @@ struct RayShooter::Packet {
 };
 
 // How a ray leaves a hit.
-struct RayShooter::Departure {
+struct RayShooter::ScatterSample {
   Vec3 from, direction;
   bool is_specular = false;
   double odds = 1.0;      // of that, where the ray goes on

@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 
-#include "echopath/replay/received_power.h"
+#include "echopath/power/received_power.h"
 #include "echopath/trace/record_writer.h"
 #include "echopath/trace/sbr.h"
 #include "support/scenes.h"

@@ -22,7 +22,7 @@ TEST(Chance, PacketsHoldTheNumbersOfEachRay) {
       PacketChance packet;
       packet.draw(kSeed, first, count, batches.data());
       for (int lane = 0; lane < count; ++lane) {
-        const HitChance expected = hit_chance(kSeed, first + lane, 1), found = packet.hit(lane);
+        const HitSamples expected = hit_samples(kSeed, first + lane, 1), found = packet.hit(lane);
         EXPECT_LT(std::abs(found.phase - expected.phase), kRounding);
         EXPECT_EQ(found.axis_coin, expected.axis_coin);
         EXPECT_EQ(found.lobe_coin, expected.lobe_coin);
@@ -40,7 +40,7 @@ TEST(Chance, CoinsAreFairAndIndependent) {
   double survival = 0.0, lobe = 0.0, product = 0.0;
   std::complex<double> phase = 0.0;
   for (int ray = 0; ray < kRays; ++ray) {
-    const HitChance chance = hit_chance(11, ray, 2);
+    const HitSamples chance = hit_samples(11, ray, 2);
     EXPECT_NEAR(std::abs(chance.phase), 1.0, kRounding);
     survival += chance.survival_coin / kRays;
     lobe += chance.lobe_coin / kRays;
@@ -73,10 +73,10 @@ TEST(Chance, HitsRaysAndSeedsAreIndependent) {
   constexpr int64_t kFar = int64_t{1} << 32;
   double depth = 0.0, far = 0.0, seed = 0.0, direction = 0.0;
   for (int ray = 0; ray < kRays; ++ray) {
-    const double coin = hit_chance(11, ray, 1).survival_coin;
-    depth += coin * hit_chance(11, ray, 2).survival_coin / kRays;
-    far += coin * hit_chance(11, kFar + ray, 1).survival_coin / kRays;
-    seed += coin * hit_chance(kFar + 11, ray, 1).survival_coin / kRays;
+    const double coin = hit_samples(11, ray, 1).survival_coin;
+    depth += coin * hit_samples(11, ray, 2).survival_coin / kRays;
+    far += coin * hit_samples(11, kFar + ray, 1).survival_coin / kRays;
+    seed += coin * hit_samples(kFar + 11, ray, 1).survival_coin / kRays;
     direction += coin * scatter_point(11, 0, ray, 0)[1] / kRays;
   }
   for (const double product : {depth, far, seed, direction}) EXPECT_NEAR(product, 0.25, 5 * std::sqrt(7.0 / 144 / kRays));

@@ -1,4 +1,4 @@
-#include "echopath/replay/received_power.h"
+#include "echopath/power/received_power.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "array.h"
-#include "echopath/replay/received_power.h"
+#include "echopath/power/received_power.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -45,7 +45,7 @@ std::string power_text(const ReceivedPower& self) {
 
 }  // namespace
 
-void bind_received_power(py::module_& m) {
+void bind_power(py::module_& m) {
   py::class_<ReceivedPower>(m, "ReceivedPower",
                             R"(Mean received power of a set of paths and how well the rays know it; all powers in W.
 

@@ -1,9 +1,9 @@
-#include "echopath/replay/frame_probe.h"
+#include "echopath/validity/frame_probe.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/replay/array_corners.h"
+#include "echopath/validity/array_corners.h"
 
 namespace echopath {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/replay/array_corners.h"
+#include "echopath/validity/array_corners.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -3,10 +3,10 @@
 // something blocks, how the surfaces have turned.
 #include <memory>
 
-#include "echopath/replay/leg_memo.h"
 #include "echopath/replay/local_paths.h"
 #include "echopath/replay/specular_slide.h"
-#include "echopath/replay/surface_walk.h"
+#include "echopath/validity/leg_memo.h"
+#include "echopath/validity/surface_walk.h"
 
 namespace echopath {
 

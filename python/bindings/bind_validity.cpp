@@ -7,8 +7,8 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/replay/renewal.h"
-#include "echopath/replay/validity.h"
+#include "echopath/validity/renewal.h"
+#include "echopath/validity/validity.h"
 #include "keywords.h"
 #include "run_job.h"
 
@@ -176,7 +176,7 @@ Returns a Renewal. Raises ValueError when a motion does not cover the time.)");
 
 }  // namespace
 
-void bind_replay(py::module_& m) {
+void bind_validity(py::module_& m) {
   bind_renewal(m);
   bind_shares(m);
   bind_objects(m);

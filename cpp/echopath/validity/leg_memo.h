@@ -3,8 +3,8 @@
 // chains to its hits, so most legs are those of other paths, too.
 #include <vector>
 
-#include "echopath/replay/leg_shadows.h"
 #include "echopath/replay/segment_ids.h"
+#include "echopath/validity/leg_shadows.h"
 
 namespace echopath {
 

@@ -1,11 +1,11 @@
-#include "echopath/replay/renewal.h"
+#include "echopath/validity/renewal.h"
 
 #include <algorithm>
 #include <numeric>
 
 #include "echopath/base/parallel.h"
 #include "echopath/replay/amplitude.h"
-#include "echopath/replay/frame_probe.h"
+#include "echopath/validity/frame_probe.h"
 
 namespace echopath {
 namespace {

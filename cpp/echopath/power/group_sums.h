@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/replay/power_interval.h"
+#include "echopath/power/power_interval.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {

@@ -1,4 +1,4 @@
-#include "echopath/replay/group_sums.h"
+#include "echopath/power/group_sums.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "echopath/replay/leg_shadows.h"
+#include "echopath/validity/leg_shadows.h"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 #include <bit>
 #include <numeric>
 
-#include "echopath/replay/power_interval.h"
-#include "echopath/replay/received_power.h"
+#include "echopath/power/power_interval.h"
+#include "echopath/power/received_power.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"
 

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "echopath/base/constants.h"
-#include "echopath/replay/validity.h"
+#include "echopath/validity/validity.h"
 
 namespace echopath {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/replay/frame_check.h"
+#include "echopath/validity/frame_check.h"
 
 #include <algorithm>
 

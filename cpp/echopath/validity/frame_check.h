@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "echopath/replay/amplitude.h"
-#include "echopath/replay/check_times.h"
-#include "echopath/replay/frame_probe.h"
 #include "echopath/trace/kept_geometry.h"
+#include "echopath/validity/check_times.h"
+#include "echopath/validity/frame_probe.h"
 
 namespace echopath {
 

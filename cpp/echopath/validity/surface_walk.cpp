@@ -1,4 +1,4 @@
-#include "echopath/replay/surface_walk.h"
+#include "echopath/validity/surface_walk.h"
 
 #include <algorithm>
 #include <cmath>

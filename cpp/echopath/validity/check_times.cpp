@@ -1,4 +1,4 @@
-#include "echopath/replay/check_times.h"
+#include "echopath/validity/check_times.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "echopath/replay/validity.h"
+#include "echopath/validity/validity.h"
 
 namespace echopath {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/replay/group_sums.h"
+#include "echopath/power/group_sums.h"
 #include "echopath/trace/paths.h"
 
 namespace echopath {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "echopath/base/random.h"
-#include "echopath/replay/received_power.h"
+#include "echopath/power/received_power.h"
 #include "echopath/trace/launch_focus.h"
 #include "support/scenes.h"
 

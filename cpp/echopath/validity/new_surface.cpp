@@ -1,9 +1,9 @@
-#include "echopath/replay/new_surface.h"
+#include "echopath/validity/new_surface.h"
 
 #include <algorithm>
 
-#include "echopath/replay/frame_probe.h"
-#include "echopath/replay/renewal.h"
+#include "echopath/validity/frame_probe.h"
+#include "echopath/validity/renewal.h"
 
 namespace echopath {
 namespace {

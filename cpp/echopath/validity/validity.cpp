@@ -1,4 +1,4 @@
-#include "echopath/replay/validity.h"
+#include "echopath/validity/validity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/replay/new_surface.h"
 #include "echopath/replay/replay.h"
-#include "echopath/replay/validity_objects.h"
 #include "echopath/signal/noise.h"
+#include "echopath/validity/new_surface.h"
+#include "echopath/validity/validity_objects.h"
 
 namespace echopath {
 namespace {

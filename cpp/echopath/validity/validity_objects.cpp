@@ -1,4 +1,4 @@
-#include "echopath/replay/validity_objects.h"
+#include "echopath/validity/validity_objects.h"
 
 #include "echopath/base/constants.h"
 #include "echopath/base/phasor.h"

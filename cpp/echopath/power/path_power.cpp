@@ -1,4 +1,4 @@
-#include "echopath/replay/path_power.h"
+#include "echopath/power/path_power.h"
 
 #include <algorithm>
 #include <complex>

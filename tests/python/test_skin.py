@@ -12,7 +12,7 @@ import echopath as ep
 
 BLEND_TOLERANCE = 1e-12        # m: a few dozen operations on numbers of order 1
 SPLINE_TOLERANCE = 1e-8        # m: keyframes 5 ms apart, 5/384 h^4 times the fourth derivative (below 100 m/s^4)
-SPEED_TOLERANCE = 0.01         # relative: a map's cells
+SPEED_TOLERANCE = 0.01         # relative: the mean over a frame about the lowest point
 SAME_LENGTH = 1e-12            # m
 SEAM_TOLERANCE = 1e-6          # of the field: float weights of rays that a seam would bend by degrees
 GRAVITY, START_ANGLE = 9.81, np.radians(30)

@@ -17,6 +17,7 @@ SEEDS = 60
 CHANCE = 1e-3              # of a test of coverage to fail although the coverage is as wanted
 WANTED = (0.90, 0.98)      # coverage of the true value
 GROUND_DB = 0.5            # of a ground that nobody marked; rays that do not know where it mirrors leave it 18 dB low
+IMAGE_DB = 1e-6             # of an exact echo: rounding
 TRANSMIT_POWER = 0.01      # W
 
 
@@ -60,6 +61,17 @@ def test_a_plane_that_nobody_marked_is_not_resolved_and_is_told_to_be_a_mirror()
     assert ground.low <= truth <= ground.high
     named = [one for one in ep.unresolved(paths) if "mirror=True for ground" in one.advice]
     assert len(named) == 1 and named[0].name == "the surroundings"
+
+
+@pytest.mark.parametrize("batches", [1, 8])
+def test_the_echo_of_a_flagged_mirror_is_exact(batches):
+    """It is an image, which no ray has to find: counted as one hit of a lattice it claimed -9 to +5 dB."""
+    scene = ep.Scene()
+    wall = ep.materials["concrete"].replace(mirror=True)
+    scene.add(ep.actors.wall(30, 4), name="wall", material=wall, position=(12, 3, 0))
+    radar = build_radar([(0, 0, 1)], [(0, 0.01, 1)])
+    power = ep.received_power(ep.trace(scene, radar, num_rays=20_000, batches=batches).select("T S'wall' R"))
+    assert power.num_coherent_paths == 1 and power.interval_db < IMAGE_DB
 
 
 def far_patch():

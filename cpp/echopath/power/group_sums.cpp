@@ -120,7 +120,7 @@ class Sums {
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
     of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
-    if (power > 0.0) {
+    if (has_cell && power > 0.0) {  // images are exact: no lattice can miss them
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;
       sums.steady_squares += steady * steady;

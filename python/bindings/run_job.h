@@ -15,7 +15,8 @@ namespace echopath::bindings {
 // Runs `work(job)` on a thread of its own without the GIL. Meanwhile the caller looks for signals and calls
 // `progress(stage, fraction)` about 20 times a second, and once with 1.0 at the end; `progress` may be None.
 // Ctrl-C and an exception of `progress` cancel the job, wait for it to end and are raised here; so is what `work` throws.
-// `work` must not touch Python objects, nor a scene that Python may change meanwhile: who works on one takes it by value. Called with the GIL, from any thread; Python sees signals on its main one only.
+// `work` must not touch Python objects, nor a scene that Python may change meanwhile: who works on one takes it by value.
+// Called with the GIL, from any thread; Python sees signals on its main one only.
 void run_beside(const std::string& stage, const pybind11::object& progress, const std::function<void(Job&)>& work);
 
 // Whether `run_beside` is looking for signals right now. A handler of signals that must not raise in the middle of anything

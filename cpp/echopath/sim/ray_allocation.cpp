@@ -72,6 +72,26 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   return need;
 }
 
+// The field of view keeps the rays that it has, but where its echo is not resolved and a glint makes it.
+void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
+  const int field = static_cast<int>(frame.strata.size()) - 1;
+  const std::string& name = frame.strata.back().name;
+  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
+  const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
+                                       [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
+  if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
+}
+
+// By index of the strata.
+std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
+  std::vector<KnownEcho> echoes(frame.strata.size());
+  size_t next = 0;
+  for (size_t k = 0; k < echoes.size(); ++k) {
+    if (!frame.strata[k].is_focus()) echoes[k] = needs.strata[next++].echo;
+  }
+  return echoes;
+}
+
 }  // namespace
 
 double RayNeeds::num_rays() const {
@@ -112,30 +132,6 @@ RayShares share_out(const RayNeeds& needs, double num_rays) {
   }
   return shares;
 }
-
-namespace {
-
-// The field of view keeps the rays that it has, but where its echo is not resolved and a glint makes it.
-void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
-  const int field = static_cast<int>(frame.strata.size()) - 1;
-  const std::string& name = frame.strata.back().name;
-  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
-  const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
-                                       [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
-  if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
-}
-
-// By index of the strata.
-std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
-  std::vector<KnownEcho> echoes(frame.strata.size());
-  size_t next = 0;
-  for (size_t k = 0; k < echoes.size(); ++k) {
-    if (!frame.strata[k].is_focus()) echoes[k] = needs.strata[next++].echo;
-  }
-  return echoes;
-}
-
-}  // namespace
 
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job) {
   LaunchGuide guide;

@@ -35,16 +35,23 @@ Radar long_frame() {
   return radar;
 }
 
-Paths record(const Radar& radar) {
-  Scene scene;
-  Surface surface = ellipsoid(Vec3(0, 0, -0.3), {.06, .06, .35}, 3);
+void add_body(Scene& scene, const std::string& name, Surface surface, const Vec3& place, std::shared_ptr<const Motion> motion) {
   Node node;
-  node.name = "limb";
-  node.placement = Eigen::Translation3d(8, 0.5, 0) * Transform::Identity();
+  node.name = name;
+  node.placement = Eigen::Translation3d(place) * Transform::Identity();
   node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
   node.material = lambert(0.4);
-  node.motion = swaying();
+  node.motion = std::move(motion);
   scene.add(node);
+}
+
+Scene swaying_limb() {
+  Scene scene;
+  add_body(scene, "limb", ellipsoid(Vec3(0, 0, -0.3), {.06, .06, .35}, 3), {8, 0.5, 0}, swaying());
+  return scene;
+}
+
+Paths record(const Radar& radar, const Scene& scene = swaying_limb()) {
   TraceSettings settings;
   settings.num_rays = 2000;
   settings.max_bounces = 1;
@@ -104,28 +111,11 @@ class ForgetfulMotion : public LinearMotion {
   mutable int num_asked_ = 0;
 };
 
-// Behind a limb that sways and needs more.
-Paths forgetful_record(const Radar& radar) {
-  const Paths swayed = record(radar);
-  Scene scene = *swayed.scene;
-  Surface surface = ellipsoid(Vec3::Zero(), {.1, .1, .1}, 2);
-  Node node;
-  node.name = "ball";
-  node.placement = Eigen::Translation3d(12, -2, 0) * Transform::Identity();
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = lambert(0.4);
-  node.motion = std::make_shared<ForgetfulMotion>();
-  scene.add(node);
-  TraceSettings settings;
-  settings.num_rays = 2000;
-  settings.max_bounces = 1;
-  settings.start_time = 0.05;
-  return trace(scene, radar, settings);
-}
-
 TEST(NodeLevels, AreThoseOfTheirMeshesAfterAnErrorToo) {
   const Radar radar = long_frame();
-  const Paths paths = forgetful_record(radar);
+  Scene scene = swaying_limb();  // needs more levels than what goes straight on
+  add_body(scene, "ball", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 2), {12, -2, 0}, std::make_shared<ForgetfulMotion>());
+  const Paths paths = record(radar, scene);
   const Replayer asked_twice(paths, radar), asked_once(paths, radar);
   EXPECT_THROW(asked_twice.levels().first_level(0), std::runtime_error);
   for (int64_t path = 0; path < paths.num_paths(); ++path) {

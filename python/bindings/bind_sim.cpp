@@ -174,10 +174,10 @@ replay: where specular hits on surfaces that are no mirrors stand: "material" (w
 evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
     each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
     every sample: for fast rotors, a sine and a cosine per path and sample)
-retrace: "never" (one record serves the frame), "invalid" (shadow rays and points of reflection are renewed, see `renew`, and
-    surface that comes into view gets paths and phases of its own, for the whole of a trace, not for a selection) or
-    "always" (the scene is traced anew by the same rays, to which phases of rough surfaces then belong: for coherent echoes),
-    for each of `keyframes` stretches of chirps
+retrace: for each of `keyframes` stretches of chirps, "never" (one record serves the frame), "invalid" (shadows and points of
+    reflection are renewed, see `renew`; surface that comes into view gets paths of its own if `paths` are those of a whole
+    trace, and none if they are a selection) or "always" (the scene is traced anew with the same settings and seed; random
+    phases of rough surfaces then differ from one stretch to the next, which suits coherent echoes; not for selections)
 keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
 progress: callable(stage, fraction) or None
 probe: a SignalProbe, filled with spot checks of this signal, or None

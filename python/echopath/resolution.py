@@ -47,20 +47,22 @@ class Interval(NamedTuple):
 class Unresolved:
     """An echo whose power the rays do not know to 0.3 dB.
 
-    name: of the object, or "the surroundings"; via: names of what mirrored it, () for the object itself; order: number of bounces
+    name: of the object, or "the surroundings"; via: names of what mirrored it, () for the object itself
+    ghost_type: 1 (last bounce on the object), 2 (last bounce on a mirror), 0 for the object itself; order: number of bounces
     interval: Interval in W; advice: what would resolve it
     """
 
     name: str
     via: tuple
+    ghost_type: int
     order: int
     interval: Interval
     advice: str
 
     @property
     def title(self) -> str:
-        """The name, and for ghosts the way."""
-        return f"{self.name} via {', '.join(self.via)}" if self.via else self.name
+        """The name, and for ghosts the way, type and order."""
+        return f"{self.name} via {', '.join(self.via)}, type {self.ghost_type}/{self.order}" if self.via else self.name
 
     def __str__(self) -> str:
         return f"{self.title}: {self.interval}; {self.advice}"
@@ -107,8 +109,8 @@ def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, pro
 
     families: of the paths and objects; powers: [F] ep.ReceivedPower of these, in W
     """
-    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.order, interval_of(power),
-                        _advice(paths, families, family, power))
+    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.ghost_type, family.order,
+                        interval_of(power), _advice(paths, families, family, power))
              for family, power in zip(families.families, powers)
              if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
@@ -181,7 +183,7 @@ def _unseen(paths, objects, names, progress) -> list:
         interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
         if interval.high > 0.0:
             times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
-            found.append(Unresolved(seen.name, (), 1, interval, f"{_rays(paths, times)} to meet it"))
+            found.append(Unresolved(seen.name, (), 0, 1, interval, f"{_rays(paths, times)} to meet it"))
     return found
 
 

@@ -10,7 +10,7 @@ import echopath as ep
 from echopath.actors import shapes
 from echopath.bench import crowd_scenes, targets
 from echopath.bench.closed_forms import WAVELENGTH
-from echopath.cli import report
+from echopath.cli import main, report
 from support.radars import build_radar
 
 SEEDS = 60
@@ -160,7 +160,7 @@ def test_labels_and_detections_say_what_is_resolved(frame):
 
 
 def test_a_report_ends_with_what_is_not_resolved(frame):
-    head, line = report.unresolved(frame)
+    head, line = report.unresolved(frame.unresolved)
     assert head.startswith("NOT resolved to 0.3 dB") and line.split()[0] == "sign" and "rays" in line
 
 
@@ -193,3 +193,26 @@ def test_groups_of_the_wrong_size_are_refused(frame):
         ep.received_powers(frame.paths, np.zeros(3, np.uint32), 1)
     with pytest.raises(ValueError, match="group_of_path: must lie below the number of groups"):
         ep.received_powers(frame.paths, np.ones(frame.paths.num_paths, np.uint32), 1)
+
+
+def test_the_label_command_says_what_is_not_resolved(frame, tmp_path, capsys):
+    """In the rows of its tables and in its last lines, by the names of the objects that it was asked for."""
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    ask = ["labels", str(tmp_path / "frame.h5"), "--out", str(tmp_path / "out")]
+    sign = next(label for label in frame.labels["parts"].objects if label.name == "sign")
+    interval = f"nothing to {10.0 * np.log10(1e3 * sign.received.high):.1f} dBm"
+    for extra, name in (([], "sign"), (["--object", "metal=sign", "--object", "rough=board"], "metal")):
+        assert main(ask + extra) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert [line.split()[0] for line in lines if line.endswith(interval)] == [name]
+        end = lines.index("NOT resolved to 0.3 dB (95 % interval)")
+        assert [line.split()[0] for line in lines[end + 1:]] == [name]
+
+
+def test_ghosts_of_one_mirror_are_told_apart():
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(30.0, 6.0), name="wall", material=ep.materials["concrete"].replace(mirror=True), position=(10, 4, 0))
+    scene.add(ep.actors.sphere(0.3), name="body", smooth=True, material=ep.Material.metal(), position=(9, 0, 1))
+    titles = [one.title for one in ep.unresolved(ep.trace(scene, build_radar(), num_rays=300, max_bounces=3))]
+    assert "body via wall, type 1/2" in titles and "body via wall, type 2/2" in titles
+    assert len(titles) == len(set(titles))

@@ -1,6 +1,7 @@
 #include "echopath/sim/keyframes.h"
 
 #include <algorithm>
+#include <string>
 
 #include "echopath/base/errors.h"
 #include "echopath/trace/trace.h"
@@ -59,7 +60,7 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
     : paths_(paths), retrace_(retrace), job_(job) {
   // A new trace knows nothing of a selection.
   require(retrace != Retrace::kAlways || is_whole(paths), "retrace",
-          "'always' takes all paths of a trace (decompose takes them apart), paths", paths.num_paths());
+          "'always' takes all paths of a trace, which decompose takes apart", "a selection of " + std::to_string(paths.num_paths()));
   const bool moves = radar.motion || paths.scene->is_anything_moving();
   if (retrace == Retrace::kInvalid && is_whole(paths) && moves) find_new_surface(radar, stretches);
 }

@@ -201,7 +201,7 @@ def _run(options) -> None:
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
                  *report.checks(frame.checks), *report.validity(certificate), *report.files(written),
-                 *report.unresolved(frame)]:
+                 *report.unresolved(frame.unresolved)]:
         print(text)
 
 

@@ -3,6 +3,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import echopath as ep
+
+from .._core import noise_power_in_cell
 from ..detections import detect_frame
 from ..frame_file import left_out, load_frame, save_labels
 from ..labels.of_frame import annotate_frame
@@ -24,14 +27,24 @@ def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) 
     missing, frame = left_out(path), load_frame(path)
     chosen = chosen_partition(parts, frame.parts)
     frame.labels = annotate_frame(frame, chosen, progress=progress, **keywords)
+    detections = ["no detections: the file has paths alone, no signals"]
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=keywords.get("objects"), progress=progress, **cfar or {})
         frame.detections.to_csv(folder / "detections.csv")
+        detections = report.detections(frame.detections)
     save_labels(frame.labels, folder / "labels.h5")
     written = write_labels(frame, folder, frame.selections | chosen)
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
-            *report.detections(frame.detections), f"written to {folder}",
-            f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}"]
+            *detections, f"written to {folder}",
+            f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
+            *report.unresolved(_unresolved(frame, keywords.get("objects"), progress))]
+
+
+def _unresolved(frame, objects, progress) -> list:
+    """Of the objects that are labelled, with the noise of the frame's radar."""
+    if objects is None:
+        return frame.unresolved
+    return ep.unresolved(frame.paths, objects, least_power=noise_power_in_cell(frame.radar), progress=progress)
 
 
 def objects_of_options(texts) -> dict | None:

@@ -13,6 +13,7 @@ LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
 MAX_LISTED = 40  # nodes or meshes named one by one
 MAX_UNRESOLVED = 20  # echoes named one by one
+UNRESOLVED_MEAN = "mean over random phases where not resolved (95 %)"
 ON_EACH_OTHER = "surfaces on each other"
 
 
@@ -92,7 +93,7 @@ def powers(whole, parts: dict) -> list[str]:
 
 def mean_powers(frame) -> list[str]:
     """Mean received power of the whole and of each part with half its 95 % interval."""
-    lines = ["mean received power over the random phases, +- half the 95 % interval of bias and chance",
+    lines = ["mean received power over the random phases, first antennas, start frequency, +- half the 95 % interval",
              line("whole", _aligned(with_error(frame.mean_power)))]
     for partition, part_powers in frame.mean_part_powers.items():
         lines.append(f"mean received power, {partition}")
@@ -100,12 +101,14 @@ def mean_powers(frame) -> list[str]:
     return lines
 
 
-def unresolved(frame) -> list[str]:
-    """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them."""
-    found = frame.unresolved
+def unresolved(found) -> list[str]:
+    """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them.
+
+    found: list of ep.Unresolved
+    """
     if not found:
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise"]
-    lines = [line(one.title, f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]]
+    lines = _table([(f"  {one.title}", f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]])
     rest = [f"  and {len(found) - MAX_UNRESOLVED:,} more"] if len(found) > MAX_UNRESOLVED else []
     return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval)", *lines, *rest]
 
@@ -144,11 +147,11 @@ def detections(found) -> list[str]:
 def _objects(of_cells) -> list[str]:
     if not of_cells.objects:
         return ["no objects"]
-    rows = [("objects", "status", "cells", "power", "peak", "in sight", "hidden by")]
+    rows = [("objects", "status", "cells", "power", "peak", "in sight", "hidden by", UNRESOLVED_MEAN)]
     for label in of_cells.objects:
         by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
         rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _level(label.power), _peak(label),
-                     f"{label.visible_share:.0%}", by))
+                     f"{label.visible_share:.0%}", by, _interval(label)))
     return _table(rows, right=(2, 3, 5))
 
 
@@ -156,10 +159,10 @@ def _ghosts(of_cells) -> list[str]:
     shown = [ghost for ghost in of_cells.ghosts if ghost.cells]
     if not shown:
         return []
-    rows = [("ghosts", "type", "order", "class", "cells", "power", "peak", "via")]
+    rows = [("ghosts", "type", "order", "class", "cells", "power", "peak", "via", UNRESOLVED_MEAN)]
     for ghost in sorted(shown, key=lambda ghost: -ghost.power):
         rows.append((f"  {ghost.object}", str(ghost.ghost_type), str(ghost.order), str(ghost.class_code), f"{ghost.cells:,}",
-                     _level(ghost.power), _peak(ghost), ", ".join(ghost.via)))
+                     _level(ghost.power), _peak(ghost), ", ".join(ghost.via), _interval(ghost)))
     hidden = len(of_cells.ghosts) - len(shown)
     return _table(rows, right=(1, 2, 3, 4, 5)) + ([f"  and {hidden:,} without cells"] if hidden else [])
 
@@ -172,6 +175,14 @@ def _peak(label) -> str:
     if label.peak is None:
         return ""
     return peak_words(label.peak, width=6)
+
+
+def _interval(label) -> str:
+    """Of the mean received power, where the rays do not know it; "" where they do or nobody knows."""
+    received = label.received
+    if received is None or received.resolved or not received.high > 0.0:
+        return ""
+    return f"{_level(received.low)} to {_level(received.high)}"
 
 
 def _table(rows: list, right=()) -> list[str]:

@@ -45,6 +45,8 @@ const ChainKernels& chain_kernels(size_t stride) {
   return stride == 1 ? kernels.chains_of_one : kernels.chains;
 }
 
+const ChainKernels& chain_kernels_of_one() { return kernels_of_set().chains_of_one; }
+
 const DirectKernels& direct_kernels(size_t stride) {
   const KernelsOfSet kernels = kernels_of_set();
   return stride == 1 ? kernels.direct_of_one : kernels.direct;

@@ -5,6 +5,7 @@
 // Pointers to constant or written doubles are the first of several rows of `stride` nodes each (node_rows.h).
 #include <cstddef>
 
+#include "echopath/base/scalar_math.h"
 #include "echopath/replay/cell_formula.h"
 
 namespace echopath {
@@ -21,7 +22,7 @@ struct PointToPose {
 // From the image of an antenna to a point.
 struct LegToMeasure {
   enum ImageRow { kImagePosition, kBoresight = 3, kNumImageRows = 6 };  // m; unit
-  // Length in m, diffuse_leg (chain_formula.h), root of the gain.
+  // Length in m, diffuse_leg (path_formula.h), root of the gain.
   enum Row { kLength, kFactor, kGain, kNumRows };
   static constexpr int kNoExponent = -1;
   const double *image, *point;
@@ -42,7 +43,7 @@ struct PathToCombine {
   enum Row { kLength, kRe, kIm, kNumRows };  // m, sqrt(W)
   const double *start, *end;
   const double* inner;            // null: one material point
-  double re, im;                  // weight with all that does not change
+  ComplexOf<double> weight;       // with all that does not change
   double* out;
 };
 
@@ -51,12 +52,12 @@ struct DiffusePath {
   bool begins_specular, is_single;  // of `inner`
 };
 
-// Physical optics at the last material point, on a mesh that moves rigidly.
+// Physical optics at the last material point.
 struct CoherentPath {
   PathToCombine path;
   const double *start_image, *end_image, *point;
-  const double* mesh;
-  double tangent[2][3];             // T_a in the mesh's frame, m
+  const double* mesh;               // in whose frame the tangents are
+  double tangent[2][3];             // T_a, m
   CellShape cell;
   CellFilter filter;
   double root_area;                 // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
@@ -83,12 +84,15 @@ struct ChainKernels {
   void (*pose)(const PointToPose& point, size_t stride);
   void (*measure)(const LegToMeasure& leg, size_t stride);
   void (*combine)(const DiffusePath& path, size_t stride);
-  void (*reflect)(const CoherentPath& path, size_t stride);
+  void (*connect)(const PathToCombine& path, size_t stride);  // over flagged mirrors alone
+  void (*reflect)(const CoherentPath& path, size_t begin, size_t end, size_t stride);  // nodes [begin, end)
   void (*find_components)(const ComponentsToFind& leg, size_t stride);
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };
 
 // Those of instruction_set() for rows of that many nodes.
 const ChainKernels& chain_kernels(size_t stride);
+// For one node after the other.
+const ChainKernels& chain_kernels_of_one();
 
 }  // namespace echopath

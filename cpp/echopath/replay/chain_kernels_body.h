@@ -2,9 +2,8 @@
 // ECHOPATH_LANES set (no include guard).
 #include "echopath/base/phasor.h"
 #include "echopath/base/vector_of.h"
-#include "echopath/em/transverse_formula.h"
-#include "echopath/replay/chain_formula.h"
 #include "echopath/replay/chain_kernels.h"
+#include "echopath/replay/path_formula.h"
 #include "echopath/signal/vector.h"
 
 namespace echopath::ECHOPATH_KERNELS {
@@ -112,16 +111,6 @@ void pose(const PointToPose& point, size_t stride) {
   }
 }
 
-// Root of the gain over the cosine of the boresight.
-template <class Math, class Real>
-ECHOPATH_INLINE Real root_gain(const LegToMeasure& leg, Real cosine) {
-  Real power = Real{} + leg.root_peak;
-  if (leg.exponent == 0) return power;
-  for (int i = 0; i < leg.exponent / 2; ++i) power = power * cosine;
-  if (leg.exponent % 2) power = power * Math::root(Math::magnitude(cosine));
-  return cosine > 0.0 ? power : Real{};
-}
-
 template <class Math>
 void measure(const LegToMeasure& leg, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
@@ -136,7 +125,7 @@ void measure(const LegToMeasure& leg, size_t stride) {
       at.set(leg.out, LegToMeasure::kGain, boresight);
       continue;
     }
-    const auto gain = root_gain<Math>(leg, boresight);
+    const auto gain = root_gain_of<Math>(leg.root_peak, leg.exponent, boresight);
     at.set(leg.out, LegToMeasure::kFactor, diffuse_leg<Math>(gain, cosine, length));
     at.set(leg.out, LegToMeasure::kGain, gain);
   }
@@ -155,6 +144,13 @@ ECHOPATH_INLINE Real diffuse_size(const DiffusePath& diffuse, const At<Math>& at
   return product * at.value(inner, InnerRows::kFactor);
 }
 
+template <class Math, class Real>
+ECHOPATH_INLINE void set_path(const PathToCombine& path, const At<Math>& at, const Real& length, const ComplexOf<Real>& amplitude) {
+  at.set(path.out, PathToCombine::kLength, length);
+  at.set(path.out, PathToCombine::kRe, amplitude.re);
+  at.set(path.out, PathToCombine::kIm, amplitude.im);
+}
+
 template <class Math>
 void combine(const DiffusePath& diffuse, size_t stride) {
   const PathToCombine& path = diffuse.path;
@@ -168,60 +164,49 @@ void combine(const DiffusePath& diffuse, size_t stride) {
       size = diffuse_size<Math>(diffuse, at, start, end);
     }
     length = length + at.value(path.end, LegToMeasure::kLength);
-    at.set(path.out, PathToCombine::kLength, length);
-    at.set(path.out, PathToCombine::kRe, path.re * size);
-    at.set(path.out, PathToCombine::kIm, path.im * size);
+    set_path(path, at, length, amplitude_of(path.weight, size, length));
   }
 }
 
 template <class Math>
-void reflect(const CoherentPath& coherent, size_t stride) {
+void connect(const PathToCombine& path, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto length = at.value(path.start, LegToMeasure::kLength);
+    const auto size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) / length;
+    set_path(path, at, length, amplitude_of(path.weight, size, length));
+  }
+}
+
+template <class Math>
+void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stride) {
   using Real = typename Math::Real;
   const PathToCombine& path = coherent.path;
-  for (size_t node = 0; node < stride; node += Math::kCount) {
+  for (size_t node = begin; node < end; node += Math::kCount) {
     const At<Math> at{node, stride};
     const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
     const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
     const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
-    CellWaves<Real> waves;
-    waves.inverse_in = 1.0 / in;
-    waves.inverse_out = 1.0 / out;
+    const Real inverse_in = 1.0 / in, inverse_out = 1.0 / out;
     const VectorOf<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
-                                            : waves.inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
-    const VectorOf<Real> departure = waves.inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
+                                            : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
+    const VectorOf<Real> departure = inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
     const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
-    waves.cos_in = Math::magnitude(cos_in);
-    waves.cos_out = Math::magnitude(cos_out);
-    waves.side = Math::with_sign_of(Real{} + 1.0, cos_in);
+    CellWaves<Real> waves;
+    set_waves<Math>(cos_in, cos_out, inverse_in, inverse_out, waves);
     for (int a = 0; a < 2; ++a) {
       const VectorOf<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
       waves.along_arrival[a] = dot(tangent, arrival);
       waves.along_departure[a] = dot(tangent, departure);
     }
     const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter);
-    const Real tube = coherent.cell.is_curved ? coherent.root_area * Math::root(waves.cos_in) : in;
-    const Real size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) * waves.cos_in / (tube * out);
+    const Real inverse_tube = coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(waves.cos_in)) : inverse_in;
+    const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
     const auto is_lit = (cos_in * cos_out > 0.0) & (first >= kNearAntenna) & (out >= kNearAntenna);
-    at.set(path.out, PathToCombine::kLength, in + out);
-    at.set(path.out, PathToCombine::kRe, is_lit ? size * (path.re * filter.re - path.im * filter.im) : Real{});
-    at.set(path.out, PathToCombine::kIm, is_lit ? size * (path.re * filter.im + path.im * filter.re) : Real{});
+    const Real length = in + out;
+    set_path(path, at, length, amplitude_of(path.weight, coherent_factor(waves, gains, inverse_tube, filter, is_lit), length));
   }
 }
-
-// Of a path: (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v), the products of its ends' components (JonesMatrix).
-template <class Real>
-struct PairOfPolarizations {
-  Real product[4];
-
-  // Components of both ends as they depart: what arrives has the opposite horizontal one.
-  ECHOPATH_INLINE PairOfPolarizations(const TransverseOf<Real>& start, const TransverseOf<Real>& end)
-      : product{-end.horizontal * start.horizontal, -end.horizontal * start.vertical, end.vertical * start.horizontal,
-                end.vertical * start.vertical} {}
-  template <class Entry>
-  ECHOPATH_INLINE Real through(const Entry* matrix) const {
-    return (product[0] * matrix[0] + product[1] * matrix[1]) + (product[2] * matrix[2] + product[3] * matrix[3]);
-  }
-};
 
 template <class Math>
 void find_components(const ComponentsToFind& leg, size_t stride) {
@@ -255,9 +240,9 @@ void polarize(const PathToPolarize& path, size_t stride) {
 }  // namespace
 
 extern const ChainKernels kKernels, kKernelsOfOne;
-const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, reflect<LaneMath>,
+const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, connect<LaneMath>, reflect<LaneMath>,
                                find_components<LaneMath>, polarize<LaneMath>};
-const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, reflect<OneMath>,
+const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, connect<OneMath>, reflect<OneMath>,
                                     find_components<OneMath>, polarize<OneMath>};
 
 }  // namespace echopath::ECHOPATH_KERNELS

@@ -7,6 +7,8 @@ namespace echopath {
 namespace {
 
 constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high} << 32 | low; }
+// Where in its triangle a hit is.
+constexpr uint64_t place_key(const Hit& hit) { return pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)); }
 
 }  // namespace
 
@@ -19,7 +21,8 @@ void ChainPlan::clear() {
   inner_points.clear();
   inner.clear();
   chains.clear();
-  others.clear();
+  sliding.clear();
+  mirror_paths.clear();
 }
 
 // Hits and events of a path in the order in which it was traced.
@@ -36,9 +39,10 @@ struct ChainPlanner::TracedHits {
   bool is_diffuse(int k) const { return diffuse_bits >> index(k) & 1; }
 };
 
-// Material points.
+// Material points; -1 where there are flagged mirrors alone.
 struct ChainPlanner::Ends {
   int first = -1, last = -1;
+  bool has_specular = false;  // a hit before the last one reflects and is no flagged mirror
 };
 
 bool ChainPlanner::is_same(const Known& known, const Known& run) {
@@ -56,8 +60,7 @@ void ChainPlanner::begin(const Paths& paths, const Localiser& localise, Specular
 const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
-    if (add_direct(place, indices[place])) continue;
-    if (!add_chain(place, indices[place])) plan_.others.push_back(place);
+    if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
   }
   return plan_;
 }
@@ -77,18 +80,13 @@ bool ChainPlanner::is_image(const TracedHits& hits, int k) const {
   return localise_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
 }
 
-// Nothing where this path is none of those that are made of legs.
-std::optional<ChainPlanner::Ends> ChainPlanner::ends_of(const TracedHits& hits) const {
+ChainPlanner::Ends ChainPlanner::ends_of(const TracedHits& hits) const {
   Ends ends;
   for (int k = 0; k < hits.count; ++k) {
-    if (!is_image(hits, k)) {
-      // Hits between others slide, and no others.
-      if (slides_ && ends.last >= 0 && !hits.is_diffuse(ends.last)) return {};
-      if (ends.first < 0) ends.first = k;
-      ends.last = k;
-    } else if (!localise_->is_plane(hits.hit(k).mesh_id)) {
-      return {};
-    }
+    if (is_image(hits, k)) continue;
+    ends.has_specular |= ends.last >= 0 && !hits.is_diffuse(ends.last);
+    if (ends.first < 0) ends.first = k;
+    ends.last = k;
   }
   return ends;
 }
@@ -116,16 +114,26 @@ bool ChainPlanner::add_direct(size_t place, int64_t path) {
   return true;
 }
 
-bool ChainPlanner::add_chain(size_t place, int64_t path) {
+void ChainPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
   const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], (paths_->flags[p] & kReversedPath) != 0};
-  const std::optional<Ends> ends = ends_of(hits);
-  if (!ends || ends->first < 0) return false;
+  const Ends ends = ends_of(hits);
+  const std::complex<double> weight(paths_->weight[p]);
+  if (ends.first < 0) {
+    uint32_t image = 0;
+    for (int k = 0; k < hits.count; ++k) image = image_in(image, hits.recorded[k]);
+    plan_.mirror_paths.push_back({place, path, image, weight});
+    return;
+  }
   const bool is_coherent = paths_->diffuse[p] == 0;
-  if (is_coherent && localise_->may_stretch(hits.hit(ends->last).mesh_id)) return false;
-  plan_.chains.push_back({place, path, start_leg(hits, ends->first), end_leg(hits, ends->last), inner(hits, *ends),
-                          hits.is_reversed, is_coherent, std::complex<double>(paths_->weight[p])});
-  return true;
+  plan_.chains.push_back({place, path, start_leg(hits, ends.first), end_leg(hits, ends.last), inner(hits, ends, is_coherent),
+                          slide_of(path, ends), hits.is_reversed, is_coherent, weight});
+}
+
+uint32_t ChainPlanner::slide_of(int64_t path, const Ends& ends) {
+  if (!slides_ || !ends.has_specular) return ChainPlan::kNone;
+  plan_.sliding.push_back(path);
+  return static_cast<uint32_t>(plan_.sliding.size() - 1);
 }
 
 // Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
@@ -158,8 +166,10 @@ uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
 }
 
 uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
-  const uint32_t mirror = mirror_ids_(pair_key(hit.mesh_id, hit.triangle_id));
-  if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back({hit.mesh_id, hit.triangle_id, 0.0f, 0.0f});
+  Hit plane = hit;
+  if (localise_->is_plane(hit.mesh_id)) plane.u = plane.v = 0.0f;
+  const uint32_t mirror = mirror_ids_(pair_key(plane.mesh_id, plane.triangle_id), place_key(plane));
+  if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back(plane);
   const uint32_t image = image_ids_(pair_key(parent, mirror)) + 1;
   if (image == plan_.images.size()) plan_.images.push_back({parent, mirror});
   return image;
@@ -167,8 +177,7 @@ uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
 
 uint32_t ChainPlanner::point(const Hit& hit) {
   if (&hit == last_hit_) return last_point_;
-  const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id),
-                                 pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)));
+  const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id), place_key(hit));
   if (id == plan_.points.size()) {
     plan_.points.push_back(hit);
     straight_.push_back({ChainPlan::kNone, ChainPlan::kNone});
@@ -195,8 +204,9 @@ uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
   return static_cast<uint32_t>(plan_.legs.size() - 1);
 }
 
-uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends) {
-  if (ends.first == ends.last && !localise_->may_stretch(hits.hit(ends.first).mesh_id)) return ChainPlan::kNone;
+// One diffuse hit has an inner part where its triangle may stretch, which changes its area.
+uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
+  if (ends.first == ends.last && (is_coherent || !localise_->may_stretch(hits.hit(ends.first).mesh_id))) return ChainPlan::kNone;
   const int count = ends.last - ends.first + 1;
   ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
   for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);

@@ -2,7 +2,6 @@
 // What the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path over each pair of the
 // mirror chains to its hits, so most paths are two legs that others have too.
 #include <array>
-#include <optional>
 #include <span>
 
 #include "echopath/replay/dense_ids.h"
@@ -35,8 +34,16 @@ struct ChainPlan {
     int64_t path;
     uint32_t start, end;       // legs, in the order in which the path was traced
     uint32_t inner;            // kNone: one material point, whose triangle keeps its area
+    uint32_t slide;            // index into `sliding`; kNone: its points of reflection stay where they were recorded
     bool is_reversed;          // it starts at a receiver
     bool is_coherent;          // it has a launch cell, at the point of its last leg
+    std::complex<double> weight;
+  };
+  // A path over flagged mirrors alone: a straight line from an image of the transmitter to the receiver.
+  struct MirrorPath {
+    size_t place;
+    int64_t path;
+    uint32_t image;
     std::complex<double> weight;
   };
 
@@ -50,13 +57,14 @@ struct ChainPlan {
 
   std::vector<Direct> direct;         // by place
   std::vector<Hit> points;            // distinct hits, of the chains
-  std::vector<Hit> mirrors;           // distinct triangles, at their first corner
+  std::vector<Hit> mirrors;           // distinct planes: triangles at their first corner, of curved mirrors each hit
   std::vector<Image> images;
   std::vector<Leg> legs;
   std::vector<uint32_t> inner_points;
   std::vector<Inner> inner;
   std::vector<Chain> chains;          // by place
-  std::vector<size_t> others;         // places of the paths that are evaluated one by one
+  std::vector<int64_t> sliding;       // paths whose points of reflection move (SpecularPoints::kFermat)
+  std::vector<MirrorPath> mirror_paths;
 
   void clear();
 };
@@ -67,8 +75,7 @@ class ChainPlanner {
   // For blocks of this record from now on. All must outlive its use.
   // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
   void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct);
-  // For the paths of these indices; valid until the next call. Paths stand among `others` that are made of mirrors alone, have
-  // sliding hits that move, or a launch cell on a mesh that may stretch.
+  // For the paths of these indices; valid until the next call.
   const ChainPlan& operator()(std::span<const int64_t> indices);
 
  private:
@@ -85,10 +92,11 @@ class ChainPlanner {
   void clear();
   static bool is_same(const Known& known, const Known& run);
   bool is_image(const TracedHits& hits, int k) const;
-  std::optional<Ends> ends_of(const TracedHits& hits) const;
+  Ends ends_of(const TracedHits& hits) const;
   bool is_direct(size_t path) const;
   bool add_direct(size_t place, int64_t path);
-  bool add_chain(size_t place, int64_t path);
+  void add_chain(size_t place, int64_t path);
+  uint32_t slide_of(int64_t path, const Ends& ends);
   uint32_t start_leg(const TracedHits& hits, int first);
   uint32_t end_leg(const TracedHits& hits, int last);
   uint32_t image_in(uint32_t parent, const Hit& hit);
@@ -96,7 +104,7 @@ class ChainPlanner {
   uint32_t straight_leg(const Hit& hit, bool of_receivers);
   uint32_t add_leg(const ChainPlan::Leg& leg);
   uint32_t leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers);
-  uint32_t inner(const TracedHits& hits, const Ends& ends);
+  uint32_t inner(const TracedHits& hits, const Ends& ends, bool is_coherent);
 
   const Paths* paths_ = nullptr;
   const Localiser* localise_ = nullptr;

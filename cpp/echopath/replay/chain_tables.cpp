@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/replay/diffuse_chain.h"
+#include "echopath/replay/inner_part.h"
+#include "echopath/replay/path_formula.h"
 
 namespace echopath {
 namespace {
@@ -12,8 +13,9 @@ constexpr int kMostExponent = 16;  // of gains that are products of cosines
 
 void find_mirrors(const ChainPlan& plan, const Localiser& localise, const LevelView& level, NodeRows& planes) {
   planes.resize(plan.mirrors.size(), 4, level.instants.size());
+  std::deque<std::array<Vec3, 3>> normals;
   for (size_t mirror = 0; mirror < plan.mirrors.size(); ++mirror) {
-    const LocalHit local = localise.hit(plan.mirrors[mirror]);
+    const LocalHit local = localise.hit(plan.mirrors[mirror], normals);
     for (size_t node = 0; node < level.instants.size(); ++node) {
       PosedHit posed;
       pose_hit(local, level.instants[node], false, posed);
@@ -59,28 +61,36 @@ int exponent_of(const AntennaPattern& pattern) {
   return whole == pattern.exponent && whole > 0 ? whole : LegToMeasure::kNoExponent;
 }
 
-namespace {
-
 // Turns the cosines that the kernel left into gains and factors.
-void finish_leg(const AntennaImages& images, size_t entry, const double* point, double* out, size_t stride) {
-  const size_t num_nodes = images.rows.num_nodes();
-  const AntennaPattern& pattern = *images.pattern[entry % images.num_antennas];
-  const bool is_table = pattern.kind == AntennaPattern::Kind::kTable;
+void AntennaImages::finish(size_t entry, const double* point, double* out, double* phase) const {
+  const size_t num_nodes = rows.num_nodes(), stride = rows.stride();
+  const AntennaPattern& of = *pattern[entry % num_antennas];
+  const bool is_table = of.kind == AntennaPattern::Kind::kTable;
   const double* length = out + LegToMeasure::kLength * stride;
   double *factor = out + LegToMeasure::kFactor * stride, *gain = out + LegToMeasure::kGain * stride;
   for (size_t node = 0; node < num_nodes; ++node) {
+    AntennaGain found{0.0, 0.0};
     if (is_table) {
       const Vec3 at(point[node], point[stride + node], point[2 * stride + node]);
-      const Vec3 direction = (at - load(images.rows, entry, LegToMeasure::kImagePosition, node)).normalized();
-      gain[node] = std::sqrt(pattern.toward(images.antenna_from_image[entry * num_nodes + node] * direction).power);
+      const Vec3 direction = (at - load(rows, entry, LegToMeasure::kImagePosition, node)).normalized();
+      found = of.toward(antenna_from_image[entry * num_nodes + node] * direction);
     } else {
-      gain[node] = std::sqrt(pattern.gain(gain[node]));
+      found.power = of.gain(gain[node]);
     }
+    gain[node] = std::sqrt(found.power);
     factor[node] = diffuse_leg<ScalarMath>(gain[node], factor[node], length[node]);
+    if (phase) phase[node] = found.phase;
   }
 }
 
-}  // namespace
+void AntennaImages::measure(size_t entry, const double* point, double* out, double* phase) const {
+  const AntennaPattern& of = *pattern[entry % num_antennas];
+  const int exponent = exponent_of(of);
+  const size_t stride = rows.stride();
+  chain_kernels(stride).measure({rows.row(entry, 0), point, exponent, std::sqrt(of.peak_gain), out}, stride);
+  if (phase) std::fill_n(phase, stride, 0.0);
+  if (exponent == LegToMeasure::kNoExponent) finish(entry, point, out, phase);
+}
 
 PosedHit PosedPoints::at(size_t point, size_t node) const {
   PosedHit hit;
@@ -145,7 +155,8 @@ void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise,
   pad(rows, point, PointToPose::kNumRows);
 }
 
-void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers) {
+void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool receivers) {
+  of_receivers = receivers;
   const std::vector<PosedAntenna>& antennas = antennas_of(level.instants.front(), of_receivers);
   const NodeRows& own = level.poses.antennas[of_receivers];
   num_antennas = antennas.size();
@@ -170,27 +181,24 @@ void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const L
   }
 }
 
-void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters,
-                     const AntennaImages& receivers) {
-  stride = std::max(transmitters.num_antennas, receivers.num_antennas);
+void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages* images, bool with_phase) {
+  stride = std::max(images[0].num_antennas, images[1].num_antennas);
   rows.resize(plan.legs.size() * stride, LegToMeasure::kNumRows, points.rows.num_nodes());
-  const ChainKernels& kernels = chain_kernels(rows.stride());
+  if (with_phase) phases.resize(plan.legs.size() * stride, 1, points.rows.num_nodes());
   for (size_t id = 0; id < plan.legs.size(); ++id) {
     const ChainPlan::Leg& leg = plan.legs[id];
-    const AntennaImages& images = leg.of_receivers ? receivers : transmitters;
-    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      const size_t image = leg.image * images.num_antennas + antenna;
-      const AntennaPattern& pattern = *images.pattern[antenna];
-      const LegToMeasure measured{images.rows.row(image, 0), points.rows.row(leg.point, 0), exponent_of(pattern),
-                                  std::sqrt(pattern.peak_gain), rows.row(id * stride + antenna, 0)};
-      kernels.measure(measured, rows.stride());
-      if (measured.exponent == LegToMeasure::kNoExponent) finish_leg(images, image, measured.point, measured.out, rows.stride());
+    const AntennaImages& of = images[leg.of_receivers];
+    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
+      const size_t to = id * stride + antenna;
+      double* const phase = with_phase ? phases.row(to, 0) : nullptr;
+      of.measure(of.entry(leg.image, antenna), points.rows.row(leg.point, 0), rows.row(to, 0), phase);
     }
   }
 }
 
 // Axes of the world for the antennas themselves, and what each mirror makes of them.
 void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors) {
+  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
   for (size_t image = 0; image < plan.images.size(); ++image) {
     for (int axis = 0; axis < 3; ++axis) {
       const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
@@ -210,20 +218,31 @@ void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors)
 
 void LegPolarizations::find(const ChainPlan& plan, const ChainTables& tables, const LevelView& level) {
   const size_t num_nodes = level.instants.size(), stride = tables.legs.stride;
-  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, num_nodes);
-  find_axes(plan, tables.mirrors);
   rows.resize(plan.legs.size() * stride, ComponentsToFind::kNumRows, num_nodes);
-  const ChainKernels& kernels = chain_kernels(rows.stride());
   for (size_t id = 0; id < plan.legs.size(); ++id) {
     const ChainPlan::Leg& leg = plan.legs[id];
     const AntennaImages& images = tables.images[leg.of_receivers];
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      kernels.find_components({images.rows.row(leg.image * images.num_antennas + antenna, 0), axes.row(leg.image, 0),
-                               level.poses.polarizations[leg.of_receivers].row(antenna, 0), tables.points.rows.row(leg.point, 0),
-                               rows.row(id * stride + antenna, 0)},
-                              rows.stride());
+      across(images, {leg.image, antenna}, level, tables.points.rows.row(leg.point, 0), rows.row(id * stride + antenna, 0));
     }
   }
+  const SlidingParts& slides = tables.sliding;
+  sliding_rows.resize(plan.sliding.size() * stride, ComponentsToFind::kNumRows, num_nodes);
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    if (chain.slide == ChainPlan::kNone) continue;
+    const AntennaImages& images = tables.images[chain.is_reversed];
+    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
+      const size_t entry = chain.slide * stride + antenna;
+      across(images, {plan.legs[chain.start].image, antenna}, level, slides.points.row(entry, 0), sliding_rows.row(entry, 0));
+    }
+  }
+}
+
+void LegPolarizations::across(const AntennaImages& images, ImageOfAntenna of, const LevelView& level, const double* point,
+                              double* out) const {
+  const double* own = level.poses.polarizations[images.of_receivers].row(of.antenna, 0);
+  chain_kernels(axes.stride()).find_components({images.rows.row(images.entry(of.image, of.antenna), 0), axes.row(of.image, 0), own,
+                                                point, out}, axes.stride());
 }
 
 LocalPath path_of(const ChainPlan::Inner& inner) {
@@ -236,6 +255,28 @@ LocalPath path_of(const ChainPlan::Inner& inner) {
   return path;
 }
 
+namespace {
+
+// Of hits as posed at a node.
+DiffuseInner store_inner(const LocalPath& path, const PosedHit* hits, size_t entry, size_t node, NodeRows& rows) {
+  const InnerPart part = inner_part(path, hits);
+  const auto set = [&](size_t row, double value) { rows.row(entry, row)[node] = value; };
+  set(InnerRows::kLength, part.length);
+  if (path.diffuse == 0) {
+    store(part.last_arrival, rows, entry, InnerRows::kArrival, node);
+    return {};
+  }
+  const DiffuseInner found = diffuse_inner(path, hits, part);
+  set(InnerRows::kToFirst, found.to_first);
+  set(InnerRows::kRootCosFirst, found.root_cos_first);
+  set(InnerRows::kFactor, found.factor);
+  set(InnerRows::kFirstSign, found.first_sign);
+  set(InnerRows::kLastSign, found.last_sign);
+  return found;
+}
+
+}  // namespace
+
 void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
   begins_specular.assign(plan.inner.size(), 0);
   is_single.assign(plan.inner.size(), 0);
@@ -246,33 +287,81 @@ void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
     const LocalPath path = path_of(inner);
     for (size_t node = 0; node < rows.num_nodes(); ++node) {
       for (size_t k = inner.begin; k < inner.end; ++k) hits[k - inner.begin] = points.at(plan.inner_points[k], node);
-      const InnerPart part = inner_part(path, hits.data());
-      const auto set = [&](size_t row, double value) { rows.row(id, row)[node] = value; };
-      set(InnerRows::kLength, part.length);
-      if (path.diffuse == 0) {
-        store(part.last_arrival, rows, id, InnerRows::kArrival, node);
-        continue;
-      }
-      const DiffuseInner found = diffuse_inner(path, hits.data(), part);
+      const DiffuseInner found = store_inner(path, hits.data(), id, node, rows);
       begins_specular[id] = found.begins_specular;
       is_single[id] = found.is_single;
-      set(InnerRows::kToFirst, found.to_first);
-      set(InnerRows::kRootCosFirst, found.root_cos_first);
-      set(InnerRows::kFactor, found.factor);
-      set(InnerRows::kFirstSign, found.first_sign);
-      set(InnerRows::kLastSign, found.last_sign);
     }
     pad(rows, id, InnerRows::kNumRows);
   }
 }
 
+void SlidingParts::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const AntennaImages* images,
+                        bool with_phase) {
+  if (plan.sliding.empty()) return;
+  const LocalPaths local = localise(plan.sliding);
+  stride = std::max(images[0].num_antennas, images[1].num_antennas);
+  const size_t num_entries = plan.sliding.size() * stride, num_nodes = level.instants.size();
+  points.resize(num_entries, PointToPose::kNumRows, num_nodes);
+  legs.resize(num_entries, LegToMeasure::kNumRows, num_nodes);
+  if (with_phase) phases.resize(num_entries, 1, num_nodes);
+  inner.resize(num_entries, InnerRows::kNumRows, num_nodes);
+  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide, level);
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    if (chain.slide == ChainPlan::kNone) continue;
+    const AntennaImages& of = images[chain.is_reversed];
+    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
+      const size_t entry = chain.slide * stride + antenna;
+      double* const phase = with_phase ? phases.row(entry, 0) : nullptr;
+      of.measure(of.entry(plan.legs[chain.start].image, antenna), points.row(entry, 0), legs.row(entry, 0), phase);
+    }
+  }
+}
+
+void SlidingParts::move_points(const LocalPath& path, size_t slide, const LevelView& level) {
+  std::array<PosedHit, 64> recorded, moved;  // a path has no more
+  SpecularSlide scratch;
+  for (size_t node = 0; node < level.instants.size(); ++node) {
+    pose_hits(path, level.instants[node], recorded.data());
+    const std::vector<PosedAntenna>& starts = antennas_of(level.instants[node], path.is_reversed);
+    for (size_t antenna = 0; antenna < starts.size(); ++antenna) {
+      const size_t entry = slide * stride + antenna;
+      std::copy_n(recorded.begin(), path.count, moved.begin());
+      step_to_fermat(path, starts[antenna].position, scratch, moved.data());
+      const PosedHit& first = moved[static_cast<size_t>(path.first_material)];
+      store(first.point, points, entry, PointToPose::kPosition, node);
+      store(first.normal, points, entry, PointToPose::kNormal, node);
+      points.row(entry, PointToPose::kAreaRatio)[node] = first.area_ratio;
+      store_inner(path, moved.data(), entry, node, inner);
+    }
+  }
+  for (size_t entry = slide * stride; entry < (slide + 1) * stride; ++entry) {
+    pad(points, entry, PointToPose::kNumRows);
+    pad(inner, entry, InnerRows::kNumRows);
+  }
+}
+
+namespace {
+
+// An antenna turns the phase of what it sends or receives, by direction.
+bool any_phase(const AntennaImages& images) {
+  return std::any_of(images.pattern.begin(), images.pattern.end(),
+                     [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
+}
+
+}  // namespace
+
 void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
   points.find(plan, localise, level);
   find_mirrors(plan, localise, level, mirrors);
   for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
-  legs.find(plan, points, images[false], images[true]);
+  has_phase = any_phase(images[0]) || any_phase(images[1]);
+  has_polarizations = needs_polarizations(localise.paths(), level);
+  legs.find(plan, points, images, has_phase);
   inner.find(plan, points);
-  if (needs_polarizations(localise.paths(), level)) polarizations.find(plan, *this, level);
+  sliding.find(plan, localise, level, images, has_phase);
+  const bool of_mirrors = !localise.paths().jones.empty() && !plan.mirror_paths.empty();
+  if (has_polarizations || of_mirrors) polarizations.find_axes(plan, mirrors);
+  if (has_polarizations) polarizations.find(plan, *this, level);
 }
 
 size_t ChainTables::num_bytes() const {

@@ -4,7 +4,6 @@
 #include <deque>
 #include <span>
 
-#include "echopath/replay/amplitude.h"
 #include "echopath/replay/chain_plan.h"
 #include "echopath/replay/node_poses.h"
 
@@ -39,6 +38,7 @@ struct PosedPoints {
 
 // Antennas of one end as they are seen over mirrors: a leg is a straight line from one of them.
 struct AntennaImages {
+  bool of_receivers = false;
   size_t num_antennas = 0;
   std::vector<const AntennaPattern*> pattern;  // [antenna]
   NodeRows rows;                               // of image * num_antennas + antenna, LegToMeasure::ImageRow
@@ -47,25 +47,37 @@ struct AntennaImages {
 
   // mirrors: rows [normal x, y, z, offset] of the planes normal.x = offset, m.
   void find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers);
+  size_t entry(uint32_t image, size_t antenna) const { return image * num_antennas + antenna; }
+  // From an entry to a point (PointToPose::Row), as LegToMeasure::Row; phase: a row for that of the antenna, rad, or null.
+  void measure(size_t entry, const double* point, double* out, double* phase) const;
+
+ private:
+  void finish(size_t entry, const double* point, double* out, double* phase) const;
 };
 
 // Polarisations across the legs, where polarised paths ask for them.
 struct LegPolarizations {
   NodeRows axes;  // [image], ComponentsToFind::AxisRow
-  NodeRows rows;  // of leg * stride + antenna as in ChainLegs, ComponentsToFind::Row
+  NodeRows rows;          // of leg * stride + antenna as in ChainLegs, ComponentsToFind::Row
+  NodeRows sliding_rows;  // likewise, of the legs in SlidingParts
 
-  void find(const ChainPlan& plan, const struct ChainTables& tables, const LevelView& level);
-
- private:
   void find_axes(const ChainPlan& plan, const NodeRows& mirrors);
+  void find(const ChainPlan& plan, const struct ChainTables& tables, const LevelView& level);  // after the axes
+  // Across the leg from an image of an antenna to a point (PointToPose::Row), as ComponentsToFind::Row.
+  struct ImageOfAntenna {
+    uint32_t image;
+    size_t antenna;
+  };
+  void across(const AntennaImages& images, ImageOfAntenna of, const LevelView& level, const double* point, double* out) const;
 };
 
 // All legs of a block, to each antenna of their end.
 struct ChainLegs {
   size_t stride = 0;  // antennas of the end that has more of them
   NodeRows rows;      // of leg * stride + antenna, LegToMeasure::Row
+  NodeRows phases;    // likewise, one row: of the antenna, rad, where any has one
 
-  void find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages& transmitters, const AntennaImages& receivers);
+  void find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages* images, bool with_phase);
 };
 
 // Inner parts (DiffuseInner).
@@ -74,6 +86,21 @@ struct ChainInner {
   NodeRows rows;                                    // InnerRows::Row
 
   void find(const ChainPlan& plan, const PosedPoints& points);
+};
+
+// What sliding points of reflection (specular_slide.h) make of the paths that have them: for each antenna at which a path begins,
+// these stand elsewhere.
+struct SlidingParts {
+  size_t stride = 0;   // antennas of the end that has more of them
+  NodeRows points;     // of slide * stride + antenna: the first material point, PointToPose::Row
+  NodeRows legs;       // likewise, from the antenna to it: LegToMeasure::Row
+  NodeRows phases;     // likewise, one row, as in ChainLegs
+  NodeRows inner;      // likewise, InnerRows::Row
+
+  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const AntennaImages* images, bool with_phase);
+
+ private:
+  void move_points(const LocalPath& path, size_t slide, const LevelView& level);
 };
 
 // Of a gain, where it is a whole one that kernels can do, else LegToMeasure::kNoExponent.
@@ -89,6 +116,8 @@ struct ChainTables {
   ChainLegs legs;
   ChainInner inner;
   LegPolarizations polarizations;
+  SlidingParts sliding;
+  bool has_phase = false, has_polarizations = false;
 
   void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
   // Polarisations differ from path to path or from node to node (NodePoses::is_upright).

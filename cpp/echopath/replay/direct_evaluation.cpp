@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/base/constants.h"
 #include "echopath/base/simd.h"
-#include "echopath/replay/diffuse_chain.h"
 
 namespace echopath {
 namespace {
@@ -173,7 +171,7 @@ void DirectEvaluation::set_slots(Points points, const Localiser& localise, const
 
 // Polarised paths between upright antennas have no more to them than one entry of their matrix.
 void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
-  const double scale[] = {std::sqrt(radio.transmit_power) / (4.0 * kPi), diffuse_scale(radio)};
+  const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
   for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
     const bool is_there = point.path[kind] != ChainPlan::Direct::kNoPath;
     const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);

@@ -127,13 +127,6 @@ ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
           {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
-ECHOPATH_INLINE Vec root_gain_of(const DirectAntenna& antenna, Vec cosine) {
-  Vec power = all(antenna.root_peak);
-  for (int i = 0; i < antenna.exponent / 2; ++i) power = power * cosine;
-  if (antenna.exponent % 2) power = power * LaneMath::root(LaneMath::magnitude(cosine));
-  return cosine > 0.0 ? power : Vec{};
-}
-
 // ComponentsToFind of a leg along `line`.
 ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
                                                   const VectorOf<Vec>& line) {
@@ -159,13 +152,13 @@ ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAnte
   if (antenna.exponent != 0) {
     const Vec along = value(LegToMeasure::kBoresight) * line.x + value(LegToMeasure::kBoresight + 1) * line.y +
                       value(LegToMeasure::kBoresight + 2) * line.z;
-    gain = root_gain_of(antenna, inverse * along);
+    gain = root_gain_of<LaneMath>(antenna.root_peak, antenna.exponent, inverse * along);
   }
   const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * DirectSlots::kSlots, x); };
   set(DirectToEvaluate::kLegLength, distance.root);
   set(DirectToEvaluate::kInverse, inverse);
-  const Vec factor = LaneMath::with_sign_of(gain * roots_of(LaneMath::magnitude(cosine)).root * inverse, cosine);
-  set(DirectToEvaluate::kLegFactor, distance.root < kNearAntenna ? Vec{} : factor);  // diffuse_leg
+  const Vec root_cosine = roots_of(LaneMath::magnitude(cosine)).root;
+  set(DirectToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, root_cosine, cosine, distance.root, inverse));
   set(DirectToEvaluate::kGain, gain);
   set(DirectToEvaluate::kCosine, cosine);
   if constexpr (kIsPolarized) {
@@ -205,20 +198,15 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const 
   using D = DirectToEvaluate;
   const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
   CellWaves<Vec> waves;
-  waves.inverse_in = in(D::kInverse);
-  waves.inverse_out = out(D::kInverse);
-  waves.cos_in = LaneMath::magnitude(cos_in);
-  waves.cos_out = LaneMath::magnitude(cos_out);
-  waves.side = LaneMath::with_sign_of(all(1.0), cos_in);
+  set_waves<LaneMath>(cos_in, cos_out, in(D::kInverse), out(D::kInverse), waves);
   for (int a = 0; a < 2; ++a) {
     waves.along_arrival[a] = in(D::kAlong + a);
     waves.along_departure[a] = -out(D::kAlong + a);
   }
   const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter, paths.facet_area);
-  const Vec size = in(D::kGain) * out(D::kGain) * waves.cos_in * waves.inverse_in * waves.inverse_out;
   const Mask is_far = (in(D::kLegLength) >= kNearAntenna) & (out(D::kLegLength) >= kNearAntenna);
   const Mask is_lit = (cos_in * cos_out > 0.0) & is_far;
-  return {is_lit ? size * filter.re : Vec{}, is_lit ? size * filter.im : Vec{}};
+  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, is_lit);
 }
 
 // Weights of both kinds, with what the polarisations of both ends make of them.
@@ -255,16 +243,18 @@ ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes&
   using D = DirectToEvaluate;
   const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * DirectSlots::kSlots + slot, x); };
   const WeightLanes<kIsPolarized> weight(*paths.slots, in, out, slot);
-  set(D::kLength, in(D::kLegLength) + out(D::kLegLength));
+  const auto put = [&](int kind, ComplexOf<Vec> amplitude) {
+    set(D::kRe + 2 * kind, amplitude.re);
+    set(D::kIm + 2 * kind, amplitude.im);
+  };
+  const auto weight_of = [&](int kind) { return ComplexOf<Vec>{weight(kind, 0), weight(kind, 1)}; };
+  const Vec length = in(D::kLegLength) + out(D::kLegLength);
+  set(D::kLength, length);
   const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
-  for (int part = 0; part < 2; ++part) {
-    set(D::kRe + 2 * DirectSlots::kDiffuse + part, weight(DirectSlots::kDiffuse, part) * diffuse);
-  }
+  put(DirectSlots::kDiffuse, amplitude_of(weight_of(DirectSlots::kDiffuse), diffuse, length));
   ComplexOf<Vec> factor{};
   if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
-  const Vec re = weight(DirectSlots::kCoherent, 0), im = weight(DirectSlots::kCoherent, 1);
-  set(D::kRe, re * factor.re - im * factor.im);
-  set(D::kIm, re * factor.im + im * factor.re);
+  put(DirectSlots::kCoherent, amplitude_of(weight_of(DirectSlots::kCoherent), factor, length));
 }
 
 ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {

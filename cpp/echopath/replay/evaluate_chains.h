@@ -3,8 +3,8 @@
 // coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
 #include <array>
 
-#include "echopath/replay/amplitude.h"
 #include "echopath/replay/chain_tables.h"
+#include "echopath/replay/radio_constants.h"
 #include "echopath/replay/trace_cells.h"
 
 namespace echopath {
@@ -35,7 +35,7 @@ struct ChannelSpan {
 // Keeps its memory from block to block; for one thread at a time.
 class ChainEvaluation {
  public:
-  // Writes the paths of the plan that do not stand among its others. The antennas must have no phase (has_phase).
+  // Writes the chains and mirror paths of the plan.
   void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
                   const ChannelSpan& channels);
   // Of the plan and level of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
@@ -51,26 +51,33 @@ class ChainEvaluation {
   };
   Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
   PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  const double* start_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  const double* end_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  const double* inner_of(const ChainPlan::Chain& chain, size_t antenna) const;
   const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
-  void add_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const RigidCell& cell, const LevelView& level,
-                CoherentPath& path) const;
+  void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const LevelView& level, size_t slot);
   void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void reflect_from_stretching(size_t slot);
   void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void put(Chains chains, const ChannelNodes& to) const;
-  std::complex<double> weight_of(const ChainPlan::Chain& chain) const;
+  void put_one(size_t place, size_t slot, const ChannelNodes& to) const;
+  ComplexOf<double> scaled_weight(const ChainPlan::Chain& chain, double scale) const;
   void polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
+  void polarize(int64_t path, const double* start, const double* end, size_t slot);
+  void turn_phase(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
+  void turn_phase(const double* start, const double* end, size_t slot);
+  void evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels, double scale);
   bool turns(uint32_t leg) const;
 
   ChainTables tables_;
   NodeRows values_;                              // [slot], PathToCombine::Row
   std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
+  std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
+  NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
+  NodeRows mirror_legs_, mirror_phases_, mirror_components_;  // of one channel: from the transmitter's image, from the receiver
   size_t num_receivers_ = 0;
   const ChainKernels* kernels_ = nullptr;
   const Paths* paths_ = nullptr;
-  bool polarizes_ = false;  // node by node
 };
-
-// An antenna turns the phase of what it sends or receives, by direction.
-bool has_phase(const Radar& radar);
 
 }  // namespace echopath

@@ -32,9 +32,8 @@ void find_across(const CellShape& cell, double* across) {
 
 }  // namespace
 
-LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density) {
+LaunchCell recorded_cell(const std::array<float, 7>& record) {
   LaunchCell cell;
-  cell.ray_density = ray_density;
   cell.is_curved = cell.is_known = true;
   for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[static_cast<size_t>(2 * a)], record[static_cast<size_t>(2 * a + 1)]};
   std::copy(record.begin() + 4, record.end(), cell.turn);
@@ -66,25 +65,9 @@ CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTang
   return shape;
 }
 
-double root_tube_area(const LaunchCell& cell, const HitGeometry& at) {
-  if (!cell.is_curved) return at.length_in;
-  // Tangents stretch with their triangle, and so does the solid angle that it takes of the source.
-  const CellTangents tangents = cell_tangents(cell, at.hit);
-  return std::sqrt(tangents[0].cross(tangents[1]).norm() / at.hit.area_ratio * at.cos_in * cell.ray_density);
-}
-
-std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& at, const CellFilter& filter) {
-  if (filter.order == Footprint::kNone || !cell.is_known) return 1.0;
-  const CellTangents tangents = cell_tangents(cell, at.hit);
-  // A surface seen from inside is concave.
-  CellWaves<double> waves{at.cos_in, at.cos_out, at.hit.normal.dot(at.arrival) < 0 ? 1.0 : -1.0, 1.0 / at.length_in,
-                          1.0 / at.length_out, {}, {}};
-  for (size_t a = 0; a < 2; ++a) {
-    waves.along_arrival[a] = tangents[a].dot(at.arrival);
-    waves.along_departure[a] = tangents[a].dot(at.departure);
-  }
-  const ComplexOf<double> factor = cell_filter_of<ScalarMath>(cell_shape(cell, at.hit, tangents), waves, filter);
-  return {factor.re, factor.im};
+// Tangents stretch with their triangle, and so does the solid angle that it takes of the source.
+double root_area(const CellTangents& tangents, const PosedHit& hit, double density) {
+  return std::sqrt(tangents[0].cross(tangents[1]).norm() / hit.area_ratio * density);
 }
 
 }  // namespace echopath

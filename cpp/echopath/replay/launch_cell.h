@@ -1,6 +1,6 @@
 #pragma once
-// The patch of surface that one coherent ray stands for, carried along with its triangle, and what it does to the echo.
-// Source of the second order: quadratic phase over the cell from ray differentials (Igehy 1999), curvature of wave front,
+// The patch of surface that one coherent ray stands for, carried along with its triangle; cell_formula.h has what it does to the
+// echo. Source of the second order: quadratic phase over the cell from ray differentials (Igehy 1999), curvature of wave front,
 // receive sphere and surface.
 #include <array>
 
@@ -9,28 +9,26 @@
 
 namespace echopath {
 
-// How a wave meets and leaves the physical-optics hit at one instant.
-struct HitGeometry {
-  const PosedHit& hit;
-  Vec3 arrival, departure;          // unit directions of travel
-  double length_in, length_out;     // m, unfolded: TX -> hit, hit -> RX
-  double cos_in, cos_out;           // positive
+// What a launch cell of the path's own stratum becomes on the triangle of the physical-optics hit, at the trace time.
+struct LaunchCell {
+  bool is_known = false;            // else the footprint filter is off
+  Eigen::Vector2d tangent[2];       // T_a in units of the triangle's edges, (du, dv) each
+  // Behind a curved specular bounce: how the direction of arrival turns across the cell, T_a.U_b in m (11, 12, 22). On flat chains
+  // it follows from the length.
+  bool is_curved = false;
+  double turn[3] = {0.0, 0.0, 0.0};
+  double facet_area = 0.0;          // m^2, Localiser::facet_area of its mesh
 };
 
-// Tube area per launch solid angle, square root, m / sqrt(sr): the unfolded length on flat chains.
-double root_tube_area(const LaunchCell& cell, const HitGeometry& geometry);
-
 // The cell behind a curved specular bounce, from Paths::curved_cell.
-LaunchCell recorded_cell(const std::array<float, 7>& record, double ray_density);
+LaunchCell recorded_cell(const std::array<float, 7>& record);
 
 using CellTangents = std::array<Vec3, 2>;  // T_a on the surface at the hit, world axes, m
+// hit: with edges.
 CellTangents cell_tangents(const LaunchCell& cell, const PosedHit& hit);
 CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTangents& tangents);
-
-// Footprint filter F of the cell, |F| <= 1, on curved surfaces with the taper toward their shadow (shadow_taper).
-//   first order:  g_a = k T_a.(u - s)
-//   second order: h_ab = k [T_a.U_b + (T_a.T_b - (T_a.s)(T_b.s))/r + (cos_in + cos_out) II(T_a, T_b)]; directions in which the
-//   surface and the chain are flat keep the flat-top filter, so that plates and the axes of cylinders lose nothing.
-std::complex<double> cell_filter(const LaunchCell& cell, const HitGeometry& geometry, const CellFilter& filter);
+// sqrt(|T_1 x T_2| density) of the cell as it was at the trace, in m sr^-1/2, from which the area of the ray tube follows.
+// density: rays per sr
+double root_area(const CellTangents& tangents, const PosedHit& hit, double density);
 
 }  // namespace echopath

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "echopath/replay/launch_cell.h"
+#include "echopath/replay/cell_formula.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
@@ -103,8 +103,6 @@ LocalPaths Localiser::operator()(std::span<const int64_t> indices) const {
     block.paths.push_back(local_path(index, block));
     block.longest = std::max(block.longest, block.paths.back().count);
   }
-  std::vector<PosedHit> scratch(static_cast<size_t>(std::max(block.longest, 1)));
-  for (size_t i = 0; i < indices.size(); ++i) add_cell(block.paths[i], indices[i], scratch);
   return block;
 }
 
@@ -115,8 +113,6 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
   path.recorded = paths_.hits_of(index);
   path.count = paths_.num_bounces[p];
   path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
-  if (!paths_.jones.empty()) path.jones = &paths_.jones[p];
-  path.weight = std::complex<double>(paths_.weight[p]);
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
@@ -131,49 +127,6 @@ LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
   }
   path.sliding = sliding_hits(path);
   return path;
-}
-
-// The launch cell of the path's own stratum on the triangle of the physical-optics hit.
-void Localiser::add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const {
-  const auto p = static_cast<size_t>(index);
-  const size_t stratum = paths_.stratum[p];
-  if (path.diffuse != 0 || path.last_material < 0 || stratum >= paths_.frame.strata.size()) return;
-  const double density = paths_.frame.lattice_density(stratum);
-  path.cell.ray_density = density;
-  const double facet_area = facet_area_[path.hits[path.last_material].mesh_id];
-  if (!paths_.curved_cell.empty() && paths_.curved_cell[p] != std::array<float, 7>{}) {
-    path.cell = recorded_cell(paths_.curved_cell[p], density);
-  } else if (paths_.frame.footprint != Footprint::kNone) {
-    set_flat_cell(path, scratch);
-  }
-  path.cell.facet_area = facet_area;
-}
-
-void Localiser::set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const {
-  PosedHit* hits = scratch.data();
-  pose_hits(path, trace_instant_, hits);
-  static const AntennaPattern isotropic;
-  const PosedAntenna centre{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ(), &isotropic};
-  const AntennaLeg in = transmit_leg(path, hits, centre);
-  double length = in.length;
-  Vec3 arrival = in.travel;
-  int previous = path.first_material;
-  for (int k = previous + 1; k <= path.last_material; ++k) {
-    if (path.is_image(k)) continue;
-    const UnfoldedLeg leg = inner_leg(hits, previous, k);
-    length += leg.length;
-    arrival = leg.arrival;
-    previous = k;
-  }
-  const PosedHit& hit = hits[path.last_material];
-  const double cos_in = std::abs(hit.normal.dot(arrival));
-  const double side = length / std::sqrt(path.cell.ray_density);  // of the tube, m
-  Vec3 along = arrival - hit.normal.dot(arrival) * hit.normal;
-  along = along.norm() > 1e-9 ? along.normalized() : hit.normal.unitOrthogonal();
-  const Vec3 across = hit.normal.cross(along);
-  path.cell.tangent[0] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, along * (side / std::max(cos_in, 1e-3)));
-  path.cell.tangent[1] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, across * side);
-  path.cell.is_known = path.cell.tangent[0].allFinite() && path.cell.tangent[1].allFinite();
 }
 
 }  // namespace echopath

@@ -54,8 +54,6 @@ class Localiser {
   std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
   double facet_area_at_trace(uint32_t mesh_id) const;
   LocalPath local_path(int64_t index, LocalPaths& block) const;
-  void add_cell(LocalPath& path, int64_t index, std::vector<PosedHit>& scratch) const;
-  void set_flat_cell(LocalPath& path, std::vector<PosedHit>& scratch) const;
 
   const Paths& paths_;
   std::vector<SurfacePatch> patches_;                         // by mesh ID

@@ -5,6 +5,7 @@
 
 #include "echopath/replay/motion_knots.h"
 #include "echopath/replay/node_tails.h"
+#include "echopath/replay/radio_constants.h"
 #include "echopath/replay/turn_rates.h"
 
 namespace echopath {

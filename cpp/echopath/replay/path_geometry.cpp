@@ -80,39 +80,7 @@ void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, P
 }
 
 void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
-  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], instant, path.has_cell_at(k), out[k]);
-}
-
-AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna) {
-  const int last = path.first_material;
-  const Vec3 line = hits[last].point - forward_image(antenna.position, hits, 0, last);
-  AntennaLeg leg;
-  leg.length = line.norm();
-  leg.travel = line / leg.length;
-  leg.at_antenna = direction_before(leg.travel, hits, 0, last);
-  leg.gain = antenna.toward(leg.at_antenna);
-  return leg;
-}
-
-AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna) {
-  const int first = path.last_material + 1;
-  Vec3 target = antenna.position;
-  for (int k = path.count; k-- > first;) target = image(target, hits[k]);
-  const Vec3 line = target - hits[path.last_material].point;
-  AntennaLeg leg;
-  leg.length = line.norm();
-  leg.travel = line / leg.length;
-  leg.at_antenna = reflected_behind(leg.travel, hits, first, path.count);
-  leg.gain = antenna.toward(-leg.at_antenna);
-  return leg;
-}
-
-MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
-                              const PosedAntenna& receiver) {
-  const Vec3 line = receiver.position - forward_image(transmitter.position, hits, 0, path.count);
-  const double length = line.norm();
-  const Vec3 arrival = line / length, departure = direction_before(arrival, hits, 0, path.count);
-  return {length, transmitter.toward(departure), receiver.toward(-arrival), departure, arrival};
+  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], instant, false, out[k]);
 }
 
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to) {

@@ -21,23 +21,11 @@ struct LocalHit {
 
 struct PosedHit {
   Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
-  Vec3 edge_u, edge_v;   // only where the path asks for them (LocalPath::has_cell_at) or the triangle bends
+  Vec3 edge_u, edge_v;   // only where they are asked for or the triangle bends
   Vec3 facet;            // the point on the flat triangle; only where is_smooth
   Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
   bool is_smooth = false;
   double area_ratio = 1.0;  // of its triangle, over that at the trace
-};
-
-// What a launch cell of the path's own stratum becomes on the triangle of the physical-optics hit, at the trace time.
-struct LaunchCell {
-  bool is_known = false;            // else the footprint filter is off
-  Eigen::Vector2d tangent[2];       // T_a in units of the triangle's edges, (du, dv) each
-  // Behind a curved specular bounce: how the direction of arrival turns across the cell, T_a.U_b in m (11, 12, 22), and the
-  // ray density of the stratum in 1/sr, from which sqrt(D) follows. On flat chains both follow from the length.
-  bool is_curved = false;
-  double turn[3] = {0.0, 0.0, 0.0};
-  double ray_density = 0.0;
-  double facet_area = 0.0;  // m^2, Localiser::facet_area of its mesh
 };
 
 // What of a path does not depend on time.
@@ -49,15 +37,10 @@ struct LocalPath {
   uint64_t diffuse = 0;
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
   uint64_t sliding = 0;            // bit per hit: specular otherwise; the point of reflection slides over its surface
-  std::complex<double> weight;
-  LaunchCell cell;                 // coherent paths only
-  const JonesMatrix* jones = nullptr;  // null where the trace was scalar
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
   bool is_sliding(int hit) const { return sliding >> hit & 1; }
-  // The launch cell lies on the triangle of this hit.
-  bool has_cell_at(int hit) const { return diffuse == 0 && hit == last_material; }
   // First and last hit that are not images; -1 where the path has mirrors only. The last one is a material point.
   int first_material = -1, last_material = -1;
 };
@@ -76,27 +59,6 @@ struct UnfoldedLeg {
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to);
 // A vector as it stands behind these mirrors.
 Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last);
-
-// A leg between a material point and an antenna, unfolded over the mirrors between.
-struct AntennaLeg {
-  double length = 0.0;  // m
-  Vec3 travel;          // unit direction of travel at the material point
-  Vec3 at_antenna;      // unit direction of travel at the antenna
-  AntennaGain gain;     // of the antenna toward the leg
-};
-
-// TX -> first material point, and last material point -> RX.
-AntennaLeg transmit_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna);
-AntennaLeg receive_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& antenna);
-
-// TX -> RX over mirrors alone: unfolded length and both gains.
-struct MirrorOnlyLeg {
-  double length;
-  AntennaGain transmit_gain, receive_gain;
-  Vec3 departure, arrival;  // unit directions of travel at the antennas
-};
-MirrorOnlyLeg mirror_only_leg(const LocalPath& path, const PosedHit* hits, const PosedAntenna& transmitter,
-                              const PosedAntenna& receiver);
 
 // Between the hits `from` < `to` of a path, which are not images, over the mirrors between.
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "echopath/base/constants.h"
@@ -46,12 +45,6 @@ std::vector<ChannelNodes> rows_of(std::span<Echoes> echoes, size_t step = 1) {
   return rows;
 }
 
-std::vector<size_t> all_places(size_t count) {
-  std::vector<size_t> places(count);
-  std::iota(places.begin(), places.end(), size_t{0});
-  return places;
-}
-
 // Leaves the echoes at `places` (ascending) and forgets all others.
 void keep(std::span<const size_t> places, Echoes& echoes) {
   const auto count = static_cast<size_t>(echoes.num_echoes), num_nodes = echoes.delay.size() / count;
@@ -81,7 +74,6 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      antennas_have_phase_(has_phase(radar)), has_direct_(can_evaluate_directly(radar)),
       localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_),
       memory_(ReplayMemory::take()) {
   radio_.specular = settings.specular;
@@ -139,49 +131,17 @@ RadioConstants Replayer::radio_of(const Target& target) const {
 }
 
 void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
-  if (antennas_have_phase_) {
-    for (const Target& target : targets) evaluate_one_by_one(paths, all_places(paths.size()), target);
-    return;
-  }
-  std::unique_ptr<ReplayWorkspace> workspace = memory_->take_workspace();
-  workspace->plan_chains.begin(paths_, localise_, settings_.specular, has_direct_);
+  std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
+  evaluator->begin(localise_, radar_, settings_.specular);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
-    const std::span<const int64_t> part = paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin));
-    const ChainPlan& plan = workspace->plan_chains(part);
+    evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
     for (Target& target : targets) {
       for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
-      const RadioConstants radio = radio_of(target);
-      workspace->evaluate_chains(plan, localise_, target.level.view(), radio, target.channels());
       uint8_t* const turned = target.turned ? target.turned + begin : nullptr;
-      const DirectEvaluation::Wanted wanted{turned, target.with_amplitudes};
-      workspace->evaluate_direct(plan, localise_, target.level.view(), radio, target.channels(), wanted);
-      if (turned) workspace->evaluate_chains.mark_turned(plan, turned);
-      evaluate_one_by_one(part, plan.others, target);
+      evaluator->evaluate(target.level.view(), radio_of(target), target.channels(), {turned, target.with_amplitudes});
     }
   }
-  memory_->give(std::move(workspace));
-}
-
-void Replayer::evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, const Target& target) const {
-  if (places.empty()) return;
-  std::vector<int64_t> indices;
-  for (const size_t place : places) indices.push_back(paths[place]);
-  const LocalPaths block = localise_(indices);
-  EvaluationScratch scratch(block.longest);
-  const std::vector<Instant>& instants = target.level.instants;
-  const size_t num_channels = instants.front().transmitters.size() * num_receivers();
-  std::vector<double> length(num_channels);
-  std::vector<std::complex<double>> amplitude(num_channels);
-  const RadioConstants radio = radio_of(target);
-  for (size_t i = 0; i < places.size(); ++i) {
-    for (size_t node = 0; node < instants.size(); ++node) {
-      evaluate_path(block.paths[i], instants[node], radio, scratch, {length.data(), amplitude.data(), 1});
-      for (size_t channel = 0; channel < target.nodes.size(); ++channel) {
-        const size_t from = target.first_channel + channel;
-        target.nodes[channel].set(node, places[i], length[from], amplitude[from]);
-      }
-    }
-  }
+  memory_->give(std::move(evaluator));
 }
 
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {

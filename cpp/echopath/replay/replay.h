@@ -70,7 +70,6 @@ class Replayer {
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned = nullptr) const;
   RadioConstants radio_of(const Target& target) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
-  void evaluate_one_by_one(std::span<const int64_t> paths, std::span<const size_t> places, const Target& target) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<NeededOrder>& needed) const;
   FailedPath failed(int64_t path, int index, const NeededOrder& needed, bool turned) const;
 
@@ -78,7 +77,6 @@ class Replayer {
   const Radar& radar_;
   ReplaySettings settings_;
   RadioConstants radio_;
-  bool antennas_have_phase_ = false, has_direct_ = false;
   Localiser localise_;
   NodeLevels levels_;
   std::unique_ptr<ReplayMemory> memory_;

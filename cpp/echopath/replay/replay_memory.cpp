@@ -12,24 +12,22 @@ void ReplayMemory::leave(std::unique_ptr<ReplayMemory> memory) noexcept {
   KeptMemory<ReplayMemory>::of_process().leave(std::move(memory));
 }
 
-std::unique_ptr<ReplayWorkspace> ReplayMemory::take_workspace() {
+std::unique_ptr<PathEvaluator> ReplayMemory::take_evaluator() {
   const std::lock_guard lock(mutex_);
-  if (workspaces_.empty()) return std::make_unique<ReplayWorkspace>();
-  std::unique_ptr<ReplayWorkspace> last = std::move(workspaces_.back());
-  workspaces_.pop_back();
+  if (evaluators_.empty()) return std::make_unique<PathEvaluator>();
+  std::unique_ptr<PathEvaluator> last = std::move(evaluators_.back());
+  evaluators_.pop_back();
   return last;
 }
 
-void ReplayMemory::give(std::unique_ptr<ReplayWorkspace> workspace) {
+void ReplayMemory::give(std::unique_ptr<PathEvaluator> evaluator) {
   const std::lock_guard lock(mutex_);
-  workspaces_.push_back(std::move(workspace));
+  evaluators_.push_back(std::move(evaluator));
 }
 
 size_t ReplayMemory::num_bytes() const {
   size_t bytes = echoes.num_bytes();
-  for (const auto& workspace : workspaces_) {
-    bytes += workspace->evaluate_chains.num_bytes() + workspace->evaluate_direct.num_bytes();
-  }
+  for (const auto& evaluator : evaluators_) bytes += evaluator->num_bytes();
   return bytes;
 }
 

@@ -4,17 +4,10 @@
 #include <mutex>
 #include <vector>
 
-#include "echopath/replay/direct_evaluation.h"
+#include "echopath/replay/path_evaluator.h"
 #include "echopath/replay/spare_echoes.h"
 
 namespace echopath {
-
-// Of one block at a time.
-struct ReplayWorkspace {
-  ChainPlanner plan_chains;
-  ChainEvaluation evaluate_chains;
-  DirectEvaluation evaluate_direct;
-};
 
 // Thread-safe.
 class ReplayMemory {
@@ -24,13 +17,13 @@ class ReplayMemory {
   static void leave(std::unique_ptr<ReplayMemory> memory) noexcept;
 
   SpareEchoes echoes;
-  std::unique_ptr<ReplayWorkspace> take_workspace();
-  void give(std::unique_ptr<ReplayWorkspace> workspace);
+  std::unique_ptr<PathEvaluator> take_evaluator();
+  void give(std::unique_ptr<PathEvaluator> evaluator);
   size_t num_bytes() const;  // of what is not in use
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<ReplayWorkspace>> workspaces_;  // not in use
+  std::vector<std::unique_ptr<PathEvaluator>> evaluators_;  // not in use
 };
 
 }  // namespace echopath

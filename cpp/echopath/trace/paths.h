@@ -87,7 +87,7 @@ struct Paths {
   std::vector<int64_t> offsets;
   std::vector<uint8_t> num_bounces;
   std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
-  std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/amplitude.h)
+  std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/path_formula.h)
   std::vector<uint16_t> stratum;             // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
   std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf

@@ -11,10 +11,11 @@ Radar with_first_antennas(Radar radar) {
   return radar;
 }
 
-std::vector<uint8_t> moving_meshes(const Scene& scene) {
-  std::vector<uint8_t> moves;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves.push_back(scene.is_moving(id));
-  return moves;
+bool is_any_mesh_moving(const Scene& scene) {
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (scene.is_moving(id)) return true;
+  }
+  return false;
 }
 
 void merge(const LengthError& at, LengthError& worst) {
@@ -44,23 +45,22 @@ std::pair<Vec3, double> ball_of(const Pose& pose, uint32_t mesh_id) {
 
 }  // namespace
 
-FrameCheck::Scratch::Scratch(int longest) : probe(longest), evaluation(longest) {}
+FrameCheck::Scratch::Scratch(int longest) : probe(longest) {}
 
 // One time of the frame.
 struct FrameCheck::View {
   std::shared_ptr<const EmbreeScene> geometry;
   Pose pose;
-  Instant first_antennas, rim;
+  Instant rim;
   FrameProbe probe;
 
   View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> posed, double time)
       : geometry(std::move(posed)), pose(*check.paths_.scene, time),
-        first_antennas(*check.paths_.scene, check.first_radar_, check.localise_.patches(), check.origin_, time),
         rim(*check.paths_.scene, check.probe_radar_, check.localise_.patches(), check.origin_, time),
         probe(check.localise_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
-// A ball that a mesh does not leave within the frame, relative to the origin.
+// A ball that a mesh does not leave within the frame, relative to the mean transmitter of the trace.
 struct FrameCheck::Sweep {
   Vec3 centre;
   double radius;
@@ -70,15 +70,15 @@ struct FrameCheck::Sweep {
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
       localise_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)),
-      mesh_moves_(moving_meshes(*paths.scene)) {
+      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)) {
   radio_.specular = specular;
-  is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
+  is_geometry_still_ = !is_any_mesh_moving(*paths.scene);
   is_still_ = is_geometry_still_ && !radar.motion;
   const Pose pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
   traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
   trace_view_ = std::make_unique<const View>(*this, traced_, paths.frame.trace_time);
+  traced_level_ = level_at({&paths.frame.trace_time, 1});
   find_sweeps();
 }
 
@@ -98,7 +98,7 @@ void FrameCheck::find_sweeps() {
   }
   for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
     if (times_.of_mesh[id] <= times_.num_base) continue;
-    sweeps_.push_back({centres[id].center() - origin_, 0.5 * centres[id].diagonal().norm() + radii[id], times_.of_mesh[id]});
+    sweeps_.push_back({centres[id].center() - paths_.frame.transmitter, 0.5 * centres[id].diagonal().norm() + radii[id], times_.of_mesh[id]});
   }
 }
 
@@ -106,7 +106,8 @@ int FrameCheck::times_of(const LocalPath& path) const {
   int needed = times_.num_base;
   if (sweeps_.empty()) return needed;
   for (int k = 0; k < path.count; ++k) needed = std::max(needed, times_.of_mesh[path.hits[k].mesh_id]);
-  const auto& from = trace_view_->first_antennas.transmitters.front(), & to = trace_view_->first_antennas.receivers.front();
+  const Instant& traced = traced_level_.instants.front();
+  const PosedAntenna &from = traced.transmitters.front(), &to = traced.receivers.front();
   for (const Sweep& sweep : sweeps_) {
     if (sweep.num_times <= needed) continue;
     Vec3 last = from.position;
@@ -116,7 +117,7 @@ int FrameCheck::times_of(const LocalPath& path) const {
       Vec3 next = to.position;
       if (k < path.count) {
         PosedHit posed;
-        pose_facet(path.hits[hit], trace_view_->first_antennas, posed);
+        pose_facet(path.hits[hit], traced, posed);
         next = posed.point;
       }
       nearest = std::min(nearest, distance_to_segment(sweep.centre, last, next));
@@ -137,6 +138,15 @@ std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, doub
   return geometries_[index];
 }
 
+FrameCheck::Level FrameCheck::level_at(std::span<const double> times) const {
+  Level level;
+  for (const double time : times) {
+    level.instants.emplace_back(*paths_.scene, first_radar_, localise_.patches(), paths_.frame.transmitter, time);
+  }
+  level.poses = node_poses(level.instants, static_cast<uint32_t>(paths_.scene->meshes().size()));
+  return level;
+}
+
 void FrameCheck::pose(size_t first, size_t count, Job* job) {
   views_.clear();
   first_posed_ = first;
@@ -144,39 +154,52 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
     const double time = times_.times[first + i];
     views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
   }
+  if (!views_.empty()) posed_level_ = level_at({times_.times.data() + first, views_.size()});
 }
 
-bool FrameCheck::is_still(const LocalPath& path) const {
-  const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
-  return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
+std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const LevelView& level, Scratch& scratch) const {
+  const size_t num_times = level.instants.size();
+  std::vector<double> lengths(paths.size() * num_times);
+  std::vector<std::complex<double>> amplitudes(lengths.size());
+  const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
+  scratch.evaluate.begin(localise_, first_radar_, radio_.specular);
+  scratch.evaluate.plan(paths);
+  scratch.evaluate.evaluate(level, radio_, {0, {&all, 1}});
+  std::vector<Echo> echoes(lengths.size());
+  for (size_t i = 0; i < lengths.size(); ++i) {
+    Echo& echo = echoes[i % paths.size() * num_times + i / paths.size()];
+    echo.length = lengths[i];
+    echo.amplitude = amplitudes[i];
+  }
+  return echoes;
 }
 
-Echo FrameCheck::at_trace(const LocalPath& path, Scratch& scratch) const {
-  Echo echo;
-  evaluate_path(path, trace_view_->first_antennas, radio_, scratch.evaluation, {&echo.length, &echo.amplitude, 1});
-  return echo;
+std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths, Scratch& scratch) const {
+  return echoes_at(paths, traced_level_.view(), scratch);
 }
 
-void FrameCheck::check(const LocalPath& path, const Echo& traced, int num_times, Scratch& scratch, PathFinding& found,
-                       std::vector<Echo>& out) const {
+std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, Scratch& scratch) const {
+  return echoes_at(paths, posed_level_.view(), scratch);
+}
+
+size_t FrameCheck::check(const LocalPath& path, int num_times, const Echo& traced, std::span<Echo> posed, Scratch& scratch,
+                         PathFinding& found) const {
   const int64_t needed = num_times - static_cast<int64_t>(first_posed_);
   const auto count = static_cast<size_t>(std::clamp<int64_t>(needed, 0, std::ssize(views_)));
-  const bool still = is_still(path);
   if (found.num_powers == 0) {
     found.power = std::norm(traced.amplitude);
     found.num_powers = 1;
   }
   trace_view_->probe.cosines(path, scratch.probe, scratch.probe.reference);
   scratch.known.resize(views_.size());
-  out.assign(count, traced);
   for (size_t i = 0; i < count; ++i) {
     const PathState state = views_[i]->probe.check(path, scratch.probe, scratch.known[i]);
-    if (!still) evaluate_path(path, views_[i]->first_antennas, radio_, scratch.evaluation, {&out[i].length, &out[i].amplitude, 1});
-    out[i].is_lost = is_lost(state);
-    found.power += std::norm(out[i].amplitude);
+    posed[i].is_lost = is_lost(state);
+    found.power += std::norm(posed[i].amplitude);
     ++found.num_powers;
     merge(state, found.state);
   }
+  return count;
 }
 
 }  // namespace echopath

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/replay/amplitude.h"
+#include "echopath/replay/path_evaluator.h"
 #include "echopath/trace/kept_geometry.h"
 #include "echopath/validity/check_times.h"
 #include "echopath/validity/frame_probe.h"
@@ -30,7 +30,7 @@ class FrameCheck {
  public:
   struct Scratch {
     ProbeScratch probe;
-    EvaluationScratch evaluation;
+    PathEvaluator evaluate;
     std::vector<LegMemo> known;  // by time, of the paths that were checked with this scratch
     explicit Scratch(int longest);  // hits of a path
   };
@@ -48,12 +48,15 @@ class FrameCheck {
 
   // Poses the scene at the times [first, first + count), for `check`. No other call may run meanwhile.
   void pose(size_t first, size_t count, Job* job = nullptr);
-  // Thread-safe, as all that follows.
-  Echo at_trace(const LocalPath& path, Scratch& scratch) const;
-  // Adds what becomes of a path at the posed times that it needs, whose echo at the trace time is `traced`; out: an echo for
-  // each of them.
-  void check(const LocalPath& path, const Echo& traced, int num_times, Scratch& scratch, PathFinding& found,
-             std::vector<Echo>& out) const;
+  // Echoes at the trace time, [P]. Thread-safe, as all that follows.
+  std::vector<Echo> at_trace(std::span<const int64_t> paths, Scratch& scratch) const;
+  // At the posed times, [P, time].
+  std::vector<Echo> at_posed_times(std::span<const int64_t> paths, Scratch& scratch) const;
+  size_t num_posed_times() const { return views_.size(); }
+  // Adds what becomes of a path at the posed times that it needs; echoes: of the trace time, and of the posed times (`is_lost` is
+  // found here). Returns how many times it needed.
+  size_t check(const LocalPath& path, int num_times, const Echo& traced, std::span<Echo> posed, Scratch& scratch,
+               PathFinding& found) const;
 
   // How far the length is off where specular hits stand as chosen.
   const LengthError& error_of(const PathState& state) const {
@@ -68,7 +71,7 @@ class FrameCheck {
  private:
   struct View;
   struct Sweep;
-  bool is_still(const LocalPath& path) const;
+  std::vector<Echo> echoes_at(std::span<const int64_t> paths, const LevelView& level, Scratch& scratch) const;
   void find_sweeps();
   // At one of the posed times, brought there from the time that stood in its place.
   std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
@@ -79,13 +82,20 @@ class FrameCheck {
   Localiser localise_;
   SurfaceWalk walk_;
   RadioConstants radio_;
-  std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
   std::shared_ptr<EmbreeScene> traced_;
   std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // of the posed times; brought from one to the next
   std::unique_ptr<const View> trace_view_;
   std::vector<std::unique_ptr<const View>> views_;  // posed
+  // The first antennas and all meshes at the time of the trace, and at the posed times.
+  struct Level {
+    std::vector<Instant> instants;
+    NodePoses poses;
+    LevelView view() const { return {instants, poses}; }
+  };
+  Level level_at(std::span<const double> times) const;
+  Level traced_level_, posed_level_;
   size_t first_posed_ = 0;
   std::vector<Sweep> sweeps_;  // of the meshes that need more times than others
 };

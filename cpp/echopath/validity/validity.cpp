@@ -180,25 +180,27 @@ class Certificate {
     for (const size_t member : members) indices.push_back(sample_.paths[member]);
     const LocalPaths local = check_.localise(indices);
     FrameCheck::Scratch scratch(local.longest);
-    std::vector<Echo> echoes;
+    std::vector<Echo> traced, posed = check_.at_posed_times(indices, scratch);
+    if (first == 0) traced = check_.at_trace(indices, scratch);
     for (size_t i = 0; i < members.size(); ++i) {
       Finding& found = findings_[members[i]];
       const LocalPath& path = local.paths[i];
-      if (first == 0) begin_path(path, scratch, found);
-      check_.check(path, found.at_trace, found.num_times, scratch, found, echoes);
-      add_echoes(found, sample_.weights[members[i]], first, echoes, sums);
+      if (first == 0) begin_path(path, traced[i], found);
+      const std::span<Echo> echoes(posed.data() + i * check_.num_posed_times(), check_.num_posed_times());
+      const size_t num_needed = check_.check(path, found.num_times, found.at_trace, echoes, scratch, found);
+      add_echoes(found, sample_.weights[members[i]], first, echoes.first(num_needed), sums);
     }
   }
 
-  void begin_path(const LocalPath& path, FrameCheck::Scratch& scratch, Finding& found) const {
+  void begin_path(const LocalPath& path, const Echo& traced, Finding& found) const {
     found.num_times = check_.times_of(path);
     found.object = static_cast<size_t>(paths_.scene->meshes()[path.hits[std::max(path.last_material, 0)].mesh_id].object);
     found.is_field = is_field(path);
-    found.at_trace = check_.at_trace(path, scratch);
+    found.at_trace = traced;
   }
 
   // Of the times at which surface is looked for, too.
-  void add_echoes(const Finding& found, double weight, size_t first, const std::vector<Echo>& echoes, ObjectsAtTimes& sums) const {
+  void add_echoes(const Finding& found, double weight, size_t first, std::span<const Echo> echoes, ObjectsAtTimes& sums) const {
     if (first >= num_base()) return;
     std::vector<ObjectAtTime>& times = sums[found.object];
     times.resize(num_base());

@@ -5,6 +5,7 @@
 #include "echopath/replay/direct_evaluation.h"
 #include "echopath/replay/evaluate_chains.h"
 #include "echopath/replay/hit_patches.h"
+#include "support/path_by_path.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -84,49 +85,28 @@ std::vector<int64_t> all_of(const Paths& paths) {
   return indices;
 }
 
-// What field vectors that agree in polarisation make of a path at most.
-double largest_factor(const JonesMatrix& matrix) {
-  double sum = 0.0;
-  for (const std::complex<float> entry : matrix) sum += std::norm(std::complex<double>(entry));
-  return std::sqrt(sum);
-}
-
-// Amplitudes without what polarisations make of them, which may cross.
-double size_of(LocalPath path, const Instant& instant, const RadioConstants& radio, EvaluationScratch& scratch, size_t channel,
-               size_t channels) {
-  std::vector<double> length(channels);
-  std::vector<std::complex<double>> amplitude(channels);
-  const double factor = path.jones ? largest_factor(*path.jones) : 1.0;
-  path.jones = nullptr;
-  evaluate_path(path, instant, radio, scratch, {length.data(), amplitude.data(), 1});
-  return factor * std::abs(amplitude[channel]);
-}
-
 // Largest differences to paths evaluated one by one, relative to each value, over all channels.
 struct Differences {
   double length = 0.0, diffuse = 0.0, coherent = 0.0;  // amplitudes of diffuse and of coherent paths
 };
 
-Differences differences(const Paths& paths, const Radar& radar, double time) {
+// Amplitudes are held against what they are where polarisations agree, since these may cross.
+Differences differences(const Paths& paths, const Radar& radar, double time, SpecularPoints specular = SpecularPoints::kMaterial) {
   const std::vector<int64_t> indices = all_of(paths);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  Replayer(paths, radar).evaluate(indices, time, lengths, amplitudes);
-  const Localiser localise(paths, hit_patches(paths));
-  const Instant instant(*paths.scene, radar, localise.patches(), paths.frame.transmitter, time);
-  const LocalPaths block = localise(indices);
-  EvaluationScratch scratch(block.longest);
-  const size_t channels = radar.transmitters.size() * radar.receivers.size();
-  std::vector<double> length(channels);
-  std::vector<std::complex<double>> amplitude(channels);
+  ReplaySettings settings;
+  settings.specular = specular;
+  Replayer(paths, radar, settings).evaluate(indices, time, lengths, amplitudes);
+  const PathByPath slowly(paths, radar, time, specular);
   Differences largest;
   for (size_t p = 0; p < indices.size(); ++p) {
-    evaluate_path(block.paths[p], instant, radio_constants(paths, radar), scratch, {length.data(), amplitude.data(), 1});
-    for (size_t channel = 0; channel < channels; ++channel) {
+    const std::vector<PathValue> values = slowly(indices[p]);
+    for (size_t channel = 0; channel < values.size(); ++channel) {
       const size_t at = channel * indices.size() + p;
-      largest.length = std::max(largest.length, std::abs(lengths[at] / length[channel] - 1.0));
-      const double difference = std::abs(amplitudes[at] - amplitude[channel]);
-      const double size = size_of(block.paths[p], instant, radio_constants(paths, radar), scratch, channel, channels);
+      const double size = values[channel].largest;
+      largest.length = std::max(largest.length, std::abs(lengths[at] / values[channel].length - 1.0));
+      const double difference = std::abs(amplitudes[at] - values[channel].amplitude);
       if (paths.diffuse[p] != 0) largest.diffuse = std::max(largest.diffuse, size > 0.0 ? difference / size : difference);
       else largest.coherent = std::max(largest.coherent, difference / std::max(size, kFaintest));
     }
@@ -145,6 +125,18 @@ TEST(SharedLegs, PathsAreThoseEvaluatedOneByOne) {
   const Paths paths = record(radar);
   for (const double time : {paths.frame.trace_time, paths.frame.trace_time + 0.02}) {
     expect_equal(differences(paths, radar, time));
+  }
+}
+
+// Points of reflection that slide do so for each antenna by itself.
+TEST(SharedLegs, SlidingPathsAreThoseEvaluatedOneByOne) {
+  for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
+    Radar radar = array();
+    radar.receivers[1].polarization = Vec3(0.0, 0.6, 0.8);
+    const Paths paths = record(radar, false, model);
+    for (const double time : {paths.frame.trace_time, paths.frame.trace_time + 0.02}) {
+      expect_equal(differences(paths, radar, time, SpecularPoints::kFermat));
+    }
   }
 }
 
@@ -208,7 +200,7 @@ TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
 }
 
 struct DirectCounts {
-  size_t paths = 0, pairs = 0, others = 0, one_by_one = 0;  // of the others
+  size_t paths = 0, pairs = 0, others = 0;
   std::vector<int> of_mesh;
 };
 
@@ -218,8 +210,7 @@ DirectCounts direct_counts(const Paths& paths) {
   planner.begin(paths, localise, SpecularPoints::kMaterial, true);
   const ChainPlan& plan = planner(all_of(paths));
   DirectCounts counts;
-  counts.others = plan.chains.size() + plan.others.size();
-  counts.one_by_one = plan.others.size();
+  counts.others = plan.chains.size() + plan.mirror_paths.size();
   counts.of_mesh.resize(paths.scene->meshes().size());
   for (const ChainPlan::Direct& point : plan.direct) {
     const auto has = [&](size_t kind) { return size_t{point.path[kind] != ChainPlan::Direct::kNoPath}; };
@@ -235,7 +226,7 @@ TEST(SharedLegs, PolarizedPathsAreSharedAsScalarOnes) {
   ASSERT_EQ(scalar.num_paths(), polarized.num_paths());
   EXPECT_EQ(scalar.hits->size(), polarized.hits->size());
   EXPECT_EQ(direct_counts(scalar).paths, direct_counts(polarized).paths);
-  EXPECT_EQ(direct_counts(scalar).one_by_one, direct_counts(polarized).one_by_one);
+  EXPECT_EQ(direct_counts(scalar).others, direct_counts(polarized).others);
 }
 
 TEST(SharedLegs, PathsOfOnePointStandApart) {
@@ -261,7 +252,8 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   ChainPlanner planner;
   planner.begin(paths, localise, SpecularPoints::kMaterial, false);
   const ChainPlan& plan = planner(indices);
-  EXPECT_EQ(plan.chains.size() + plan.others.size(), indices.size());
+  EXPECT_EQ(plan.chains.size() + plan.mirror_paths.size(), indices.size());
+  EXPECT_GT(plan.mirror_paths.size(), 2u);
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
   EXPECT_LT(plan.points.size(), plan.legs.size());
   const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };

@@ -1,0 +1,37 @@
+#pragma once
+// Lengths and amplitudes of paths evaluated one by one, hit by hit, as plainly as the formula (replay/path_formula.h) is written:
+// what Replayer, which shares what paths have in common and runs in lanes, is held against.
+#include <complex>
+#include <vector>
+
+#include "echopath/replay/launch_cell.h"
+#include "echopath/replay/local_paths.h"
+#include "echopath/replay/radio_constants.h"
+
+namespace echopath::testing {
+
+struct PathValue {
+  double length;                    // m
+  std::complex<double> amplitude;   // sqrt(W)
+  double largest;                   // sqrt(W), |amplitude| of antennas whose polarisations agree with the path best
+};
+
+class PathByPath {
+ public:
+  // All must outlive it.
+  PathByPath(const Paths& paths, const Radar& radar, double time, SpecularPoints specular = SpecularPoints::kMaterial);
+  // Of all channels [tx * num_rx + rx] at that time.
+  std::vector<PathValue> operator()(int64_t path) const;
+
+ private:
+  struct Cell;
+  class Walk;
+  Cell cell_of(const LocalPath& path, size_t index) const;
+
+  const Paths& paths_;
+  Localiser localise_;
+  RadioConstants radio_;
+  Instant instant_;
+};
+
+}  // namespace echopath::testing

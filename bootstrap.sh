@@ -127,7 +127,9 @@ run_sanitized() {
 closing_line() { grep 'tests passed' "$1/ctest.log"; }
 
 run_tests() {
-  local cpp_status=0 sanitized_status=0 python_status=0
+  local cpp_status=0 sanitized_status=0 python_status=0 lint_status=0
+  say "linting"
+  "$python" -m ruff check setup.py python viewer tests || lint_status=$?
   say "building the C++ tests"
   cmake --build "$build_dir" --parallel "$(nproc)"
   say "C++ tests"
@@ -140,6 +142,7 @@ run_tests() {
   printf 'ctest, sanitized: %s\n' "$(closing_line "$sanitized_dir" || echo "ended with $sanitized_status")"
   printf 'ctest:  %s\n' "$(closing_line "$build_dir" || echo "ended with $cpp_status")"
   printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log" | sed 's/^=* *//; s/ *=*$//')"
+  [ "$lint_status" -eq 0 ] || fail "ruff found what is to be mended, see above under linting"
   [ "$cpp_status" -eq 0 ] && [ "$sanitized_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
 }
 

@@ -20,6 +20,14 @@ if(ECHOPATH_SANITIZE)
   endif()
 endif()
 
+# Parsed once for each target instead of once for each file: about a third of the time of compiling.
+set(echopath_common_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <complex> <functional> <memory> <string> <vector>)
+
+# Files that are compiled with options of their own cannot use what was compiled without.
+function(echopath_kernels file option)
+  set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS ${option} SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...])
 function(echopath_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
@@ -29,6 +37,7 @@ function(echopath_module name)
   add_library(echopath::${name} ALIAS echopath_${name})
   target_include_directories(echopath_${name} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
   target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options)
+  target_precompile_headers(echopath_${name} PRIVATE ${echopath_common_headers})
 endfunction()
 
 # Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for
@@ -49,6 +58,7 @@ function(echopath_test name)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_options)
+  target_precompile_headers(test_${name} PRIVATE <gtest/gtest.h> ${echopath_common_headers})
   list(JOIN ARG_HARD ":" hard)
   if(hard)
     add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-${hard})

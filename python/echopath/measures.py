@@ -38,7 +38,8 @@ def with_error(power) -> str:
         return f"{in_dbm(power.power):.2f} dBm +- {power.interval_db:.2f} dB"
     if not power.high > 0.0:
         return "nothing"
-    ends = f"{in_dbm(power.low):.2f} to {in_dbm(power.high):.2f} dBm" if power.low > 0.0 else f"below {in_dbm(power.high):.2f} dBm"
+    high = f"{in_dbm(power.high):.2f} dBm"
+    ends = f"{in_dbm(power.low):.2f} to {high}" if power.low > 0.0 else f"below {high}"
     return f"not resolved, {ends}"
 
 

@@ -262,7 +262,7 @@ def test_the_scene_of_corners_shows_each_target_at_its_place():
     for name, (distance, azimuth) in places.items():
         one = maps["corners" if name.startswith("corner") else "balls"]
         near = np.abs(one.range - distance) < 0.3
-        a, r = np.unravel_index(one.power[:, near].argmax(), (len(one.azimuth), near.sum()))
+        a, _ = np.unravel_index(one.power[:, near].argmax(), (len(one.azimuth), near.sum()))
         assert one.azimuth[a] == pytest.approx(azimuth * DEGREE, abs=WIDE_BEAM * DEGREE), name
     assert frame.range_azimuth.power.shape == (301, 256)
 

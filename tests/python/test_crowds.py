@@ -74,7 +74,8 @@ def test_both_orders_over_a_rough_mirror_agree(height):
 
 def test_the_default_asks_for_an_error_and_not_for_a_number():
     scene = ep.Scene()
-    scene.add(ep.actors.plate(1.0, 1.0), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(6, -2, 1))
+    scene.add(ep.actors.plate(1.0, 1.0), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0),
+              position=(6, -2, 1))
     scene.add(ep.actors.sphere(0.3, edge=0.02), name="ball", material="metal", smooth=True, position=(9, 2, 1))
     paths = ep.trace(scene, build_radar([(0, 0, 1)], [(0, 0, 1)]))
     assert paths.frame.target_error_db == ALONE_DB and 0 < paths.frame.error_db <= ALONE_DB
@@ -89,7 +90,8 @@ def test_strata_fit_what_they_aim_at():
     scene = ep.Scene()
     scene.add(ep.actors.box((0.1, 0.1, 3.0)), name="pole", material="metal", position=(20, 3, 0))
     scene.add(ep.actors.sphere(0.5), name="ball", material="metal", smooth=True, position=(20, -3, 0))
-    strata = {stratum.name: stratum for stratum in ep.trace(scene, build_radar([(0, 0, 1)], [(0, 0, 1)]), num_rays=2000).frame.strata}
+    paths = ep.trace(scene, build_radar([(0, 0, 1)], [(0, 0, 1)]), num_rays=2000)
+    strata = {stratum.name: stratum for stratum in paths.frame.strata}
     pole, ball = strata["pole"], strata["ball"]
     assert pole.half_azimuth > 0 and pole.solid_angle < 1.5 * 0.1 * 3.0 / (20**2 + 3**2)
     assert ball.half_azimuth == 0 and ball.solid_angle == pytest.approx(np.pi * 0.5**2 / (20**2 + 3**2 + 1), rel=0.04)

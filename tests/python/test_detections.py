@@ -64,7 +64,7 @@ def spheres():
 
 
 def nearest(found, name):
-    distance, azimuth, speed = TARGETS[name]
+    distance, _, speed = TARGETS[name]
     return int(np.argmin(np.abs(found.range - distance) + np.abs(found.velocity - speed)))
 
 
@@ -112,12 +112,13 @@ def test_labels_of_cells_are_taken_over(spheres):
     bare = ep.detect(spectrum, radar)
     shape = spectrum.values.shape[2:]
     power, object_map, ghost_map = np.zeros((2, *shape)), np.full(shape, -1), np.full(shape, -1)
-    near, middle, far = (tuple(bare.cells[nearest(bare, name)]) for name in TARGETS)
+    near, middle, _ = (tuple(bare.cells[nearest(bare, name)]) for name in TARGETS)
     for cell, shares in ((near, (0.75, 0.25)), (middle, (0.1, 0.9))):  # the third has no echo at all
         power[(slice(None), *cell)] = np.array(shares) * ep.cfar(spectrum, radar).power[cell]
     object_map[near], ghost_map[middle] = 1, 0
     labels = SimpleNamespace(plane="range_doppler", part_names=["a", "b"], power=power, whole=power.sum(axis=0),
-                             object_map=object_map, ghost_map=ghost_map, objects=[SimpleNamespace(name="other", received=KNOWN), SimpleNamespace(name="car", received=KNOWN)],
+                             object_map=object_map, ghost_map=ghost_map,
+                             objects=[SimpleNamespace(name=name, received=KNOWN) for name in ("other", "car")],
                              ghosts=[SimpleNamespace(object="walker", ghost_type=2, order=3, via=("wall",), received=KNOWN)])
     found = ep.detect(spectrum, radar, labels=labels)
     by_name = {name: i for i, name in ((nearest(found, name), name) for name in TARGETS)}

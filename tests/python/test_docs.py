@@ -46,7 +46,7 @@ def docstring(value) -> str:
     value = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
     text = value.func.__doc__ if isinstance(value, functools.cached_property) else value.__doc__
     text = re.sub(SIGNATURE, "", inspect.cleandoc(text or "")).replace("Overloaded function.", "")
-    return "" if text.startswith("(self:") or text.startswith("(arg0:") else text.strip()
+    return "" if text.startswith(("(self:", "(arg0:")) else text.strip()
 
 
 def parameters(value) -> list:

@@ -42,7 +42,8 @@ def shares_hits(paths):
 
 
 def slow_signal(paths, tx, rx):
-    """IF samples [chirp, sample] of a channel from lengths and amplitudes at the middle of each chirp, as if nothing moved within one."""
+    """IF samples [chirp, sample] of a channel from lengths and amplitudes at the middle of each chirp, as if nothing
+    moved within one."""
     radar, step = paths.radar, 1e-7  # s
     waveform = radar.waveform
     slope, centre = waveform.slope, (waveform.num_samples - 1) / (2 * waveform.sampling_rate)

@@ -226,7 +226,7 @@ def test_pixels_are_labels_and_the_palette_names_them(labels, tmp_path):
         assert np.array_equal(np.array(image, int) - 1, cells)
         colours = np.array(image.getpalette()).reshape(-1, 3)
         for row in palette["labels"]:
-            assert "#%02x%02x%02x" % tuple(colours[row["index"]]) == row["colour"]
+            assert "#{:02x}{:02x}{:02x}".format(*colours[row["index"]]) == row["colour"]
         assert [row["index"] for row in palette["labels"]] == list(range(len(palette["labels"])))
         assert palette["axes"]["rows"] == {"name": "velocity", "unit": "m/s", "values": labels.velocity.tolist()}
         assert palette["image"] == path.name and len(palette["axes"]["columns"]["values"]) == labels.shape[1]

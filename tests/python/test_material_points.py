@@ -10,7 +10,7 @@ WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 EXACT = 1e-9                # rad
 NOTE_TOLERANCE = 0.02       # relative: the numbers of the note have two or three digits, its formulas are of second order
 AMPLITUDE_TOLERANCE = 3e-3  # relative and rad: 2^14 rays on the sphere
-TURNED_TOLERANCE = 1e-2     # likewise after 0.3 rad: part of the half that is lit then has no hits; seeds spread from .001 to .008
+TURNED_TOLERANCE = 1e-2     # likewise after 0.3 rad: part of the half that is lit then has no hits; seeds from .001 to .008
 SAME_LENGTH = 1e-12  # m: rounding of lengths of some metres
 
 

@@ -307,7 +307,7 @@ def test_keyframes_hold_the_gait_between_them(person):
 def test_motion_is_the_same_walk_whatever_the_phase_and_start():
     late = ep.actors.pedestrian(start_time=0.3, duration=1.0, keyframe_rate=100.0)
     early = ep.actors.pedestrian(start_time=0.0, duration=1.5, keyframe_rate=100.0)
-    length, duration = cycle_of(HEIGHT, SPEED)
+    _, duration = cycle_of(HEIGHT, SPEED)
     ahead = ep.actors.pedestrian(start_time=0.0, duration=1.0, keyframe_rate=100.0, phase=0.3 / duration)
     for a, b, c in zip(early.parts, late.parts, ahead.parts):
         expected = np.asarray(a.motion.translations)[30:131]

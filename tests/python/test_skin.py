@@ -72,7 +72,8 @@ def test_a_skinned_pendulum_is_where_the_closed_form_says(share):
 
 
 def test_a_skinned_pendulum_has_the_doppler_of_its_tip():
-    """By the energy of a pendulum, v = sqrt(2 g l (1 - cos 30 degrees)), l = 1 m: 1.62129 m/s and 838.25 Hz at the lowest point."""
+    """By the energy of a pendulum, v = sqrt(2 g l (1 - cos 30 degrees)), l = 1 m: 1.62129 m/s and 838.25 Hz at the lowest
+    point."""
     mesh, skin = pendulum()
     scene = ep.Scene()
     scene.add(mesh, name="pendulum", material=lambert(0.5), motion=skin, position=(8, 0, 1))

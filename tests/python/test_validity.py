@@ -243,7 +243,7 @@ def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
     floor = shapes.rectangle((0, -4, 0), (14, 0, 0), (0, 8, 0))
     scene = scene_of(wall=(tall, rough.replace(mirror=True), (0, 0, 0), None),
                      floor=(floor, rough.replace(mirror=True), (0, 0, 0), None),
-                     ball=(BALL, rough, (10, 0, 1), moving(velocity=(0, 30, 0))), 
+                     ball=(BALL, rough, (10, 0, 1), moving(velocity=(0, 30, 0))),
                      block=(ep.actors.box((1, 1, 1)), rough, (9, 1.6, 1), None),
                      screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.5), ROUGH, (4, -1.5, 1), moving(velocity=(0, 400, 0))))
     apart = ep.Radar(radar_of(num_chirps=1).waveform, transmitters=[ep.Antenna((0, 0, 1))],

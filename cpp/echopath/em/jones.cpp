@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "echopath/base/plane.h"
 #include "echopath/em/hit_modes.h"
 #include "echopath/em/surface_response.h"
 #include "echopath/em/transverse_formula.h"
@@ -75,7 +76,7 @@ ModeCoefficients mode_coefficients(const Material& material, double frequency, d
 FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal,
                             const ModeCoefficients& coefficients) {
   const Vec3 te = plane_normal(direction, normal);
-  const Vec3 reflected = direction - 2.0 * direction.dot(normal) * normal;
+  const Vec3 reflected = mirrored(direction, normal);
   const Vec3 tm_in = te.cross(direction), tm_out = te.cross(reflected);
   return coefficients.te * dot(te, incident) * te.cast<std::complex<double>>() +
          coefficients.tm * dot(tm_in, incident) * tm_out.cast<std::complex<double>>();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/plane.h"
 #include "echopath/replay/inner_part.h"
 #include "echopath/replay/path_formula.h"
 
@@ -39,11 +40,9 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
   const size_t num_nodes = images.rows.num_nodes();
   for (size_t node = 0; node < num_nodes; ++node) {
     const Vec3 normal = load(planes, mirror, 0, node);
-    const Vec3 position = load(images.rows, from, LegToMeasure::kImagePosition, node);
-    const Vec3 boresight = load(images.rows, from, LegToMeasure::kBoresight, node);
-    const double behind = normal.dot(position) - planes.row(mirror, 3)[node];
-    store(position - 2.0 * behind * normal, images.rows, to, LegToMeasure::kImagePosition, node);
-    store(boresight - 2.0 * normal.dot(boresight) * normal, images.rows, to, LegToMeasure::kBoresight, node);
+    const Plane plane{planes.row(mirror, 3)[node] * normal, normal};
+    store(plane.image(load(images.rows, from, LegToMeasure::kImagePosition, node)), images.rows, to, LegToMeasure::kImagePosition, node);
+    store(plane.mirrored(load(images.rows, from, LegToMeasure::kBoresight, node)), images.rows, to, LegToMeasure::kBoresight, node);
     if (images.antenna_from_image.empty()) continue;
     const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
     images.antenna_from_image[to * num_nodes + node] = images.antenna_from_image[from * num_nodes + node] * reflection;
@@ -206,8 +205,7 @@ void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors)
         Vec3 seen = Vec3::Unit(axis);
         if (image > 0) {
           const Vec3 normal = load(mirrors, plan.images[image].mirror, 0, node);
-          seen = load(axes, plan.images[image].parent, row, node);
-          seen -= 2.0 * normal.dot(seen) * normal;
+          seen = mirrored(load(axes, plan.images[image].parent, row, node), normal);
         }
         store(seen, axes, image, row, node);
       }

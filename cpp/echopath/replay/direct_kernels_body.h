@@ -251,10 +251,10 @@ ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes&
   const Vec length = in(D::kLegLength) + out(D::kLegLength);
   set(D::kLength, length);
   const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
-  put(DirectSlots::kDiffuse, amplitude_of(weight_of(DirectSlots::kDiffuse), diffuse, length));
+  put(DirectSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(DirectSlots::kDiffuse), diffuse, length));
   ComplexOf<Vec> factor{};
   if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
-  put(DirectSlots::kCoherent, amplitude_of(weight_of(DirectSlots::kCoherent), factor, length));
+  put(DirectSlots::kCoherent, amplitude_of<LaneMath>(weight_of(DirectSlots::kCoherent), factor, length));
 }
 
 ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {

@@ -26,15 +26,15 @@
 
 namespace echopath {
 
-// Every amplitude is made here, of the path's weight and of what its legs make of it; length: m, of the whole path.
-template <class Weight, class Real>
-ECHOPATH_INLINE ComplexOf<Real> amplitude_of(const ComplexOf<Weight>& weight, Real size, Real /*length*/) {
+// Every amplitude is made here, of the path's weight and of what its legs make of it; length: m, of the whole path, for what acts
+// along the way.
+template <class Math, class Weight, class Real>
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size, Real /*length*/) {
   return {weight.re * size, weight.im * size};
 }
-template <class Weight, class Real>
-ECHOPATH_INLINE ComplexOf<Real> amplitude_of(const ComplexOf<Weight>& weight, const ComplexOf<Real>& factor, Real length) {
-  const Real one = Real{} + 1.0;
-  const ComplexOf<Real> scale = amplitude_of(weight, one, length);
+template <class Math, class Weight, class Real>
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf<Real> factor, Real length) {
+  const ComplexOf<Real> scale = amplitude_of<Math>(weight, Real{} + 1.0, length);
   return {scale.re * factor.re - scale.im * factor.im, scale.re * factor.im + scale.im * factor.re};
 }
 

@@ -1,27 +1,20 @@
 #include "echopath/replay/path_geometry.h"
 
+#include "echopath/base/plane.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
 namespace {
 
-Vec3 image(const Vec3& point, const PosedHit& mirror) {
-  return point - 2.0 * mirror.normal.dot(point - mirror.point) * mirror.normal;
-}
-
-Vec3 reflect(const Vec3& direction, const PosedHit& mirror) {
-  return direction - 2.0 * mirror.normal.dot(direction) * mirror.normal;
-}
-
 // Image of a point over the mirrors [first, last) in order of travel.
 Vec3 forward_image(Vec3 point, const PosedHit* hits, int first, int last) {
-  for (int k = first; k < last; ++k) point = image(point, hits[k]);
+  for (int k = first; k < last; ++k) point = Plane{hits[k].point, hits[k].normal}.image(point);
   return point;
 }
 
 // Direction before the mirrors [first, last) of a wave that travels along `direction` behind them.
 Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last) {
-  for (int k = last; k-- > first;) direction = reflect(direction, hits[k]);
+  for (int k = last; k-- > first;) direction = mirrored(direction, hits[k].normal);
   return direction;
 }
 
@@ -91,7 +84,7 @@ UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int 
 }
 
 Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last) {
-  for (int k = first; k < last; ++k) vector = reflect(vector, hits[k]);
+  for (int k = first; k < last; ++k) vector = mirrored(vector, hits[k].normal);
   return vector;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "echopath/base/plane.h"
 #include "echopath/replay/inner_part.h"
 #include "echopath/scene/smooth.h"
 
@@ -13,8 +14,7 @@ TraceCells::TraceCells(const ChainPlan& plan, const Localiser& localise, const P
   for (size_t image = 1; image < plan.images.size(); ++image) {
     PosedHit mirror;
     pose_hit(localise.hit(plan.mirrors[plan.images[image].mirror], normals), localise.trace_instant(), false, mirror);
-    const Vec3& from = origin_[plan.images[image].parent];
-    origin_.push_back(from - 2.0 * mirror.normal.dot(from - mirror.point) * mirror.normal);
+    origin_.push_back(Plane{mirror.point, mirror.normal}.image(origin_[plan.images[image].parent]));
   }
 }
 

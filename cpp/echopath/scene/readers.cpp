@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -12,15 +13,27 @@
 namespace echopath {
 namespace {
 
+struct Reader {
+  std::string_view extension;
+  Soup (*read)(const std::string& path);
+};
+constexpr Reader kReaders[] = {{".obj", read_obj}, {".ply", read_ply}};
+
+const Reader& reader_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string(), known;
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const Reader& reader : kReaders) {
+    if (reader.extension == extension) return reader;
+    known.append(known.empty() ? "" : ", ").append(reader.extension);
+  }
+  throw FileError(path + ": unknown mesh format '" + extension + "', known are " + known);
+}
+
 Soup read(const std::string& path, double unit) {
   require(std::isfinite(unit) && unit > 0.0, "unit", "must be positive, in metres per file unit", unit);
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension != ".obj" && extension != ".ply") {
-    throw FileError(path + ": unknown mesh format '" + extension + "', known are .obj and .ply");
-  }
+  const Reader& reader = reader_of(path);
   if (std::filesystem::is_directory(path)) throw FileError(path + ": is a directory");
-  Soup soup = extension == ".obj" ? read_obj(path) : read_ply(path);
+  Soup soup = reader.read(path);
   if (soup.triangles.empty()) throw FileError(path + ": has no faces");
   for (Vec3& vertex : soup.vertices) vertex *= unit;
   return soup;

@@ -9,6 +9,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
+#include "echopath/base/plane.h"
 #include "echopath/replay/replay.h"
 #include "echopath/scene/reflection_point.h"
 
@@ -34,12 +35,6 @@ struct SeenPath {
   Vec3 direction;
   int64_t path;
   double amplitude = 0.0;
-};
-
-struct Plane {
-  Vec3 point, normal;
-  Vec3 image(const Vec3& at) const { return at - 2.0 * normal.dot(at - point) * normal; }
-  Vec3 turned(const Vec3& direction) const { return direction - 2.0 * normal.dot(direction) * normal; }
 };
 
 // With one antenna each, where rays start and end.
@@ -169,7 +164,7 @@ class GlintSearch {
       const std::optional<ReflectionPoint> point = find_reflection(triangle, first, second);
       if (!point) continue;
       Glint glint = glint_at(*point, first, kind.stratum);
-      for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].turned(glint.direction);
+      for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].mirrored(glint.direction);
       if (const SeenPath* beside = nearest(seen, glint, cell_of(kind.stratum))) {
         const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[kind.stratum].ray_density;
         glint.power = field * field;

@@ -152,7 +152,8 @@ def measure_person(*, quick: bool) -> dict:
     powers = np.array([level.power for level in levels])
     mean = float(powers.mean())
     claimed = [0.5 * (10.0 ** (0.1 * level.error_db) - 1.0) for level in levels]
-    return {"rays": rays, "seeds": num_seeds, "objects": scene_size(scene), "paths": float(np.mean([one.paths for one in levels])),
+    return {"rays": rays, "seeds": num_seeds, "objects": scene_size(scene),
+            "paths": float(np.mean([one.paths for one in levels])),
             "scatter": float(powers.std(ddof=1) / mean) if mean > 0.0 else float("inf"),
             "claimed": float(np.sqrt(np.mean(np.square(claimed)))), "flagged": sum(one.flagged for one in levels)}
 

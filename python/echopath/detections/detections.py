@@ -90,7 +90,8 @@ class Detections:
         path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds;
         unknown numbers are left empty. Raises ep.FileError.
         """
-        columns = [getattr(self, name) for name in _FIELDS] + [self.is_noise.astype(int), self.is_resolved.astype(int), *self.cells.T]
+        flags = [self.is_noise.astype(int), self.is_resolved.astype(int)]
+        columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T]
         seeds = ["" if seed is None else str(seed) for seed in (self.seed, self.noise_seed)]
         with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
             writer = csv.writer(stream, lineterminator="\n")

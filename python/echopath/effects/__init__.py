@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from .. import _core
-from . import surfaces, motion, radar, sampling  # noqa: F401, I001  each adds its rules, in this order
+from . import surfaces, motion, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
@@ -15,7 +15,7 @@ OUT_OF_SCOPE = [
 ]
 
 
-def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "auto",
+def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "auto",  # noqa: F811
             sampler: str = "lattice", batches: int | None = None, target_error_db: float | None = None,
             replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
             noise_seed: int | None = None) -> list[Effect]:

@@ -135,7 +135,8 @@ def _roulette(case: Case):
 def _orders(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
-    return bool(case.coherent), "edges of surfaces below their Fresnel zone, the better of two orders" if case.coherent else "no coherent echoes"
+    reason = "edges of surfaces below their Fresnel zone, the better of two orders"
+    return bool(case.coherent), reason if case.coherent else "no coherent echoes"
 
 
 @rule("both orders of diffuse chains")

@@ -10,7 +10,7 @@ from ..detections.echo_fields import EchoFields
 from .h5 import read_array, read_texts, write_array, write_texts
 
 NUMBERS = {"range": (np.float64, "m"), "velocity": (np.float64, "m/s"), "azimuth": (np.float64, "rad"),
-           "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"), 
+           "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"),
            "share": (np.float64, ""),
            "ghost_type": (np.int32, ""), "order": (np.int32, ""), "class_code": (np.int32, ""), "is_noise": (np.uint8, "")}
 RESOLVED = "is_resolved"  # u8, absent in older files
@@ -34,7 +34,8 @@ def read_detections(group, paths, spectrum, noise_seed) -> Detections:
     count = len(cells)
     columns = {name: read_array(group, name, dtype, (count,)) for name, (dtype, _) in NUMBERS.items()}
     columns["is_noise"] = columns["is_noise"].astype(bool)
-    columns[RESOLVED] = read_array(group, RESOLVED, np.uint8, (count,)).astype(bool) if RESOLVED in group else np.zeros(count, bool)
+    known = read_array(group, RESOLVED, np.uint8, (count,)) if RESOLVED in group else np.zeros(count)
+    columns[RESOLVED] = known.astype(bool)
     columns |= {name: np.array(read_texts(group, name, count), dtype=str) for name in TEXTS}
     if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
         raise ep.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")

@@ -89,7 +89,7 @@ def _axis(name: str, unit: str, values) -> dict:
 
 def _write_label_image(path: Path, indices, entries: list, axes: dict, origin: dict) -> None:
     colours = [NO_LABEL_COLOUR, *colours_of([entry["name"] for entry in entries])]
-    rows = [{"index": index, **entry, "colour": "#%02x%02x%02x" % colour}
+    rows = [{"index": index, **entry, "colour": "#{:02x}{:02x}{:02x}".format(*colour)}
             for index, (entry, colour) in enumerate(zip([{"name": NO_LABEL}, *entries], colours))]
     with written_whole(path) as temporary:
         _write_png(temporary, np.asarray(indices, np.int32) + 1, colours, png_info(origin))

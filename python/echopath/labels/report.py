@@ -42,7 +42,8 @@ def _with_cells(labels) -> list:
 
 
 def _ghost(label) -> str:
-    return f"ghost  {label.object}: type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}{_cells(label)}{_resolution(label)}"
+    way = f"type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}"
+    return f"ghost  {label.object}: {way}{_cells(label)}{_resolution(label)}"
 
 
 def _resolution(label) -> str:

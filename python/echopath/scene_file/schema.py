@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import Annotated, Any, Literal, Optional, Union
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
@@ -98,7 +98,7 @@ class IsotropicTable(Table):
 class CosinePowerTable(Table):
     kind: Literal["cosine_power"] = Field(description="gain ~ cos^exponent of the angle from boresight, 0 behind")
     exponent: NotNegative = Field(description="of the power gain")
-    peak_gain: Optional[Positive] = Field(None, description="power gain, linear; none: of a lossless antenna")
+    peak_gain: Positive | None = Field(None, description="power gain, linear; none: of a lossless antenna")
 
 
 class GainFileTable(Table):
@@ -107,17 +107,17 @@ class GainFileTable(Table):
 
 
 PatternTable = Annotated[
-    Union[Annotated[IsotropicTable, Tag("<isotropic>")], Annotated[CosinePowerTable, Tag("<cosine_power>")],
-          Annotated[GainFileTable, Tag("<table>")]],
+    Annotated[IsotropicTable, Tag("<isotropic>")] | Annotated[CosinePowerTable, Tag("<cosine_power>")] |
+    Annotated[GainFileTable, Tag("<table>")],
     Discriminator(by_kind("kind"))]
 
 
 class AntennaTable(Table):
     position: Vector3 = Field(description="m, in the radar's frame")
-    orientation: Optional[Quaternion] = Field(None, description="quaternion w, x, y, z; boresight is its +x")
-    yaw_deg: Optional[Number] = Field(None, description="degrees about z, instead of orientation")
-    pattern: Optional[PatternTable] = Field(None, description="none: that of [radar]")
-    polarization: Optional[Vector3] = Field(None, description="in the antenna's frame; none: that of [radar]")
+    orientation: Quaternion | None = Field(None, description="quaternion w, x, y, z; boresight is its +x")
+    yaw_deg: Number | None = Field(None, description="degrees about z, instead of orientation")
+    pattern: PatternTable | None = Field(None, description="none: that of [radar]")
+    polarization: Vector3 | None = Field(None, description="in the antenna's frame; none: that of [radar]")
 
     @model_validator(mode="after")
     def _one_direction(self):
@@ -135,13 +135,13 @@ class LinearMotionTable(Table):
 class KeyframeMotionTable(Table):
     kind: Literal["keyframes"] = Field(description="sampled positions and orientations")
     times: list[Number] = Field(min_length=2, description="s, ascending")
-    translations: Optional[list[Vector3]] = Field(None, description="m, one per time")
-    rotations: Optional[list[Quaternion]] = Field(None, description="quaternions w, x, y, z, one per time")
+    translations: list[Vector3] | None = Field(None, description="m, one per time")
+    rotations: list[Quaternion] | None = Field(None, description="quaternions w, x, y, z, one per time")
     interpolation: Literal["cubic", "linear"] = Field("cubic", description="between the times")
 
 
 MotionTable = Annotated[
-    Union[Annotated[LinearMotionTable, Tag("<linear>")], Annotated[KeyframeMotionTable, Tag("<keyframes>")]],
+    Annotated[LinearMotionTable, Tag("<linear>")] | Annotated[KeyframeMotionTable, Tag("<keyframes>")],
     Discriminator(by_kind("kind"))]
 
 
@@ -149,46 +149,46 @@ class RadarTable(Table):
     waveform: WaveformTable
     transmitters: list[AntennaTable] = Field(min_length=1, description="at least one")
     receivers: list[AntennaTable] = Field(min_length=1, description="at least one")
-    pattern: Optional[PatternTable] = Field(None, description="of antennas without their own; none: isotropic")
+    pattern: PatternTable | None = Field(None, description="of antennas without their own; none: isotropic")
     polarization: Vector3 = Field([0.0, 0.0, 1.0], description="of antennas without their own")
     transmit_power: Positive = Field(0.01, description="W, per transmitter")
     noise_figure_db: Number = Field(12.0, description="dB")
     multiplexing: Literal["tdm"] = Field("tdm", description="one transmitter per slot")
-    motion: Optional[MotionTable] = Field(None, description="of the radar in the world; none: it stands still")
+    motion: MotionTable | None = Field(None, description="of the radar in the world; none: it stands still")
 
 
 class MaterialTable(Table):
     conductor: bool = Field(False, description="perfect conductor")
-    permittivity: Optional[Permittivity] = Field(None, description="relative; eps' or [eps', eps''] for eps' - j eps''")
+    permittivity: Permittivity | None = Field(None, description="relative; eps' or [eps', eps''] for eps' - j eps''")
     conductivity: NotNegative = Field(0.0, description="S/m")
-    reflectivity: Optional[Annotated[float, Field(ge=0, le=1)]] = Field(
+    reflectivity: Annotated[float, Field(ge=0, le=1)] | None = Field(
         None, description="share of power, at every angle")
     roughness_height: NotNegative = Field(0.0, description="m, rms")
-    scattering: Optional[Annotated[float, Field(ge=0, le=1)]] = Field(
+    scattering: Annotated[float, Field(ge=0, le=1)] | None = Field(
         None, description="S; S^2 is the diffuse share of reflected power")
     cross_polarization: Annotated[float, Field(ge=0, le=0.5)] = Field(
         0.0, description="share of diffuse power in the cross polarisation")
     mirror: bool = Field(False, description="a plane larger than its Fresnel zone, treated by images")
-    base: Optional[str] = Field(None, description="name of a known material that gives the other keys")
+    base: str | None = Field(None, description="name of a known material that gives the other keys")
 
 
 MaterialValue = Annotated[
-    Union[Annotated[str, Tag("<name>")], Annotated[MaterialTable, Tag("<table>")]],
+    Annotated[str, Tag("<name>")] | Annotated[MaterialTable, Tag("<table>")],
     Discriminator(lambda value: "<name>" if isinstance(value, str) else "<table>")]
 
 
 class ObjectTable(Table):
     name: str = Field(min_length=1, description="its name in path expressions")
-    mesh: Optional[str] = Field(None, description="OBJ or PLY file, relative to the scene file")
-    unit: Optional[Positive] = Field(None, description="m, length of one unit of the mesh file; none: 1")
-    actor: Optional[str] = Field(None, description="a ready-made object: a function of echopath.actors")
+    mesh: str | None = Field(None, description="OBJ or PLY file, relative to the scene file")
+    unit: Positive | None = Field(None, description="m, length of one unit of the mesh file; none: 1")
+    actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
     parameters: dict = Field({}, description="keywords of the actor")
-    material: Optional[MaterialValue] = Field(None, description="a known name or a table")
-    position: Optional[Vector3] = Field(None, description="m")
-    yaw_deg: Optional[Number] = Field(None, description="degrees about z")
-    transform: Optional[Matrix4] = Field(None, description="4 x 4, instead of position and yaw_deg")
-    motion: Optional[MotionTable] = Field(None, description="relative to the placement; none: it stands still")
-    parent: Optional[str] = Field(None, description="full name of the node that carries it; none: the scene")
+    material: MaterialValue | None = Field(None, description="a known name or a table")
+    position: Vector3 | None = Field(None, description="m")
+    yaw_deg: Number | None = Field(None, description="degrees about z")
+    transform: Matrix4 | None = Field(None, description="4 x 4, instead of position and yaw_deg")
+    motion: MotionTable | None = Field(None, description="relative to the placement; none: it stands still")
+    parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     smooth: bool = Field(False, description="the mesh stands for a curved surface")
 
     @model_validator(mode="after")
@@ -209,7 +209,7 @@ class ObjectTable(Table):
 
 
 class TraceTable(Table):
-    num_rays: Optional[Annotated[int, Field(ge=1)]] = Field(
+    num_rays: Annotated[int, Field(ge=1)] | None = Field(
         None, description="a budget; none: as many as 0.3 dB for each object asks for, 1 000 000 at most")
     max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
     seed: int = Field(1, ge=0, description="of the directions and random phases")
@@ -220,9 +220,9 @@ class TraceTable(Table):
         "second_order", description="filter of a ray's footprint")
     sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(
         "lattice", description="how rays are spread over the cone of an object")
-    batches: Optional[Annotated[int, Field(ge=1, le=64)]] = Field(
+    batches: Annotated[int, Field(ge=1, le=64)] | None = Field(
         None, description="independent parts of the rays, which give standard errors; none: 1")
-    target_error_db: Optional[Positive] = Field(
+    target_error_db: Positive | None = Field(
         None, description="dB, error of each echo until which rays are added, from num_rays on")
     max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
 
@@ -259,11 +259,11 @@ def _elevations(value):
 
 class AngleTable(Table):
     method: Literal["bartlett", "capon"] = Field("bartlett", description="how beams are formed")
-    azimuth_deg: Optional[Annotated[Any, AfterValidator(_azimuths)]] = Field(
+    azimuth_deg: Annotated[Any, AfterValidator(_azimuths)] | None = Field(
         None, description="[first, last, step] in degrees, to the left; none: what the array tells apart")
     elevation_deg: Annotated[Any, AfterValidator(_elevations)] = Field(
         0.0, description="degrees, or a list: the largest power over them")
-    velocity: Optional[Number] = Field(None, description="m/s, of the cells shown; none: all")
+    velocity: Number | None = Field(None, description="m/s, of the cells shown; none: all")
     combine: Literal["sum", "peak"] = Field("peak", description="of all velocities: the largest, or their sum")
     window: Window = Field("rect", description="over the array, of bartlett; others than rect for grids of equal steps")
     diagonal_loading: Annotated[float, Field(ge=1e-9, le=1e3)] = Field(
@@ -292,7 +292,7 @@ def _label_objects(value):
 
 class LabelsTable(Table):
     plane: Literal["range_doppler", "range_azimuth"] = Field("range_doppler", description="whose cells are labelled")
-    objects: Optional[Annotated[Any, AfterValidator(_label_objects)]] = Field(
+    objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
         None, description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
     noise: bool = Field(True, description="cells must stand out of the noise")
     noise_margin_db: Number = Field(10.0, description="dB, by so much")
@@ -304,16 +304,16 @@ class LabelsTable(Table):
 class DetectionsTable(Table):
     method: Literal["ca", "os"] = Field("ca", description="cell averaging, or an ordered statistic")
     false_alarm_rate: Annotated[float, Field(ge=1e-15, le=0.5)] = Field(1e-6, description="of one cell")
-    guard_velocity: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: the window's main lobe")
-    guard_range: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: the window's main lobe")
-    training_velocity: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: 4 zero_pad")
-    training_range: Optional[Annotated[int, Field(ge=0)]] = Field(None, description="cells; none: 8 zero_pad")
+    guard_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")
+    guard_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")
+    training_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 4 zero_pad")
+    training_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 8 zero_pad")
     rank: Annotated[float, Field(gt=0, le=1)] = Field(0.75, description="of \"os\", share of the training cells")
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
 
 
 PartsValue = Annotated[
-    Union[Annotated[dict[str, str], Tag("<partition>")], Annotated[str, Tag("<expression>")]],
+    Annotated[dict[str, str], Tag("<partition>")] | Annotated[str, Tag("<expression>")],
     Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
 
 
@@ -329,8 +329,8 @@ class SceneTable(Table):
     noise: NoiseTable = NoiseTable()
     parts: dict[str, PartsValue] = Field(
         {}, description="name = path expression: one partition; tables of these: several")
-    labels: Optional[LabelsTable] = Field(None, description="labels of the map; none: they are not made")
-    detections: Optional[DetectionsTable] = Field(None, description="detections in the map; none: they are not made")
+    labels: LabelsTable | None = Field(None, description="labels of the map; none: they are not made")
+    detections: DetectionsTable | None = Field(None, description="detections in the map; none: they are not made")
 
     @model_validator(mode="after")
     def _one_kind_of_parts(self):

@@ -185,7 +185,7 @@ class ErrorLabel(QtWidgets.QWidget):
     def text(self) -> str:
         return f"{self._what.text()}\n{self._where.text()}".strip("\n")
 
-    def setText(self, text: str) -> None:  # noqa: N802
+    def setText(self, text: str) -> None:
         """text: a message; where it has a line with a caret below, the part around the caret is shown."""
         what, *where = text.split("\n")
         self._what.setText(what.removeprefix("path expression: "))

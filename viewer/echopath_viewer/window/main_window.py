@@ -352,14 +352,14 @@ class MainWindow(QtWidgets.QMainWindow):
 
     # --- Qt ---
 
-    def dragEnterEvent(self, event):  # noqa: N802
+    def dragEnterEvent(self, event):
         if event.mimeData().hasUrls():
             event.acceptProposedAction()
 
-    def dropEvent(self, event):  # noqa: N802
+    def dropEvent(self, event):
         self.open_file(event.mimeData().urls()[0].toLocalFile())
 
-    def closeEvent(self, event):  # noqa: N802
+    def closeEvent(self, event):
         self.time_bar.stop()
         self._listing.stop()
         self._pause.stop()
@@ -391,5 +391,5 @@ class Banner(QtWidgets.QLabel):
         self.setStyleSheet("background: #fdecea; color: #7a1f14; padding: 8px; border-bottom: 1px solid #c0392b")
         self.setToolTip("Click to close")
 
-    def mousePressEvent(self, _event):  # noqa: N802
+    def mousePressEvent(self, _event):
         self.hide()

@@ -222,7 +222,7 @@ class ColourBar(QtWidgets.QWidget):
         self.limits = (low, high)
         self.update()
 
-    def paintEvent(self, _event):  # noqa: N802
+    def paintEvent(self, _event):
         painter = QtGui.QPainter(self)
         bar = QtCore.QRectF(8, 20, 14, max(self.height() - 52, 1))
         gradient = QtGui.QLinearGradient(bar.bottomLeft(), bar.topLeft())
@@ -247,7 +247,7 @@ def title_of(part) -> str:
     return part.name if part.name != "other" else "other: all the rest"
 
 
-class blocked:  # noqa: N801
+class blocked:
     """Context in which widgets tell nobody of their changes."""
 
     def __init__(self, *widgets):

@@ -91,7 +91,7 @@ class MapPanel(QtWidgets.QWidget):
 
     # --- painting ---
 
-    def paintEvent(self, _event):  # noqa: N802
+    def paintEvent(self, _event):
         painter = QtGui.QPainter(self)
         painter.fillRect(self.rect(), self.palette().window())
         if self.image is None or self.view.isEmpty():
@@ -152,7 +152,7 @@ class MapPanel(QtWidgets.QWidget):
 
     # --- mouse ---
 
-    def mousePressEvent(self, event):  # noqa: N802
+    def mousePressEvent(self, event):
         self._is_clicked = False
         if self.image is None or not self.plot_rect().contains(event.position()):
             return
@@ -161,7 +161,7 @@ class MapPanel(QtWidgets.QWidget):
         else:
             self._pan_from = event.position(), QtCore.QRectF(self.view)
 
-    def mouseMoveEvent(self, event):  # noqa: N802
+    def mouseMoveEvent(self, event):
         if self.image is None:
             return
         if self._pan_from is not None:
@@ -176,7 +176,7 @@ class MapPanel(QtWidgets.QWidget):
         self.hovered.emit(float(self.range_axis[range_index]), float(self.velocity_axis[velocity_index]),
                           float(self.level[velocity_index, range_index]))
 
-    def mouseReleaseEvent(self, event):  # noqa: N802
+    def mouseReleaseEvent(self, event):
         press, self._press, self._drag, self._pan_from = self._press, None, None, None
         if press is None or self.image is None:
             return
@@ -188,7 +188,7 @@ class MapPanel(QtWidgets.QWidget):
         (near, far), (slow, fast) = sorted((first[0], last[0])), sorted((first[1], last[1]))
         self.box_dragged.emit(CellBox(near, far, slow, fast))
 
-    def mouseDoubleClickEvent(self, event):  # noqa: N802
+    def mouseDoubleClickEvent(self, event):
         """Its first click has selected a cell at once, as no click waits for a second one: that is taken back."""
         self._press = None
         if self._is_clicked:
@@ -196,10 +196,10 @@ class MapPanel(QtWidgets.QWidget):
         if self.plot_rect().contains(event.position()):
             self.view_reset.emit()
 
-    def leaveEvent(self, _event):  # noqa: N802
+    def leaveEvent(self, _event):
         self.left.emit()
 
-    def wheelEvent(self, event):  # noqa: N802
+    def wheelEvent(self, event):
         if self.image is None:
             return
         factor = ZOOM_STEP ** (-event.angleDelta().y() / 120.0)

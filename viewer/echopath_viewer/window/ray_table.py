@@ -28,13 +28,13 @@ class RayTableModel(QtCore.QAbstractTableModel):
         self._sort(*self._order)
         self.endResetModel()
 
-    def rowCount(self, parent=QtCore.QModelIndex()):  # noqa: N802, B008
+    def rowCount(self, parent=QtCore.QModelIndex()):  # noqa: B008
         return 0 if parent.isValid() else len(self.rays)
 
-    def columnCount(self, parent=QtCore.QModelIndex()):  # noqa: N802, B008
+    def columnCount(self, parent=QtCore.QModelIndex()):  # noqa: B008
         return 0 if parent.isValid() else len(COLUMNS)
 
-    def headerData(self, section, orientation, role=Qt.ItemDataRole.DisplayRole):  # noqa: N802
+    def headerData(self, section, orientation, role=Qt.ItemDataRole.DisplayRole):
         if role != Qt.ItemDataRole.DisplayRole:
             return None
         return COLUMNS[section] if orientation == Qt.Orientation.Horizontal else str(section + 1)

@@ -92,15 +92,15 @@ class SlowTimeStrip(QtWidgets.QWidget):
         rect = self._rect()
         return rect.left() + chirp / max(len(self._power) - 1, 1) * rect.width()
 
-    def mousePressEvent(self, event):  # noqa: N802
+    def mousePressEvent(self, event):
         self.mouseMoveEvent(event)
 
-    def mouseMoveEvent(self, event):  # noqa: N802
+    def mouseMoveEvent(self, event):
         if len(self._power) and event.buttons() & Qt.MouseButton.LeftButton:
             share = (event.position().x() - self._rect().left()) / self._rect().width()
             self.chirp_clicked.emit(int(np.clip(round(share * (len(self._power) - 1)), 0, len(self._power) - 1)))
 
-    def paintEvent(self, _event):  # noqa: N802
+    def paintEvent(self, _event):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
         rect = self._rect()

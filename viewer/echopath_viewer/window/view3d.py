@@ -121,21 +121,21 @@ class View3D(QtInteractor):
 
     # --- Qt ---
 
-    def closeEvent(self, event):  # noqa: N802
+    def closeEvent(self, event):
         self._render_timer.stop()
         super().closeEvent(event)
 
-    def resizeEvent(self, event):  # noqa: N802
+    def resizeEvent(self, event):
         super().resizeEvent(event)
         if self.builder is not None:
             self.builder.resized()
             self.render_soon()
 
-    def mousePressEvent(self, event):  # noqa: N802
+    def mousePressEvent(self, event):
         self._press = event.position() if event.button() == Qt.MouseButton.LeftButton else None
         super().mousePressEvent(event)
 
-    def mouseReleaseEvent(self, event):  # noqa: N802
+    def mouseReleaseEvent(self, event):
         super().mouseReleaseEvent(event)
         press, self._press = self._press, None
         if press is None or self.builder is None:
@@ -144,9 +144,9 @@ class View3D(QtInteractor):
             at = event.position()
             self._click(at.x(), at.y(), bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
 
-    def keyPressEvent(self, event):  # noqa: N802
+    def keyPressEvent(self, event):
         """Keys are the window's: VTK's own would quit or change to wire frames."""
         event.ignore()
 
-    def keyReleaseEvent(self, event):  # noqa: N802
+    def keyReleaseEvent(self, event):
         event.ignore()

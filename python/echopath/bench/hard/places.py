@@ -206,7 +206,8 @@ def over_ground(distance: float, height: float, antenna_height: float, side: flo
 
 
 @cases("a null of four ways over the ground", "a plate of 1 mm where two lengths differ by a wavelength, 20 m ahead over a "
-       "metal mirror: its echo, 65 dB down, beside the sum over its height, to 1e-4 of each way's field, which has a lattice of its own",
+       "metal mirror: its echo, 65 dB down, beside the sum over its height, to 1e-4 of each way's field, which has a lattice "
+       "of its own",
        bound=1.5, unit="dB",
        broken="the pair over both images left out: 65 dB")
 def ground_null() -> float:

@@ -4,7 +4,8 @@
 
 #include "echopath/base/job.h"
 #include "echopath/trace/path_block.h"
-#include "echopath/trace/sbr.h"
+#include "echopath/trace/mirrors.h"
+#include "echopath/trace/sbr_settings.h"
 
 namespace echopath {
 

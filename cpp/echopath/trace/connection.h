@@ -1,0 +1,38 @@
+#pragma once
+// A hit that is being connected to the receiver.
+#include "echopath/em/hit_modes.h"
+#include "echopath/trace/antenna_legs.h"
+#include "echopath/trace/path_block.h"
+
+namespace echopath {
+
+// The modes of launches that arrive at a diffuse hit, as far as it keeps them.
+struct ModesIn {
+  VectorOf<double> direction;
+  ModeAxes axes;
+  std::complex<double> te[2], tm[2];  // [launch]
+};
+
+// Along which fields that leave a hit a receiver sees its two components, in parts across the way out.
+struct AxesOut {
+  VectorOf<double> direction;
+  BasisAcross across;
+  std::complex<double> horizontal[2], vertical[2];  // [component]
+};
+
+// What field vectors are seen along at one hit, where polarised; kept from one to the next for its memory.
+struct HitFields {
+  std::vector<FieldPair> axes;  // of the receive legs
+  std::vector<ModesIn> modes_in;
+  std::vector<AxesOut> axes_out;
+};
+
+struct Connection {
+  const Ray& ray;
+  const SurfaceHit& surface;
+  HitLegs& legs;
+  HitFields& fields;
+  PathBlock& block;  // gets the paths
+};
+
+}  // namespace echopath

@@ -16,8 +16,8 @@ class AntennaLegs {
  public:
   explicit AntennaLegs(const RayContext& context);
   // Whether no flagged mirror gives either antenna an image: all legs are straight then.
-  bool are_straight() const { return transmitter_.beams.empty() && receiver_.beams.empty(); }
-  // The number of the antennas' beams over mirrors whose further mirrors were not looked for (kMostBeams).
+  bool are_straight() const { return transmitter_.frusta.empty() && receiver_.frusta.empty(); }
+  // The number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
   int64_t num_unfollowed_beams() const { return transmitter_.num_unfollowed + receiver_.num_unfollowed; }
   // Finds the visible receive legs of a hit.
   void find_receive(const SurfaceHit& surface, int max_mirrors, HitLegs& legs) const;

@@ -23,7 +23,7 @@ bool Connector<Weight>::is_near_antenna(const Vec3& point) const {
 }
 
 template <class Weight>
-void Connector<Weight>::connect(Connection at) const {
+void Connector<Weight>::connect(Connection& at) const {
   const Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
   at.legs.receive.clear();

@@ -15,7 +15,7 @@ class Connector {
       : context_(context), legs_(legs), orders_(context), writer_(context), pairs_(context, legs), chains_(context, legs),
         weight_(context) {}
   // Adds the paths of the hit to the block, and leaves the receive legs that it found.
-  void connect(Connection at) const;
+  void connect(Connection& at) const;
 
  private:
   bool is_near_antenna(const Vec3& point) const;

@@ -11,7 +11,7 @@ struct FirstHits {
   LaunchPlan::Places places;
   LaneVectors directions;
   LaneValues densities;  // rays per sr, if each counted in full: of the owner over what a ray stands for; infinite where foci have all
-  PacketChance samples;
+  PacketSamples samples;
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;        // the hits, off their surfaces
   LaneValues cos_incidence;
@@ -47,7 +47,7 @@ struct FirstHits {
     ScatterSample sample;
     sample.from = lifted[lane];
     sample.direction = out[lane];
-    sample.is_specular = samples.lobe_coin[lane] < specular_probability[lane];
+    sample.is_specular = samples.lobe_sample[lane] < specular_probability[lane];
     sample.lobe_probability = sample.is_specular ? specular_probability[lane] : diffuse_probability[lane];
     return sample;
   }

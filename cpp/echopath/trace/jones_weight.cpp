@@ -23,7 +23,7 @@ FieldPair scattered(const SurfaceHit& surface, const FieldPair& fields, const Ve
   const double cos_incidence = -in.dot(surface.point.normal);
   const double reflection = diffuse_coefficient(surface.model->respond(cos_incidence, PolarizationMode::kTe));
   Depolarization turn{surface.material->cross_polarization, 0.0};
-  if (turn.cross_share > 0) turn.axis = kPi * surface.samples.axis_coin;
+  if (turn.cross_share > 0) turn.axis = kPi * surface.samples.axis_sample;
   FieldPair out_fields;
   for (size_t launch = 0; launch < 2; ++launch) {
     out_fields[launch] = scattered_field(fields[launch], in, out, reflection, turn);
@@ -177,7 +177,7 @@ void JonesWeight::add_pair_matrices(Connection& at) const {
   const SurfaceHit& surface = at.surface;
   find_modes_in(at);
   find_axes_out(at);
-  const double turn = kPi * surface.samples.axis_coin, cosine = std::cos(turn), sine = std::sin(turn);
+  const double turn = kPi * surface.samples.axis_sample, cosine = std::cos(turn), sine = std::sin(turn);
   const ModeMixing mixing = mixing_of(surface.material->cross_polarization);
   const PathFan& fan = at.block.fans.back();
   const std::vector<Leg>&transmit = at.legs.transmit, &receive = at.legs.receive;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "echopath/em/surface_response.h"
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 namespace echopath {
 

@@ -96,7 +96,7 @@ void JonesEchoes::find_modes(const FirstHits& first, int lane) {
   modes_.tm_re[lane] = modes.tm.real();
   modes_.tm_im[lane] = modes.tm.imag();
   const double share = modes_.cross_share[lane] = model.material().cross_polarization;
-  const double axis = share > 0 ? kPi * first.samples.axis_coin[lane] : 0.0;
+  const double axis = share > 0 ? kPi * first.samples.axis_sample[lane] : 0.0;
   modes_.axis_cosine[lane] = share > 0 ? std::cos(axis) : 1.0;
   modes_.axis_sine[lane] = share > 0 ? std::sin(axis) : 0.0;
 }

@@ -32,7 +32,7 @@ ECHOPATH_INLINE void leave_lanes(FirstHits* first) {
     const VectorOf<double> normal = first->hits.normal.at(lane);
     const VectorOf<double> specular = mirrored(normal, first->directions.at(lane), first->cos_incidence[lane]);
     const VectorOf<double> diffuse = over_surface(normal, first->samples.lobe.at(lane));
-    const double sample = first->samples.lobe_coin[lane], probability = first->specular_probability[lane];
+    const double sample = first->samples.lobe_sample[lane], probability = first->specular_probability[lane];
     first->out.x[lane] = sample < probability ? specular.x : diffuse.x;
     first->out.y[lane] = sample < probability ? specular.y : diffuse.y;
     first->out.z[lane] = sample < probability ? specular.z : diffuse.z;
@@ -125,7 +125,8 @@ void PacketFront::start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& 
   std::construct_at(&surface);
   ray.index = first.begin + lane;
   ray.stratum = first.places.strata[k];
-  ray.direction = ray.launch_direction = first.directions[lane];
+  ray.direction = first.directions[lane];
+  ray.launch_direction = first.directions[lane];  // a copy of the other one would wait for its parts to be stored
   ray.is_owned = first.is_owned[k];
   ray.launch_density = context_.plan.density(context_.plan.foci.owner(ray.stratum));
   ray.leg_density = first.densities[lane];

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "echopath/em/jones.h"
-#include "echopath/trace/chance.h"
+#include "echopath/trace/hit_samples.h"
 #include "echopath/trace/legs.h"
 #include "echopath/trace/lobe_probabilities.h"
 #include "echopath/trace/ray_differential.h"

@@ -72,7 +72,8 @@ void RayWalk<Weight>::follow(Scratch& scratch, PathBlock& block) const {
 
 template <class Weight>
 void RayWalk<Weight>::connect(Scratch& scratch, PathBlock& block) const {
-  connector_.connect({scratch.ray, scratch.surface, scratch.legs, scratch.fields, block});
+  Connection at{scratch.ray, scratch.surface, scratch.legs, scratch.fields, block};
+  connector_.connect(at);
 }
 
 template <class Weight>

@@ -23,7 +23,7 @@ class RayShooter {
   ~RayShooter();
   // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
-  // The number of the antennas' beams over mirrors whose further mirrors were not looked for (kMostBeams).
+  // The number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
   int64_t num_unfollowed_beams() const;
 
  private:

@@ -21,9 +21,9 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   const LobeProbabilities lobes = ray.is_owned ? context_.probabilities(*surface.model, response) : kPassingOn;
   ScatterSample sample;
   sample.survival_probability = survival_probability(response, ray.coherent ? ray.depth : ray.depth - ray.chain.first);
-  sample.ends = surface.samples.survival_coin >= sample.survival_probability || std::norm(response.gamma) == 0;
+  sample.ends = surface.samples.survival_sample >= sample.survival_probability || std::norm(response.gamma) == 0;
   if (sample.ends) return sample;
-  sample.is_specular = surface.samples.lobe_coin < lobes.specular;
+  sample.is_specular = surface.samples.lobe_sample < lobes.specular;
   sample.lobe_probability = sample.is_specular ? lobes.specular : lobes.diffuse;
   const Vec3& normal = surface.point.normal;
   sample.from = context_.geometry.lifted(surface.point.position, normal);

@@ -1,5 +1,5 @@
 #pragma once
-// A hit that is being connected to the receiver.
+// A hit that is being connected to the receiver, with all that its paths are made of.
 #include "echopath/em/hit_modes.h"
 #include "echopath/trace/antenna_legs.h"
 #include "echopath/trace/path_block.h"
@@ -13,7 +13,7 @@ struct ModesIn {
   std::complex<double> te[2], tm[2];  // [launch]
 };
 
-// Along which fields that leave a hit a receiver sees its two components, in parts across the way out.
+// Along which of the fields that leave a hit a receiver sees its two components, in parts across the way out.
 struct AxesOut {
   VectorOf<double> direction;
   BasisAcross across;
@@ -22,7 +22,7 @@ struct AxesOut {
 
 // What field vectors are seen along at one hit, where polarised; kept from one to the next for its memory.
 struct HitFields {
-  std::vector<FieldPair> axes;  // of the receive legs
+  std::vector<FieldPair> axes;  // of the receive legs, as the receiver sees them
   std::vector<ModesIn> modes_in;
   std::vector<AxesOut> axes_out;
 };
@@ -33,6 +33,11 @@ struct Connection {
   HitLegs& legs;
   HitFields& fields;
   PathBlock& block;  // gets the paths
+
+  // Of one of the receive legs, where polarised.
+  const FieldPair& axes_of(const Leg& leg) const {
+    return fields.axes[static_cast<size_t>(&leg - legs.receive.data())];
+  }
 };
 
 }  // namespace echopath

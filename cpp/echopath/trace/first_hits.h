@@ -1,5 +1,5 @@
 #pragma once
-// Neighbouring rays and their first hits, lane by lane.
+// The first hits of neighbouring rays, lane by lane.
 #include "echopath/trace/ray.h"
 #include "echopath/trace/ray_context.h"
 
@@ -10,7 +10,8 @@ struct FirstHits {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  LaneValues densities;  // rays per sr, if each counted in full: of the owner over what a ray stands for; infinite where foci have all
+  // Rays per sr, if each counted in full: those of the owner over what a ray stands for; infinite where foci have all.
+  LaneValues densities;
   PacketSamples samples;
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;        // the hits, off their surfaces

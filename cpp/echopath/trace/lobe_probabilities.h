@@ -17,7 +17,10 @@ struct LobeProbabilities {
   double specular = 0.0, diffuse = 0.0;
 };
 
-// They are the shares of power of both lobes. `specular_probability`: SbrSettings.
+// Those of a ray that is not yet where it aims at, which goes over flagged mirrors as they reflect.
+inline constexpr LobeProbabilities kPassingOn{1.0, 0.0};
+
+// The probabilities of other rays: the shares of power of both lobes. `specular_probability`: SbrSettings.
 inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const SurfaceResponse& response,
                                             double specular_probability) {
   const LobeProbabilities shares{response.coherent * response.coherent, response.diffuse * response.diffuse};

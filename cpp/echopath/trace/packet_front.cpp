@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "echopath/base/simd.h"
-#include "echopath/trace/scatterer.h"
 
 namespace echopath {
 namespace {

@@ -8,7 +8,8 @@ namespace echopath {
 template <class Weight>
 class Scatterer {
  public:
-  Scatterer(const RayContext& context, const AntennaLegs& legs) : context_(context), legs_(legs), chains_(context), weight_(context) {}
+  Scatterer(const RayContext& context, const AntennaLegs& legs)
+      : context_(context), legs_(legs), chains_(context), weight_(context) {}
   // Draws whether and where a ray goes on.
   ScatterSample sample(const Ray& ray, const SurfaceHit& surface, int batch) const;
   // Makes of the ray what leaves the hit. What a bounce makes of it is worked out only where it meets something behind: most
@@ -30,8 +31,5 @@ class Scatterer {
 
 extern template class Scatterer<ScalarWeight>;
 extern template class Scatterer<JonesWeight>;
-
-// The probabilities of a ray that is not yet where it aims at, which goes over flagged mirrors as they reflect.
-inline constexpr LobeProbabilities kPassingOn{1.0, 0.0};
 
 }  // namespace echopath

@@ -22,7 +22,7 @@ class ScalarWeight {
   double held_toward(const SurfaceHit& surface, const Vec3& direction) const {
     return diffuse_coefficient(response_toward(surface, polarization_, direction));
   }
-  // A ray's coefficient says all.
+  // The coefficient of a ray, which every part keeps, says all.
   void launch(Ray&) const {}
   void reflect(Ray&, const SurfaceHit&) const {}
   void begin_chain(Ray&) const {}
@@ -57,11 +57,11 @@ class JonesWeight {
   void scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) const;
   // Finds what the receiver sees over each receive leg; goes before the matrices.
   void find_receive_axes(Connection& at) const;
-  // Give the last path its matrix, over a receive leg or, reversed, over a transmit leg.
+  // Give the last path its matrix: over a receive leg or, reversed, over a transmit leg.
   void set_coherent_matrix(Connection& at, const Leg& leg) const;
   void set_diffuse_matrix(Connection& at, const Leg& leg) const;
   void set_reversed_matrix(Connection& at, const Leg& leg) const;
-  // Adds the matrices of all pairs of legs, the ray's own way to the hit as the last of those in.
+  // Adds the matrices of all pairs of legs, the ray's own way to the hit as the last of those in (jones_pairs.cpp).
   void add_pair_matrices(Connection& at) const;
 
  private:

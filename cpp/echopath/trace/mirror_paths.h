@@ -4,8 +4,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/trace/path_block.h"
-#include "echopath/trace/mirrors.h"
-#include "echopath/trace/sbr_settings.h"
+#include "echopath/trace/sbr.h"
 
 namespace echopath {
 

@@ -38,23 +38,24 @@ class Aimer {
  public:
   Aimer(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const AimSettings& settings)
       : scene_(scene), mirrors_(mirrors), settings_(settings),
-        beams_(BeamFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).beams) {}
+        frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {}
 
   std::optional<Aim> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
 
-  // At each image that a beam may show.
+  // At each image that a frustum may show.
   std::vector<Aim> at_images(const Target& target) const {
     std::vector<Aim> images;
     std::vector<Vec3> vertices(target.vertices.size());
-    for (const Beam& beam : beams_) {
-      if (!beam.reaches(target.sphere.centre, target.sphere.radius)) continue;
+    for (const MirrorFrustum& frustum : frusta_) {
+      if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
       std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
-                     [&](const Vec3& vertex) { return image_of(vertex, mirrors_, beam.mirrors); });
-      std::optional<Aim> made = aim(target, vertices, name_over(target, beam), static_cast<int>(beam.mirrors.size()));
+                     [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
+      const int num_mirrors = static_cast<int>(frustum.mirrors.size());
+      std::optional<Aim> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
       if (!made) continue;
       const auto same = std::find_if(images.begin(), images.end(), [&](const Aim& other) { return is_same(made->stratum, other.stratum); });
       Aim& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
-      image.sequences.push_back(beam.sequence);
+      image.sequences.push_back(frustum.sequence);
     }
     return images;
   }
@@ -70,10 +71,10 @@ class Aimer {
     return made;
   }
 
-  std::string name_over(const Target& target, const Beam& beam) const {
+  std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
     std::string name = target.name;
-    for (size_t k = beam.mirrors.size(); k-- > 0;) {
-      name += " over " + scene_.node_of(mirrors_[static_cast<size_t>(beam.mirrors[k])].mesh_id).name;
+    for (size_t k = frustum.mirrors.size(); k-- > 0;) {
+      name += " over " + scene_.node_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])].mesh_id).name;
     }
     return name;
   }
@@ -81,7 +82,7 @@ class Aimer {
   const Scene& scene_;
   const std::vector<Mirror>& mirrors_;
   const AimSettings& settings_;
-  std::vector<Beam> beams_;
+  std::vector<MirrorFrustum> frusta_;
 };
 
 Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObject& object, int index) {

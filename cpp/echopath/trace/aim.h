@@ -2,7 +2,7 @@
 // The objects of a scene and their images over mirrors, as targets of rays.
 #include <vector>
 
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 #include "echopath/trace/stratum.h"
 
 namespace echopath {

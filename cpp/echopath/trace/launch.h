@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "echopath/trace/launch_focus.h"
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 #include "echopath/trace/packet.h"
 #include "echopath/trace/ray_owners.h"
 #include "echopath/trace/sampler.h"

@@ -18,9 +18,9 @@ LegFinder::LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mir
 }
 
 AntennaView LegFinder::view_of(const Vec3& antenna, int max_mirrors) const {
-  Beams found = finder_.find(antenna, {.max_mirrors = max_mirrors});
-  BeamLocator locator(found.beams, kRim);
-  return {antenna, std::move(found.beams), std::move(locator), found.num_unfollowed};
+  MirrorFrusta found = finder_.find(antenna, {.max_mirrors = max_mirrors});
+  FrustumLocator locator(found.frusta, kRim);
+  return {antenna, std::move(found.frusta), std::move(locator), found.num_unfollowed};
 }
 
 void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
@@ -29,9 +29,9 @@ void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vec
   if (query.skip != kDirect && query.direct != ShadowState::kBlocked) add_direct(query, antenna, legs, search);
   const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const int index : antenna.locator.near(query.point)) {
-    const Beam& beam = antenna.beams[static_cast<size_t>(index)];
-    if (static_cast<int>(beam.mirrors.size()) > query.max_mirrors) break;
-    if (beam.sequence != query.skip) add_over_mirrors(query, antenna, beam, legs, search);
+    const MirrorFrustum& frustum = antenna.frusta[static_cast<size_t>(index)];
+    if (static_cast<int>(frustum.mirrors.size()) > query.max_mirrors) break;
+    if (frustum.sequence != query.skip) add_over_mirrors(query, antenna, frustum, legs, search);
   }
   if (!search.segments.empty()) keep_open(num_known, legs, search);
 }
@@ -49,29 +49,29 @@ void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, st
   leg.at_antenna = -leg.to_antenna;
 }
 
-void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const Beam& beam,
+void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const MirrorFrustum& frustum,
                                  std::vector<Leg>& legs, LegSearch& search) const {
   const Vec3& point = query.point;
-  const Vec3 line = beam.image() - point;
+  const Vec3 line = frustum.image() - point;
   if (query.normal.dot(line) <= 0) return;
-  const bool is_on_plane = beam.lit_normal.dot(point) - beam.offset < kOnPlane;
-  if (is_on_plane || !beam.reaches(point, kRim)) return;
+  const bool is_on_plane = frustum.lit_normal.dot(point) - frustum.offset < kOnPlane;
+  if (is_on_plane || !frustum.reaches(point, kRim)) return;
   const size_t num_segments = search.segments.size();
   Leg& leg = legs.emplace_back();
-  leg.sequence = beam.sequence;
+  leg.sequence = frustum.sequence;
   leg.length = line.norm();
   leg.to_antenna = line / leg.length;
-  if (set_bounces(point, query.normal, antenna.position, beam, leg, search.segments)) return;
+  if (set_bounces(point, query.normal, antenna.position, frustum, leg, search.segments)) return;
   legs.pop_back();
   search.segments.resize(num_segments);
 }
 
 // From the point over the mirrors to the antenna. False where the way misses one of them.
-bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const Beam& beam, Leg& leg,
+bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum, Leg& leg,
                             std::vector<Segment>& segments) const {
   Vec3 position = point, from = geometry_.lifted(point, normal), met;
-  for (size_t k = beam.mirrors.size(); k-- > 0;) {
-    if (!bounce(beam.mirrors[k], position, beam.images[k], leg, met)) return false;
+  for (size_t k = frustum.mirrors.size(); k-- > 0;) {
+    if (!bounce(frustum.mirrors[k], position, frustum.images[k], leg, met)) return false;
     const Vec3 to = geometry_.lifted(met, leg.bounces[static_cast<size_t>(leg.num_bounces - 1)].normal);
     segments.push_back({from, to});
     position = met;

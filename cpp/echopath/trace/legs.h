@@ -5,7 +5,7 @@
 
 #include "echopath/em/surface_response.h"
 #include "echopath/trace/embree_scene.h"
-#include "echopath/trace/beam_locator.h"
+#include "echopath/trace/frustum_locator.h"
 
 namespace echopath {
 
@@ -32,10 +32,10 @@ struct Leg {
 };
 
 struct AntennaView {
-  Vec3 position;             // relative to the trace origin
-  std::vector<Beam> beams;
-  BeamLocator locator;       // of the beams
-  int64_t num_unfollowed = 0;  // Beams::num_unfollowed
+  Vec3 position;               // relative to the trace origin
+  std::vector<MirrorFrustum> frusta;
+  FrustumLocator locator;      // of the frusta
+  int64_t num_unfollowed = 0;  // MirrorFrusta::num_unfollowed
 };
 
 enum class ShadowState : uint8_t { kUnknown, kOpen, kBlocked };
@@ -61,15 +61,15 @@ class LegFinder {
 
   // max_mirrors: of legs, at most kMaxLegMirrors.
   AntennaView view_of(const Vec3& antenna, int max_mirrors) const;
-  // All visible legs between a point and `antenna`, direct first, then in the order of the beams.
+  // All visible legs between a point and `antenna`, direct first, then in the order of the frusta.
   // Where a leg meets its mirrors follows from the images alone; shadow queries, in packets, tell whether its way is free.
   void find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
 
  private:
   void add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
-  void add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const Beam& beam, std::vector<Leg>& legs,
+  void add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const MirrorFrustum& frustum, std::vector<Leg>& legs,
                         LegSearch& search) const;
-  bool set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const Beam& beam, Leg& leg,
+  bool set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum, Leg& leg,
                    std::vector<Segment>& segments) const;
   bool bounce(int mirror, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const;
   void keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& search) const;
@@ -77,7 +77,7 @@ class LegFinder {
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
-  BeamFinder finder_;
+  FrustumFinder finder_;
   std::vector<SurfaceModel> models_;  // of the mirrors
   Vec3 polarization_;
 };

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "echopath/base/parallel.h"
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 namespace echopath {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are 
 // one, and of one as far on the other side. In no direction that a scene is likely to be built along.
 constexpr double kAside = 1e-5;  // m
 const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
-constexpr size_t kBeamsPerBlock = 64;
+constexpr size_t kFrustaPerBlock = 64;
 
 // Tries sequences one by one.
 class ImageMethod {
@@ -141,33 +141,33 @@ class ImageMethod {
   std::vector<Hit> hits_;
 };
 
-// The beams of one antenna with the same number of mirrors.
-using BeamRange = std::pair<const Beam*, const Beam*>;
+// The frusta of one antenna with the same number of mirrors.
+using FrustumRange = std::pair<const MirrorFrustum*, const MirrorFrustum*>;
 
-BeamRange with_mirrors(const std::vector<Beam>& beams, size_t count) {
-  const auto is_shorter = [](const Beam& beam, size_t wanted) { return beam.mirrors.size() < wanted; };
-  const auto begin = std::lower_bound(beams.begin(), beams.end(), count, is_shorter);
-  const auto end = std::lower_bound(begin, beams.end(), count + 1, is_shorter);
-  return {beams.data() + (begin - beams.begin()), beams.data() + (end - beams.begin())};
+FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count) {
+  const auto is_shorter = [](const MirrorFrustum& frustum, size_t wanted) { return frustum.mirrors.size() < wanted; };
+  const auto begin = std::lower_bound(frusta.begin(), frusta.end(), count, is_shorter);
+  const auto end = std::lower_bound(begin, frusta.end(), count + 1, is_shorter);
+  return {frusta.data() + (begin - frusta.begin()), frusta.data() + (end - frusta.begin())};
 }
 
-// Pairs of beams of transmitter and receiver, each of which shows the other's antenna, or its image.
+// Pairs of frusta of transmitter and receiver, each of which shows the other's antenna, or its image.
 class HalfwayMeeting {
  public:
-  HalfwayMeeting(BeamRange transmit, BeamRange receive)
+  HalfwayMeeting(FrustumRange transmit, FrustumRange receive)
       : transmit_(transmit), receive_(receive), images_(boxes_of_images(receive)) {}
 
-  // Calls body(sequence) for every sequence that begins with the transmit beam, in the order of the mirrors.
+  // Calls body(sequence) for every sequence that begins with the transmit frustum, in the order of the mirrors.
   template <class Body>
-  void sequences(const Beam& beam, const Body& body) const {
+  void sequences(const MirrorFrustum& frustum, const Body& body) const {
     if (receive_.first == receive_.second) return;
     std::vector<int> found;
-    images_.find(beam.region(kAtEdge), found);
+    images_.find(frustum.region(kAtEdge), found);
     std::vector<std::vector<int>> sequences;
     for (const int index : found) {
-      const Beam& other = receive_.first[index];
-      if (other.mirrors.back() == beam.mirrors.back() || !shows(other, beam.image())) continue;
-      std::vector<int>& sequence = sequences.emplace_back(beam.mirrors);
+      const MirrorFrustum& other = receive_.first[index];
+      if (other.mirrors.back() == frustum.mirrors.back() || !shows(other, frustum.image())) continue;
+      std::vector<int>& sequence = sequences.emplace_back(frustum.mirrors);
       sequence.insert(sequence.end(), other.mirrors.rbegin(), other.mirrors.rend());
     }
     std::sort(sequences.begin(), sequences.end());
@@ -175,22 +175,23 @@ class HalfwayMeeting {
   }
 
   size_t size() const { return static_cast<size_t>(transmit_.second - transmit_.first); }
-  const Beam& operator[](size_t i) const { return transmit_.first[i]; }
+  const MirrorFrustum& operator[](size_t i) const { return transmit_.first[i]; }
 
  private:
-  static std::vector<Eigen::AlignedBox3d> boxes_of_images(BeamRange beams) {
+  static std::vector<Eigen::AlignedBox3d> boxes_of_images(FrustumRange frusta) {
     std::vector<Eigen::AlignedBox3d> boxes;
-    for (const Beam* beam = beams.first; beam != beams.second; ++beam) boxes.emplace_back(beam->image(), beam->image());
+    for (const MirrorFrustum* one = frusta.first; one != frusta.second; ++one) boxes.emplace_back(one->image(), one->image());
     return boxes;
   }
 
-  // Whether a beam reaches a point that may be far behind it, but for kAtEdge at its window.
-  static bool shows(const Beam& beam, const Vec3& point) {
-    const double before = beam.offset - beam.lit_normal.dot(beam.image()), behind = beam.lit_normal.dot(point) - beam.offset;
-    return behind > -kAtEdge && beam.reaches(point, kAtEdge * std::max(1.0, (before + behind) / before));
+  // Whether a frustum reaches a point that may be far behind it, but for kAtEdge at its window.
+  static bool shows(const MirrorFrustum& frustum, const Vec3& point) {
+    const double before = frustum.offset - frustum.lit_normal.dot(frustum.image());
+    const double behind = frustum.lit_normal.dot(point) - frustum.offset;
+    return behind > -kAtEdge && frustum.reaches(point, kAtEdge * std::max(1.0, (before + behind) / before));
   }
 
-  BeamRange transmit_, receive_;
+  FrustumRange transmit_, receive_;
   BoxHierarchy images_;  // of the receiver
 };
 
@@ -198,7 +199,7 @@ class MirrorPathSearch {
  public:
   MirrorPathSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, const Job* job)
       : geometry_(geometry), mirrors_(mirrors), settings_(settings), job_(job) {
-    const BeamFinder finder(mirrors, &geometry);
+    const FrustumFinder finder(mirrors, &geometry);
     const int half = settings.max_bounces / 2;
     transmit_ = finder.find(settings.transmitter, {.max_mirrors = settings.max_bounces - half, .slack = kAtEdge}, job);
     receive_ = finder.find(settings.receiver, {.max_mirrors = half, .slack = kAtEdge}, job);
@@ -213,22 +214,22 @@ class MirrorPathSearch {
   }
 
  private:
-  // Paths over one mirror, whose beams show the receiver itself.
+  // Paths over one mirror, whose frusta show the receiver itself.
   void add_single(PathBlock& block) const {
     ImageMethod images(geometry_, mirrors_, settings_, block);
-    const auto [begin, end] = with_mirrors(transmit_.beams, 1);
-    for (const Beam* beam = begin; beam != end; ++beam) {
-      if (beam->reaches(settings_.receiver, kAtEdge)) images.try_sequence(beam->mirrors);
+    const auto [begin, end] = with_mirrors(transmit_.frusta, 1);
+    for (const MirrorFrustum* frustum = begin; frustum != end; ++frustum) {
+      if (frustum->reaches(settings_.receiver, kAtEdge)) images.try_sequence(frustum->mirrors);
     }
   }
 
   void add_longer(size_t count, std::vector<PathBlock>& blocks) const {
-    const HalfwayMeeting meeting(with_mirrors(transmit_.beams, count - count / 2), with_mirrors(receive_.beams, count / 2));
+    const HalfwayMeeting meeting(with_mirrors(transmit_.frusta, count - count / 2), with_mirrors(receive_.frusta, count / 2));
     const size_t first = blocks.size();
-    blocks.resize(first + (meeting.size() + kBeamsPerBlock - 1) / kBeamsPerBlock);
+    blocks.resize(first + (meeting.size() + kFrustaPerBlock - 1) / kFrustaPerBlock);
     Job own(job_);
     parallel_for(std::ssize(blocks) - static_cast<int64_t>(first), [&](int64_t k) {
-      const size_t begin = static_cast<size_t>(k) * kBeamsPerBlock, end = std::min(meeting.size(), begin + kBeamsPerBlock);
+      const size_t begin = static_cast<size_t>(k) * kFrustaPerBlock, end = std::min(meeting.size(), begin + kFrustaPerBlock);
       ImageMethod images(geometry_, mirrors_, settings_, blocks[first + static_cast<size_t>(k)]);
       for (size_t i = begin; i < end; ++i) {
         meeting.sequences(meeting[i], [&](std::vector<int> sequence) { images.try_sequence(std::move(sequence)); });
@@ -240,7 +241,7 @@ class MirrorPathSearch {
   const std::vector<Mirror>& mirrors_;
   const SbrSettings& settings_;
   const Job* job_;
-  Beams transmit_, receive_;
+  MirrorFrusta transmit_, receive_;
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 namespace echopath {
 

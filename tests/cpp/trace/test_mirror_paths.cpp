@@ -1,4 +1,4 @@
-// Paths over mirrors, and the search behind them, against loops over all sequences, boxes, beams and points.
+// Paths over mirrors, and the search behind them, against loops over all sequences, boxes, frusta and points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "echopath/base/parallel.h"
-#include "echopath/trace/beam_locator.h"
+#include "echopath/trace/frustum_locator.h"
 #include "echopath/trace/trace.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"
@@ -157,22 +157,22 @@ std::vector<Mirror> mirrors_of(const std::vector<MirrorRectangle>& rectangles) {
   return mirrors;
 }
 
-TEST(MirrorBeams, BeyondTheBoundAreCounted) {
+TEST(MirrorFrusta, BeyondTheBoundAreCounted) {
   const auto mirrors = mirrors_of(random_mirrors(12, 6));
-  const BeamFinder finder(mirrors);
-  const Beams all = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3});
-  const Beams few = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3, .max_beams = 5});
+  const FrustumFinder finder(mirrors);
+  const MirrorFrusta all = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3});
+  const MirrorFrusta few = finder.find({0.1, 0.2, 0.3}, {.max_mirrors = 3, .max_frusta = 5});
   EXPECT_EQ(all.num_unfollowed, 0);
-  ASSERT_GT(all.beams.size(), few.beams.size());
+  ASSERT_GT(all.frusta.size(), few.frusta.size());
   // Those over one mirror are always there; none of them was followed.
-  EXPECT_EQ(few.num_unfollowed, std::ssize(few.beams));
-  for (size_t i = 0; i < few.beams.size(); ++i) EXPECT_EQ(few.beams[i].mirrors, all.beams[i].mirrors);
+  EXPECT_EQ(few.num_unfollowed, std::ssize(few.frusta));
+  for (size_t i = 0; i < few.frusta.size(); ++i) EXPECT_EQ(few.frusta[i].mirrors, all.frusta[i].mirrors);
 }
 
-TEST(BeamLocator, HoldsAllBeamsThatReachAPointInTheirOrder) {
+TEST(FrustumLocator, HoldsAllFrustaThatReachAPointInTheirOrder) {
   const auto mirrors = mirrors_of(random_mirrors(40, 7));
-  const std::vector<Beam> beams = BeamFinder(mirrors).find({0.1, 0.2, 0.3}, {}).beams;
-  const BeamLocator locator(beams, 1e-3);
+  const std::vector<MirrorFrustum> frusta = FrustumFinder(mirrors).find({0.1, 0.2, 0.3}, {}).frusta;
+  const FrustumLocator locator(frusta, 1e-3);
   std::mt19937 draw(8);
   std::uniform_real_distribution<double> uniform(-15.0, 15.0);
   size_t num_reaching = 0, num_near = 0;
@@ -181,15 +181,15 @@ TEST(BeamLocator, HoldsAllBeamsThatReachAPointInTheirOrder) {
     const std::span<const int> near = locator.near(point);
     EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
     num_near += near.size();
-    for (int k = 0; k < std::ssize(beams); ++k) {
-      if (!beams[static_cast<size_t>(k)].reaches(point, 1e-3)) continue;
+    for (int k = 0; k < std::ssize(frusta); ++k) {
+      if (!frusta[static_cast<size_t>(k)].reaches(point, 1e-3)) continue;
       ++num_reaching;
       EXPECT_TRUE(std::binary_search(near.begin(), near.end(), k));
     }
   }
-  EXPECT_GT(beams.size(), 200u);
+  EXPECT_GT(frusta.size(), 200u);
   EXPECT_GT(num_reaching, 1000u);
-  EXPECT_LT(num_near, 2000 * beams.size() / 5);  // else it would be no help
+  EXPECT_LT(num_near, 2000 * frusta.size() / 5);  // else it would be no help
 }
 
 TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
@@ -227,14 +227,14 @@ TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
 }
 
 // What can be seen of a mirror lies in what shadows leave of it, and of a house one sees no back.
-TEST(BeamShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
+TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
   const auto rectangles = city_block(20);
   const Scene scene = scene_of(rectangles);
   const Pose pose(scene, 0.0);
   const EmbreeScene geometry(scene, pose, Vec3::Zero());
   const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
   const Vec3 antenna(9.3, 8.7, 3.1);
-  const BeamShadows shadows(geometry, mirrors);
+  const FrustumShadows shadows(geometry, mirrors);
   std::mt19937 draw(10);
   std::uniform_real_distribution<double> inside(0.01, 0.99);  // off the rims, where rounding decides
   size_t num_hidden = 0, num_seen = 0;

@@ -1,4 +1,4 @@
-#include "echopath/trace/chance.h"
+#include "echopath/trace/hit_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 namespace echopath {
 namespace {
 
-// The middle of one of 2^32 intervals of [0, 1]: never 0, which would take a way however small its odds, and what is carried on
-// is divided by them.
-ECHOPATH_INLINE double coin_of(uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1.0p-32; }
+// The middle of one of 2^32 intervals of [0, 1]: never 0, which would take a way however small its probability, and what is
+// carried on is divided by it.
+ECHOPATH_INLINE double unit_sample(uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1.0p-32; }
 
 template <size_t kLanes>
 ECHOPATH_INLINE PhiloxWords<kLanes> draw_words(uint64_t seed, Stream stream, uint64_t first, uint32_t dimension) {
@@ -29,20 +29,20 @@ ECHOPATH_INLINE PhiloxWords<kLanes> draw_words(uint64_t seed, Stream stream, uin
 }
 
 template <size_t kLanes>
-struct ChanceLanes {
-  double *phase_re, *phase_im, *axis_coin, *lobe_coin, *survival_coin;
+struct SampleLanes {
+  double *phase_re, *phase_im, *axis_sample, *lobe_sample, *survival_sample;
 };
 
 template <size_t kLanes>
-ECHOPATH_INLINE void draw_chance(uint64_t seed, uint64_t first, uint32_t depth, ChanceLanes<kLanes> out) {
+ECHOPATH_INLINE void draw_samples(uint64_t seed, uint64_t first, uint32_t depth, SampleLanes<kLanes> out) {
   const PhiloxWords<kLanes> words = draw_words<kLanes>(seed, Stream::kPhase, first, depth);
   for (size_t i = 0; i < kLanes; ++i) {
-    const Phasor phase = phasor_of_cycles(coin_of(words[0][i]));
+    const Phasor phase = phasor_of_cycles(unit_sample(words[0][i]));
     out.phase_re[i] = phase.re;
     out.phase_im[i] = phase.im;
-    out.axis_coin[i] = coin_of(words[1][i]);
-    out.lobe_coin[i] = coin_of(words[2][i]);
-    out.survival_coin[i] = coin_of(words[3][i]);
+    out.axis_sample[i] = unit_sample(words[1][i]);
+    out.lobe_sample[i] = unit_sample(words[2][i]);
+    out.survival_sample[i] = unit_sample(words[3][i]);
   }
 }
 
@@ -67,18 +67,18 @@ ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LaneVectors* lane
 
 HitSamples hit_samples(uint64_t seed, int64_t ray, int depth) {
   double re, im;
-  HitSamples chance;
-  draw_chance<1>(seed, static_cast<uint64_t>(ray), static_cast<uint32_t>(depth),
-                 {&re, &im, &chance.axis_coin, &chance.lobe_coin, &chance.survival_coin});
-  chance.phase = {re, im};
-  return chance;
+  HitSamples samples;
+  draw_samples<1>(seed, static_cast<uint64_t>(ray), static_cast<uint32_t>(depth),
+                  {&re, &im, &samples.axis_sample, &samples.lobe_sample, &samples.survival_sample});
+  samples.phase = {re, im};
+  return samples;
 }
 
 Vec3 cosine_lobe(const std::array<double, 2>& random) {
   return packed(direction_of(random[0], random[1]));
 }
 
-void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batches) {
+void PacketSamples::draw(uint64_t seed, int64_t first, int count, const int* batches) {
   ScatterCell shift{};
   for (int lane = 0; lane < count; ++lane) {
     const bool is_new = lane == 0 || batches[lane] != batches[lane - 1] || (first + lane) % kScatterNetSize == 0;
@@ -90,9 +90,9 @@ void PacketChance::draw(uint64_t seed, int64_t first, int count, const int* batc
   std::fill(lobe.x.lanes + count, lobe.x.lanes + kPacketSize, 0.0);
   std::fill(lobe.y.lanes + count, lobe.y.lanes + kPacketSize, 0.0);
   const auto index = static_cast<uint64_t>(first);
-  using Lanes = ChanceLanes<kPacketSize>;
-  run_simd<&draw_chance<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re.lanes, phase_im.lanes, axis_coin.lanes,
-                                                                    lobe_coin.lanes, survival_coin.lanes});
+  using Lanes = SampleLanes<kPacketSize>;
+  run_simd<&draw_samples<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re.lanes, phase_im.lanes, axis_sample.lanes,
+                                                                     lobe_sample.lanes, survival_sample.lanes});
   run_simd<&draw_lobes>(seed, index, &lobe);
 }
 

@@ -1,4 +1,4 @@
-#include "echopath/trace/beam_shadows.h"
+#include "echopath/trace/frustum_shadows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
   return rims;
 }
 
-BeamShadows::BeamShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors)
+FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors)
     : geometry_(geometry), mirrors_(mirrors) {
   for (size_t i = 0; i < mirrors.size(); ++i) {
     mirror_of_mesh_.resize(std::max<size_t>(mirror_of_mesh_.size(), mirrors[i].mesh_id + 1), -1);
@@ -68,7 +68,7 @@ BeamShadows::BeamShadows(const EmbreeScene& geometry, const std::vector<Mirror>&
 
 // Whether something stands between the source and a point of the target; sets `occluder` to a polygon of it, as far as that
 // lies between the two planes, or to none where its shadow cannot be told.
-bool BeamShadows::look(const BeamSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const {
+bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const {
   Vec3 from = source.apex;
   if (source.lit_normal) {
     const double behind = source.offset - source.lit_normal->dot(from), ahead = source.lit_normal->dot(point) - source.offset;
@@ -98,7 +98,7 @@ bool BeamShadows::look(const BeamSource& source, const Mirror& target, const Vec
   return true;
 }
 
-void BeamShadows::shrink(const BeamSource& source, const Mirror& target, std::vector<Vec3>& window) const {
+void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const {
   Polygons unseen = {window}, seen, left;
   std::vector<Vec3> occluder;
   bool is_whole = true;

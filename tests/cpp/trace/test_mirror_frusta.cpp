@@ -1,11 +1,11 @@
-// Beams of an antenna over mirrors against specular points found one by one.
+// MirrorFrusta of an antenna over mirrors against specular points found one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
 #include "echopath/base/random.h"
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 namespace echopath {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 constexpr int kMaxMirrors = 3;
 constexpr double kRim = 1e-6;  // m: a bounce this near to the rim of its mirror may count either way
 
-std::vector<Beam> find_beams(const Vec3& antenna, const std::vector<Mirror>& mirrors, int max_mirrors) {
-  return BeamFinder(mirrors).find(antenna, {.max_mirrors = max_mirrors}).beams;
+std::vector<MirrorFrustum> find_frusta(const Vec3& antenna, const std::vector<Mirror>& mirrors, int max_mirrors) {
+  return FrustumFinder(mirrors).find(antenna, {.max_mirrors = max_mirrors}).frusta;
 }
 
 struct Rectangle {
@@ -70,7 +70,7 @@ double margin_of(const Vec3& antenna, const std::vector<int>& sequence, const Ve
   return margin;
 }
 
-TEST(MirrorBeams, LightWhatSpecularPointsReach) {
+TEST(MirrorFrusta, LightWhatSpecularPointsReach) {
   std::vector<Rectangle> rectangles;
   std::vector<Mirror> mirrors;
   for (uint64_t i = 0; i < 6; ++i) {
@@ -78,7 +78,7 @@ TEST(MirrorBeams, LightWhatSpecularPointsReach) {
     mirrors.push_back(mirror_of(rectangles.back()));
   }
   const Vec3 antenna(0.3, -0.2, 0.5);
-  const std::vector<Beam> beams = find_beams(antenna, mirrors, kMaxMirrors);
+  const std::vector<MirrorFrustum> frusta = find_frusta(antenna, mirrors, kMaxMirrors);
   int num_lit[kMaxMirrors + 1] = {};
   for (uint64_t i = 0; i < 3000; ++i) {
     const Vec3 point = 6.0 * random_vector(5000 + i);
@@ -95,15 +95,15 @@ TEST(MirrorBeams, LightWhatSpecularPointsReach) {
       if (sequence.empty()) continue;
       const double margin = margin_of(antenna, sequence, point, rectangles, mirrors);
       if (std::abs(margin) < kRim) continue;
-      const auto beam = std::find_if(beams.begin(), beams.end(), [&](const Beam& b) { return b.mirrors == sequence; });
-      EXPECT_EQ(beam != beams.end() && beam->reaches(point, 0.0), margin > 0);
+      const auto frustum = std::find_if(frusta.begin(), frusta.end(), [&](const MirrorFrustum& b) { return b.mirrors == sequence; });
+      EXPECT_EQ(frustum != frusta.end() && frustum->reaches(point, 0.0), margin > 0);
       num_lit[sequence.size()] += margin > 0 ? 1 : 0;
     }
   }
   for (int depth = 1; depth <= kMaxMirrors; ++depth) EXPECT_GT(num_lit[depth], 20) << depth;
 }
 
-TEST(MirrorBeams, NumbersTellSequencesApart) {
+TEST(MirrorFrusta, NumbersTellSequencesApart) {
   const size_t num_mirrors = 7;
   std::set<MirrorSequence> numbers = {kDirect};
   for (int first = 0; first < 7; ++first) {
@@ -116,11 +116,11 @@ TEST(MirrorBeams, NumbersTellSequencesApart) {
   EXPECT_GE(*numbers.begin(), 0);
 }
 
-TEST(MirrorBeams, AnAntennaOnAPlaneHasNoImageInIt) {
+TEST(MirrorFrusta, AnAntennaOnAPlaneHasNoImageInIt) {
   const std::vector<Mirror> mirrors = {mirror_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})};
-  EXPECT_TRUE(find_beams({5, 5, 0}, mirrors, 2).empty());
-  EXPECT_EQ(find_beams({5, 5, 1}, mirrors, 2).size(), 1u);
-  EXPECT_TRUE(find_beams({5, 5, 1}, mirrors, 0).empty());
+  EXPECT_TRUE(find_frusta({5, 5, 0}, mirrors, 2).empty());
+  EXPECT_EQ(find_frusta({5, 5, 1}, mirrors, 2).size(), 1u);
+  EXPECT_TRUE(find_frusta({5, 5, 1}, mirrors, 0).empty());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What of a mirror the surfaces before it hide from where a beam comes from.
+// What of a mirror the surfaces before it hide from where a frustum comes from.
 #include <vector>
 
 #include "echopath/trace/embree_scene.h"
@@ -13,23 +13,23 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, 
 // Inward unit normals of the planes through `apex` and each edge of a convex polygon.
 std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex);
 
-// The plane that a beam leaves, its antenna or its last mirror.
-struct BeamSource {
+// The plane that a frustum leaves, its antenna or its last mirror.
+struct FrustumSource {
   Vec3 apex;                      // the antenna or its image
   const Vec3* lit_normal = nullptr;  // of the last mirror, unit, on the lit side; null for the antenna itself
   double offset = 0.0;            // of its plane
 };
 
-class BeamShadows {
+class FrustumShadows {
  public:
-  BeamShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors);
+  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors);
   // Leaves of `window`, a convex polygon on the mirror `target`, a convex polygon that holds all that can be seen from the
   // source; empty where all is hidden. What is left may hide some more: rays find out. Shadows are taken away one after
   // the other, each of a whole mirror without holes or of the one triangle that was met.
-  void shrink(const BeamSource& source, const Mirror& target, std::vector<Vec3>& window) const;
+  void shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const;
 
  private:
-  bool look(const BeamSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const;
+  bool look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const;
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;

@@ -1,4 +1,4 @@
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kOnPlane = 1e-4;      // m: an antenna or image this near the plane has no image in it
 constexpr double kFlatBox = 1e-4;      // m: mirrors may stray this far from their outlines
-constexpr size_t kTogether = 512;      // beams that are followed side by side
+constexpr size_t kTogether = 512;      // frusta that are followed side by side
 
 std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -24,7 +24,7 @@ std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
 
 }  // namespace
 
-bool Beam::reaches(const Vec3& point, double radius) const {
+bool MirrorFrustum::reaches(const Vec3& point, double radius) const {
   if (lit_normal.dot(point) - offset < -radius) return false;
   const Vec3 line = point - image();
   for (const Vec3& rim : rims) {
@@ -33,35 +33,35 @@ bool Beam::reaches(const Vec3& point, double radius) const {
   return true;
 }
 
-std::vector<HalfSpace> Beam::region(double radius) const {
+std::vector<HalfSpace> MirrorFrustum::region(double radius) const {
   std::vector<HalfSpace> region = {{lit_normal, offset - radius}};
   for (const Vec3& rim : rims) region.push_back({rim, rim.dot(image()) - radius});
   return region;
 }
 
-BeamFinder::BeamFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry)
+FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry)
     : mirrors_(mirrors), boxes_(boxes_of(mirrors)),
-      shadows_(geometry ? std::make_unique<const BeamShadows>(*geometry, mirrors) : nullptr) {}
+      shadows_(geometry ? std::make_unique<const FrustumShadows>(*geometry, mirrors) : nullptr) {}
 
-// What a mirror shows of the beam (null: of the antenna itself) whose source appears at `source`.
-bool BeamFinder::reflect(const Beam* beam, const Vec3& source, int index, double slack, Beam& out) const {
+// What a mirror shows of the frustum (null: of the antenna itself) whose source appears at `source`.
+bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double side = mirror.signed_distance(source);
   if (std::abs(side) < kOnPlane) return false;
   std::vector<Vec3> window = mirror.outline;
-  if (beam) {
-    window = clipped(window, beam->lit_normal, beam->offset - slack);
-    for (const Vec3& rim : beam->rims) {
+  if (frustum) {
+    window = clipped(window, frustum->lit_normal, frustum->offset - slack);
+    for (const Vec3& rim : frustum->rims) {
       if (window.empty()) return false;
       window = clipped(window, rim, rim.dot(source) - slack);
     }
   }
   if (shadows_ && !window.empty()) {
-    const BeamSource from{source, beam ? &beam->lit_normal : nullptr, beam ? beam->offset : 0.0};
+    const FrustumSource from{source, frustum ? &frustum->lit_normal : nullptr, frustum ? frustum->offset : 0.0};
     shadows_->shrink(from, mirror, window);
   }
   if (window.empty()) return false;
-  out = beam ? *beam : Beam();
+  out = frustum ? *frustum : MirrorFrustum();
   out.window = std::move(window);
   out.mirrors.push_back(index);
   const bool is_long = out.mirrors.size() > kMaxLegMirrors;
@@ -73,42 +73,42 @@ bool BeamFinder::reflect(const Beam* beam, const Vec3& source, int index, double
   return true;
 }
 
-// Appends what all mirrors show of the beam.
-void BeamFinder::extend(const Beam* beam, const Vec3& source, double slack, std::vector<Beam>& out) const {
+// Appends what all mirrors show of the frustum.
+void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, double slack, std::vector<MirrorFrustum>& out) const {
   std::vector<int> lit;
-  boxes_.find(beam ? beam->region(slack) : std::vector<HalfSpace>(), lit);
-  Beam next;
+  boxes_.find(frustum ? frustum->region(slack) : std::vector<HalfSpace>(), lit);
+  MirrorFrustum next;
   for (const int index : lit) {
-    if (beam && beam->mirrors.back() == index) continue;
-    if (reflect(beam, source, index, slack, next)) out.push_back(std::move(next));
+    if (frustum && frustum->mirrors.back() == index) continue;
+    if (reflect(frustum, source, index, slack, next)) out.push_back(std::move(next));
   }
 }
 
-// Appends what follows on the beams [begin, end) of `out`, as far as there is room.
-void BeamFinder::follow(size_t begin, size_t end, const BeamSearch& search, const Job* job, Beams& out) const {
+// Appends what follows on the frusta [begin, end) of `out`, as far as there is room.
+void FrustumFinder::follow(size_t begin, size_t end, const FrustumSearch& search, const Job* job, MirrorFrusta& out) const {
   for (size_t first = begin; first < end; first += kTogether) {
-    if (out.beams.size() >= search.max_beams) {
+    if (out.frusta.size() >= search.max_frusta) {
       out.num_unfollowed += static_cast<int64_t>(end - first);
       return;
     }
-    std::vector<std::vector<Beam>> next(std::min(kTogether, end - first));
+    std::vector<std::vector<MirrorFrustum>> next(std::min(kTogether, end - first));
     Job own(job);
     parallel_for(std::ssize(next), [&](int64_t i) {
-      const Beam& beam = out.beams[first + static_cast<size_t>(i)];
-      extend(&beam, beam.image(), search.slack, next[static_cast<size_t>(i)]);
+      const MirrorFrustum& frustum = out.frusta[first + static_cast<size_t>(i)];
+      extend(&frustum, frustum.image(), search.slack, next[static_cast<size_t>(i)]);
     }, &own);
-    for (std::vector<Beam>& of_one : next) {
-      std::move(of_one.begin(), of_one.end(), std::back_inserter(out.beams));
+    for (std::vector<MirrorFrustum>& of_one : next) {
+      std::move(of_one.begin(), of_one.end(), std::back_inserter(out.frusta));
     }
   }
 }
 
-Beams BeamFinder::find(const Vec3& antenna, const BeamSearch& search, const Job* job) const {
-  Beams out;
-  if (search.max_mirrors > 0) extend(nullptr, antenna, search.slack, out.beams);
+MirrorFrusta FrustumFinder::find(const Vec3& antenna, const FrustumSearch& search, const Job* job) const {
+  MirrorFrusta out;
+  if (search.max_mirrors > 0) extend(nullptr, antenna, search.slack, out.frusta);
   size_t begin = 0;
-  for (int count = 1; count < search.max_mirrors && begin < out.beams.size(); ++count) {
-    const size_t end = out.beams.size();
+  for (int count = 1; count < search.max_mirrors && begin < out.frusta.size(); ++count) {
+    const size_t end = out.frusta.size();
     follow(begin, end, search, job, out);
     begin = end;
   }

@@ -1,18 +1,18 @@
 #pragma once
-// Which beams may light a point: the space about the mirrors in cells, each with the beams that reach into it.
+// Which frusta may light a point: the space about the mirrors in cells, each with the frusta that reach into it.
 #include <span>
 #include <vector>
 
-#include "echopath/trace/mirror_beams.h"
+#include "echopath/trace/mirror_frusta.h"
 
 namespace echopath {
 
-class BeamLocator {
+class FrustumLocator {
  public:
-  BeamLocator() = default;
-  // `radius`: m, as in Beam::reaches.
-  BeamLocator(const std::vector<Beam>& beams, double radius);
-  // Indices of all beams that a ball about the point reaches into, and of some others; ascending.
+  FrustumLocator() = default;
+  // `radius`: m, as in MirrorFrustum::reaches.
+  FrustumLocator(const std::vector<MirrorFrustum>& frusta, double radius);
+  // Indices of all frusta that a ball about the point reaches into, and of some others; ascending.
   std::span<const int> near(const Vec3& point) const;
 
  private:
@@ -22,7 +22,7 @@ class BeamLocator {
     int second = 0;      // the half above; the one below follows this cell
     size_t begin = 0, end = 0;  // in entries_
   };
-  using Regions = std::vector<std::vector<HalfSpace>>;  // of the beams
+  using Regions = std::vector<std::vector<HalfSpace>>;  // of the frusta
   int grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth, int num_vain);
 
   Eigen::AlignedBox3d box_;  // of all cells

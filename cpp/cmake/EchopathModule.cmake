@@ -1,4 +1,4 @@
-# One module is one folder, one static library and one test program.
+# One module is one folder, with folders inside where it has many files, one static library and one test program.
 # Third parties go under PRIVATE: their types appear in no header outside the module.
 add_library(echopath_options INTERFACE)
 target_compile_options(echopath_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
@@ -31,7 +31,7 @@ endfunction()
 # echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...])
 function(echopath_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
   list(TRANSFORM ARG_DEPENDS PREPEND echopath_)
   add_library(echopath_${name} STATIC ${sources})
   add_library(echopath::${name} ALIAS echopath_${name})

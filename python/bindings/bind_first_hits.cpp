@@ -6,7 +6,7 @@
 #include "array.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/trace/embree_scene.h"
+#include "echopath/trace/geometry/embree_scene.h"
 #include "run_job.h"
 
 namespace echopath::bindings {

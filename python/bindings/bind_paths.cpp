@@ -159,7 +159,7 @@ share hits; selections share all hits of their trace.)")
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")
       .def_property_readonly("curved_cell", &curved_cell_of,
-                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/paths.h); zeros on flat "
+                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat "
                              "chains")
       .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
                              "snapshot of the scene")

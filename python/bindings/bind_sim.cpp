@@ -7,7 +7,7 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/replay/frame_nodes.h"
+#include "echopath/replay/time/frame_nodes.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/replay_stream.h"
 #include "echopath/sim/synthesize.h"

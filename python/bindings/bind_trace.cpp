@@ -10,7 +10,7 @@
 #include "choice.h"
 #include "echopath/trace/bare_queries.h"
 #include "echopath/sim/ray_allocation.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "error_target.h"
 #include "keywords.h"

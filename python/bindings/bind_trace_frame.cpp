@@ -8,7 +8,7 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath::bindings {
 

@@ -8,9 +8,9 @@
 
 #include "echopath/em/footprint.h"
 #include "echopath/em/jones.h"
-#include "echopath/replay/specular_slide.h"
+#include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/synthesizer.h"
-#include "echopath/trace/sampler.h"
+#include "echopath/trace/launch/sampler.h"
 
 namespace echopath::bindings {
 

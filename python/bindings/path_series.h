@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath::bindings {
 

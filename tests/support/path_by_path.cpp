@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/replay/hit_patches.h"
+#include "echopath/replay/posed/hit_patches.h"
 #include "echopath/scene/smooth.h"
 #include "echopath/trace/near_antenna.h"
 

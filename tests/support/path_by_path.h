@@ -1,12 +1,12 @@
 #pragma once
-// Lengths and amplitudes of paths evaluated one by one, hit by hit, as plainly as the formula (replay/path_formula.h) is written:
+// Lengths and amplitudes of paths evaluated one by one, hit by hit, as plainly as the formula (replay/kernels/path_formula.h) is written:
 // what Replayer, which shares what paths have in common and runs in lanes, is held against.
 #include <complex>
 #include <vector>
 
-#include "echopath/replay/launch_cell.h"
-#include "echopath/replay/local_paths.h"
-#include "echopath/replay/radio_constants.h"
+#include "echopath/replay/evaluate/launch_cell.h"
+#include "echopath/replay/posed/local_paths.h"
+#include "echopath/replay/evaluate/radio_constants.h"
 
 namespace echopath::testing {
 

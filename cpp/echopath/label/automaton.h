@@ -6,7 +6,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/label/expression.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "echopath/base/errors.h"
-#include "echopath/trace/scene_objects.h"
+#include "echopath/trace/launch/scene_objects.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

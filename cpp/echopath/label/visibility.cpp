@@ -8,11 +8,11 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/trace/embree_scene.h"
-#include "echopath/trace/fit_stratum.h"
-#include "echopath/trace/launch_directions.h"
-#include "echopath/trace/sampler.h"
-#include "echopath/trace/scene_objects.h"
+#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/launch/fit_stratum.h"
+#include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/scene_objects.h"
 
 namespace echopath {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/power/power_interval.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

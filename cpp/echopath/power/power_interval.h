@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/replay/cell_formula.h"
+#include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {
 

@@ -7,7 +7,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/power/group_sums.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "echopath/replay/local_paths.h"
-#include "echopath/replay/specular_slide.h"
+#include "echopath/replay/posed/local_paths.h"
+#include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/echoes.h"
 
 namespace echopath {

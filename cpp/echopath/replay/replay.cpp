@@ -7,8 +7,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
-#include "echopath/replay/chirp_derivatives.h"
-#include "echopath/replay/node_tails.h"
+#include "echopath/replay/time/chirp_derivatives.h"
+#include "echopath/replay/time/node_tails.h"
 
 namespace echopath {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "echopath/replay/joined_echoes.h"
-#include "echopath/replay/node_levels.h"
+#include "echopath/replay/time/node_levels.h"
 #include "echopath/replay/replay_memory.h"
 
 namespace echopath {

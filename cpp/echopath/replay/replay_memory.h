@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "echopath/replay/path_evaluator.h"
+#include "echopath/replay/evaluate/path_evaluator.h"
 #include "echopath/replay/spare_echoes.h"
 
 namespace echopath {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/replay/specular_slide.h"
-#include "echopath/trace/kept_geometry.h"
-#include "echopath/trace/paths.h"
+#include "echopath/replay/posed/specular_slide.h"
+#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

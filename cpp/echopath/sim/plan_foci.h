@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/sim/find_glints.h"
-#include "echopath/trace/launch_focus.h"
+#include "echopath/trace/launch/launch_focus.h"
 
 namespace echopath {
 

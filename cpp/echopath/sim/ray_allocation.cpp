@@ -7,7 +7,7 @@
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/plan_foci.h"
-#include "echopath/trace/aim.h"
+#include "echopath/trace/launch/aim.h"
 
 namespace echopath {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/sim/plan_foci.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

@@ -1,7 +1,7 @@
 #pragma once
 // A trace with as many rays as an error asks for.
 #include "echopath/sim/ray_allocation.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

@@ -1,12 +1,12 @@
 #pragma once
 // The trace: scene and radar at mid-frame -> paths.
 #include "echopath/base/job.h"
-#include "echopath/trace/launch_focus.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/launch/launch_focus.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
-class KeptGeometry;  // trace/kept_geometry.h
+class KeptGeometry;  // trace/geometry/kept_geometry.h
 
 struct TraceSettings {
   int64_t num_rays = 1000000;

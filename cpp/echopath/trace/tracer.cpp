@@ -1,8 +1,8 @@
 #include "echopath/trace/tracer.h"
 
 #include "echopath/base/parallel.h"
-#include "echopath/trace/mirror_paths.h"
-#include "echopath/trace/record_writer.h"
+#include "echopath/trace/mirrors/mirror_paths.h"
+#include "echopath/trace/record/record_writer.h"
 
 namespace echopath {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // The steps of a trace: what is made once for all its rays, and the rays in blocks. Internal to the module.
-#include "echopath/trace/kept_geometry.h"
-#include "echopath/trace/sbr.h"
+#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

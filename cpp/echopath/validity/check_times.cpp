@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "echopath/base/constants.h"
-#include "echopath/replay/turn_rates.h"
+#include "echopath/replay/time/turn_rates.h"
 
 namespace echopath {
 namespace {

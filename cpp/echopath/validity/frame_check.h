@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/replay/path_evaluator.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/replay/evaluate/path_evaluator.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/validity/check_times.h"
 #include "echopath/validity/frame_probe.h"
 

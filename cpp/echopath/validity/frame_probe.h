@@ -3,8 +3,8 @@
 // something blocks, how the surfaces have turned.
 #include <memory>
 
-#include "echopath/replay/local_paths.h"
-#include "echopath/replay/specular_slide.h"
+#include "echopath/replay/posed/local_paths.h"
+#include "echopath/replay/posed/specular_slide.h"
 #include "echopath/validity/leg_memo.h"
 #include "echopath/validity/surface_walk.h"
 

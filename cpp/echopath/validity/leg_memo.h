@@ -3,7 +3,7 @@
 // chains to its hits, so most legs are those of other paths, too.
 #include <vector>
 
-#include "echopath/replay/segment_ids.h"
+#include "echopath/replay/evaluate/segment_ids.h"
 #include "echopath/validity/leg_shadows.h"
 
 namespace echopath {

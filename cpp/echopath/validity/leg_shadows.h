@@ -2,8 +2,8 @@
 // Which legs of a path something stands in the way of, at one instant.
 #include <cstdint>
 
-#include "echopath/replay/path_geometry.h"
-#include "echopath/trace/embree_scene.h"
+#include "echopath/replay/posed/path_geometry.h"
+#include "echopath/trace/geometry/embree_scene.h"
 
 namespace echopath {
 

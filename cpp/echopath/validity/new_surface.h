@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

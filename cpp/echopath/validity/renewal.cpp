@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "echopath/base/parallel.h"
-#include "echopath/replay/radio_constants.h"
+#include "echopath/replay/evaluate/radio_constants.h"
 #include "echopath/validity/frame_probe.h"
 
 namespace echopath {

@@ -1,8 +1,8 @@
 #pragma once
 // A record brought up to another time of the frame: what was hit is kept, what has become of the ways between is renewed.
 #include "echopath/base/job.h"
-#include "echopath/trace/kept_geometry.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

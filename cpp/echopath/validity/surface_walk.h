@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/scene/adjacency.h"
-#include "echopath/trace/paths.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

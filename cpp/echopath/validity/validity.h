@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/replay/specular_slide.h"
-#include "echopath/trace/paths.h"
+#include "echopath/replay/posed/specular_slide.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

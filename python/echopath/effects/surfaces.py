@@ -9,7 +9,7 @@ from ..tessellation import coarse_meshes
 from .rules import Case, meshes_or, named, rule
 
 VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
-ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/lobe_probabilities.h)
+ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_probabilities.h)
 
 
 @rule("coherent physical optics", "Material.scattering")

@@ -7,7 +7,7 @@
 
 #include "echopath/base/random.h"
 #include "echopath/power/received_power.h"
-#include "echopath/trace/launch_focus.h"
+#include "echopath/trace/launch/launch_focus.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "echopath/replay/chirp_derivatives.h"
+#include "echopath/replay/time/chirp_derivatives.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -3,8 +3,8 @@
 
 #include <tuple>
 
-#include "echopath/trace/mirror_paths.h"
-#include "echopath/trace/record_writer.h"
+#include "echopath/trace/mirrors/mirror_paths.h"
+#include "echopath/trace/record/record_writer.h"
 #include "support/scenes.h"
 
 namespace echopath {

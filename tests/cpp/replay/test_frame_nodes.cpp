@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "echopath/replay/frame_nodes.h"
+#include "echopath/replay/time/frame_nodes.h"
 #include "support/scenes.h"
 
 namespace echopath {

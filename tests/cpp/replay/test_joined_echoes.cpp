@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "echopath/replay/hit_patches.h"
+#include "echopath/replay/posed/hit_patches.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -1,7 +1,7 @@
 // Frames longer than the knots of a keyframe motion are followed by polynomials between the knots.
 #include <gtest/gtest.h>
 
-#include "echopath/replay/motion_knots.h"
+#include "echopath/replay/time/motion_knots.h"
 #include "echopath/signal/echo_states.h"
 #include "support/scenes.h"
 

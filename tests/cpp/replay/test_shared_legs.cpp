@@ -1,10 +1,10 @@
 // Paths put together from the legs that they share are those that are evaluated one by one.
 #include <gtest/gtest.h>
 
-#include "echopath/replay/chain_plan.h"
-#include "echopath/replay/direct_evaluation.h"
-#include "echopath/replay/evaluate_chains.h"
-#include "echopath/replay/hit_patches.h"
+#include "echopath/replay/evaluate/chain_plan.h"
+#include "echopath/replay/evaluate/direct_evaluation.h"
+#include "echopath/replay/evaluate/evaluate_chains.h"
+#include "echopath/replay/posed/hit_patches.h"
 #include "support/path_by_path.h"
 #include "support/scenes.h"
 

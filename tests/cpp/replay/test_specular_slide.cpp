@@ -1,5 +1,5 @@
 // Slides of points of reflection: Newton's method over spheres, planes and mirrors ends at the law of reflection.
-#include "echopath/replay/specular_slide.h"
+#include "echopath/replay/posed/specular_slide.h"
 
 #include <gtest/gtest.h>
 

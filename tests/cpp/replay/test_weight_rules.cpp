@@ -6,8 +6,8 @@
 #include <bit>
 
 #include "echopath/power/received_power.h"
-#include "echopath/trace/record_writer.h"
-#include "echopath/trace/sbr.h"
+#include "echopath/trace/record/record_writer.h"
+#include "echopath/trace/sbr/sbr.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "echopath/trace/embree_scene.h"
-#include "echopath/trace/launch_lattice.h"
-#include "echopath/trace/launch.h"
-#include "echopath/trace/launch_directions.h"
+#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/launch/launch_lattice.h"
+#include "echopath/trace/launch/launch.h"
+#include "echopath/trace/launch/launch_directions.h"
 #include "support/scenes.h"
 
 namespace echopath {

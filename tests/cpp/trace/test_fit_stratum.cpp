@@ -5,7 +5,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/fit_stratum.h"
+#include "echopath/trace/launch/fit_stratum.h"
 
 namespace echopath {
 namespace {

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "echopath/trace/hit_samples.h"
-#include "echopath/trace/scatter_points.h"
+#include "echopath/trace/scatter/hit_samples.h"
+#include "echopath/trace/scatter/scatter_points.h"
 
 namespace echopath {
 namespace {

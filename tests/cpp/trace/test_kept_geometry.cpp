@@ -7,7 +7,7 @@
 #include <random>
 
 #include "echopath/base/parallel.h"
-#include "echopath/trace/kept_geometry.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"
 

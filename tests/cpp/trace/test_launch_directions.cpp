@@ -1,8 +1,8 @@
 // The density of rays over directions, and where the rays of a plan go.
 #include <gtest/gtest.h>
 
-#include "echopath/trace/launch.h"
-#include "echopath/trace/launch_directions.h"
+#include "echopath/trace/launch/launch.h"
+#include "echopath/trace/launch/launch_directions.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/launch_lattice.h"
+#include "echopath/trace/launch/launch_lattice.h"
 
 namespace echopath {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <complex>
 
-#include "echopath/trace/lobe_probabilities.h"
+#include "echopath/trace/scatter/lobe_probabilities.h"
 
 namespace echopath {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "echopath/base/parallel.h"
-#include "echopath/trace/frustum_locator.h"
+#include "echopath/trace/mirrors/frustum_locator.h"
 #include "echopath/trace/trace.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/mirror_zone.h"
+#include "echopath/trace/mirrors/mirror_zone.h"
 #include "support/scenes.h"
 
 namespace echopath {

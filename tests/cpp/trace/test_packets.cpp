@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "echopath/trace/embree_scene.h"
+#include "echopath/trace/geometry/embree_scene.h"
 #include "echopath/trace/trace.h"
 #include "support/scenes.h"
 

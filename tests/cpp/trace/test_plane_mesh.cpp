@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "echopath/trace/plane_mesh.h"
+#include "echopath/trace/geometry/plane_mesh.h"
 
 namespace echopath {
 namespace {

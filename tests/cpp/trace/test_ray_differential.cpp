@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/ray_differential.h"
+#include "echopath/trace/sbr/ray_differential.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/sampler.h"
+#include "echopath/trace/launch/sampler.h"
 
 namespace echopath {
 namespace {

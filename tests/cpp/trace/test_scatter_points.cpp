@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "echopath/trace/scatter_points.h"
+#include "echopath/trace/scatter/scatter_points.h"
 
 namespace echopath {
 namespace {

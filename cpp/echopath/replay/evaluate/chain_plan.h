@@ -1,0 +1,122 @@
+#pragma once
+// What the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path over each pair of the
+// mirror chains to its hits, so most paths are two legs that others have too.
+#include <array>
+#include <span>
+
+#include "echopath/replay/evaluate/dense_ids.h"
+#include "echopath/replay/posed/local_paths.h"
+#include "echopath/replay/evaluate/segment_ids.h"
+#include "echopath/replay/posed/specular_slide.h"
+
+namespace echopath {
+
+struct ChainPlan {
+  static constexpr uint32_t kNone = ~uint32_t{0};
+
+  // Antennas as seen over mirrors, of transmitters and receivers alike: image `parent` seen in `mirror`. Image 0 is the
+  // antenna itself.
+  struct Image {
+    uint32_t parent, mirror;
+  };
+  // From the images of all transmitters or of all receivers to a point.
+  struct Leg {
+    uint32_t image, point;
+    bool of_receivers;
+  };
+  // What lies between the first and the last material point of a path: hits [begin, end) of `inner_points`.
+  struct Inner {
+    size_t begin, end;
+    uint64_t diffuse, image;  // bit per hit
+  };
+  struct Chain {
+    size_t place;              // of the path in its block
+    int64_t path;
+    uint32_t start, end;       // legs, in the order in which the path was traced
+    uint32_t inner;            // kNone: one material point, whose triangle keeps its area
+    uint32_t slide;            // index into `sliding`; kNone: its points of reflection stay where they were recorded
+    bool is_reversed;          // it starts at a receiver
+    bool is_coherent;          // it has a launch cell, at the point of its last leg
+    std::complex<double> weight;
+  };
+  // A path over flagged mirrors alone: a straight line from an image of the transmitter to the receiver.
+  struct MirrorPath {
+    size_t place;
+    int64_t path;
+    uint32_t image;
+    std::complex<double> weight;
+  };
+
+  // What one point sends straight back: at most a coherent and a diffuse path.
+  struct Direct {
+    static constexpr int64_t kNoPath = -1;
+    const Hit* hit;
+    int64_t path[2];  // DirectSlots::Kind
+    size_t place[2];
+  };
+
+  std::vector<Direct> direct;         // by place
+  std::vector<Hit> points;            // distinct hits, of the chains
+  std::vector<Hit> mirrors;           // distinct planes: triangles at their first corner, of curved mirrors each hit
+  std::vector<Image> images;
+  std::vector<Leg> legs;
+  std::vector<uint32_t> inner_points;
+  std::vector<Inner> inner;
+  std::vector<Chain> chains;          // by place
+  std::vector<int64_t> sliding;       // paths whose points of reflection move (SpecularPoints::kFermat)
+  std::vector<MirrorPath> mirror_paths;
+
+  void clear();
+};
+
+// Makes plans one after the other, and keeps its memory from record to record; for one thread at a time.
+class ChainPlanner {
+ public:
+  // For blocks of this record from now on. All must outlive its use.
+  // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
+  void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct);
+  // For the paths of these indices; valid until the next call.
+  const ChainPlan& operator()(std::span<const int64_t> indices);
+
+ private:
+  struct TracedHits;
+  struct Ends;
+  // Runs of hits that were looked for last: most paths share an end with the one before.
+  struct Known {
+    const Hit* hits = nullptr;
+    int count = 0;
+    bool of_receivers = false;
+    uint32_t leg = 0;
+  };
+
+  void clear();
+  static bool is_same(const Known& known, const Known& run);
+  bool is_image(const TracedHits& hits, int k) const;
+  Ends ends_of(const TracedHits& hits) const;
+  bool is_direct(size_t path) const;
+  bool add_direct(size_t place, int64_t path);
+  void add_chain(size_t place, int64_t path);
+  uint32_t slide_of(int64_t path, const Ends& ends);
+  uint32_t start_leg(const TracedHits& hits, int first);
+  uint32_t end_leg(const TracedHits& hits, int last);
+  uint32_t image_in(uint32_t parent, const Hit& hit);
+  uint32_t point(const Hit& hit);
+  uint32_t straight_leg(const Hit& hit, bool of_receivers);
+  uint32_t add_leg(const ChainPlan::Leg& leg);
+  uint32_t leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers);
+  uint32_t inner(const TracedHits& hits, const Ends& ends, bool is_coherent);
+
+  const Paths* paths_ = nullptr;
+  const Localiser* localise_ = nullptr;
+  bool slides_ = false, with_direct_ = false;
+  ChainPlan plan_;
+  Known last_start_, last_end_;
+  const Hit* last_hit_ = nullptr;  // whose point was looked for last: an end of a path is often that of the next
+  uint32_t last_point_ = 0;
+  std::vector<std::array<uint32_t, 2>> straight_;  // [point] legs from the antennas themselves: of transmitters, of receivers
+  SegmentIds leg_of_, inner_of_[2];  // legs over mirrors; inner parts: as recorded, reversed
+  DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
+  std::vector<uint32_t> leg_over_mirrors_;  // by leg_ids_
+};
+
+}  // namespace echopath

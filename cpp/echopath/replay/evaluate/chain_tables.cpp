@@ -1,0 +1,370 @@
+#include "echopath/replay/evaluate/chain_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/plane.h"
+#include "echopath/replay/evaluate/inner_part.h"
+#include "echopath/replay/kernels/path_formula.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kMostExponent = 16;  // of gains that are products of cosines
+
+void find_mirrors(const ChainPlan& plan, const Localiser& localise, const LevelView& level, NodeRows& planes) {
+  planes.resize(plan.mirrors.size(), 4, level.instants.size());
+  std::deque<std::array<Vec3, 3>> normals;
+  for (size_t mirror = 0; mirror < plan.mirrors.size(); ++mirror) {
+    const LocalHit local = localise.hit(plan.mirrors[mirror], normals);
+    for (size_t node = 0; node < level.instants.size(); ++node) {
+      PosedHit posed;
+      pose_hit(local, level.instants[node], false, posed);
+      store(posed.normal, planes, mirror, 0, node);
+      planes.row(mirror, 3)[node] = posed.normal.dot(posed.point);
+    }
+  }
+}
+
+// Of the antennas themselves, as axes that tables of gains need.
+void store_axes(std::span<const Instant> instants, bool of_receivers, AntennaImages& images) {
+  for (size_t node = 0; node < instants.size(); ++node) {
+    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
+      images.antenna_from_image[antenna * instants.size() + node] = antennas_of(instants[node], of_receivers)[antenna].antenna_from_world;
+    }
+  }
+}
+
+// One more mirror: `from` and `to` count antennas of images.
+void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, AntennaImages& images) {
+  const size_t num_nodes = images.rows.num_nodes();
+  for (size_t node = 0; node < num_nodes; ++node) {
+    const Vec3 normal = load(planes, mirror, 0, node);
+    const Plane plane{planes.row(mirror, 3)[node] * normal, normal};
+    store(plane.image(load(images.rows, from, LegToMeasure::kImagePosition, node)), images.rows, to, LegToMeasure::kImagePosition, node);
+    store(plane.mirrored(load(images.rows, from, LegToMeasure::kBoresight, node)), images.rows, to, LegToMeasure::kBoresight, node);
+    if (images.antenna_from_image.empty()) continue;
+    const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
+    images.antenna_from_image[to * num_nodes + node] = images.antenna_from_image[from * num_nodes + node] * reflection;
+  }
+  pad(images.rows, to, LegToMeasure::kNumImageRows);
+}
+
+}  // namespace
+
+int exponent_of(const AntennaPattern& pattern) {
+  if (pattern.kind == AntennaPattern::Kind::kIsotropic) return 0;
+  if (pattern.kind == AntennaPattern::Kind::kTable || pattern.exponent > kMostExponent) return LegToMeasure::kNoExponent;
+  const int whole = static_cast<int>(pattern.exponent);
+  // Behind the antenna there is no gain even where the exponent is 0, which the kernel takes as a gain in all directions.
+  return whole == pattern.exponent && whole > 0 ? whole : LegToMeasure::kNoExponent;
+}
+
+// Turns the cosines that the kernel left into gains and factors.
+void AntennaImages::finish(size_t entry, const double* point, double* out, double* phase) const {
+  const size_t num_nodes = rows.num_nodes(), stride = rows.stride();
+  const AntennaPattern& of = *pattern[entry % num_antennas];
+  const bool is_table = of.kind == AntennaPattern::Kind::kTable;
+  const double* length = out + LegToMeasure::kLength * stride;
+  double *factor = out + LegToMeasure::kFactor * stride, *gain = out + LegToMeasure::kGain * stride;
+  for (size_t node = 0; node < num_nodes; ++node) {
+    AntennaGain found{0.0, 0.0};
+    if (is_table) {
+      const Vec3 at(point[node], point[stride + node], point[2 * stride + node]);
+      const Vec3 direction = (at - load(rows, entry, LegToMeasure::kImagePosition, node)).normalized();
+      found = of.toward(antenna_from_image[entry * num_nodes + node] * direction);
+    } else {
+      found.power = of.gain(gain[node]);
+    }
+    gain[node] = std::sqrt(found.power);
+    factor[node] = diffuse_leg<ScalarMath>(gain[node], factor[node], length[node]);
+    if (phase) phase[node] = found.phase;
+  }
+}
+
+void AntennaImages::measure(size_t entry, const double* point, double* out, double* phase) const {
+  const AntennaPattern& of = *pattern[entry % num_antennas];
+  const int exponent = exponent_of(of);
+  const size_t stride = rows.stride();
+  chain_kernels(stride).measure({rows.row(entry, 0), point, exponent, std::sqrt(of.peak_gain), out}, stride);
+  if (phase) std::fill_n(phase, stride, 0.0);
+  if (exponent == LegToMeasure::kNoExponent) finish(entry, point, out, phase);
+}
+
+PosedHit PosedPoints::at(size_t point, size_t node) const {
+  PosedHit hit;
+  hit.point = load(rows, point, PointToPose::kPosition, node);
+  hit.normal = load(rows, point, PointToPose::kNormal, node);
+  hit.area_ratio = rows.row(point, PointToPose::kAreaRatio)[node];
+  return hit;
+}
+
+PosedHit PosedPoints::at_trace(size_t point) const {
+  PosedHit hit;
+  hit.point = traced[point].position;
+  hit.normal = traced[point].normal;
+  hit.is_smooth = traced[point].curvature != nullptr;
+  if (hit.is_smooth) hit.curvature = *traced[point].curvature;
+  return hit;
+}
+
+void PosedPoints::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
+  rows.resize(plan.points.size(), PointToPose::kNumRows, level.instants.size());
+  traced.resize(plan.points.size());
+  normals.clear();
+  curvatures.clear();
+  for (size_t point = 0; point < plan.points.size(); ++point) {
+    const LocalHit hit = localise.hit(plan.points[point], normals);
+    if (localise.may_stretch(hit.mesh_id)) pose_stretched(hit, localise, level, point);
+    else pose_rigid(hit, localise, level, point);
+  }
+}
+
+// What is smooth is so in the frame of its mesh: the point off its facet and the normal there move as any other.
+void PosedPoints::pose_rigid(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
+  const Instant& trace = localise.trace_instant();
+  const Mat3& mesh_from_trace = localise.mesh_from_trace(hit.mesh_id);
+  PosedHit posed;
+  pose_hit(hit, trace, false, posed);
+  Vec3 position = hit.point;
+  traced[point] = {posed.point, posed.normal, nullptr};
+  if (posed.is_smooth) {
+    traced[point].curvature = &curvatures.emplace_back(posed.curvature);
+    position = mesh_from_trace * (posed.point - trace.translation(hit.mesh_id));
+  }
+  const Vec3 normal = mesh_from_trace * posed.normal;
+  PointToPose to;
+  to.mesh = level.poses.meshes.row(hit.mesh_id, 0);
+  std::copy_n(position.data(), 3, to.position);
+  std::copy_n(normal.data(), 3, to.normal);
+  to.out = rows.row(point, 0);
+  chain_kernels(rows.stride()).pose(to, rows.stride());
+}
+
+void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
+  PosedHit posed;
+  pose_hit(hit, localise.trace_instant(), false, posed);
+  traced[point] = {posed.point, posed.normal, nullptr};
+  for (size_t node = 0; node < level.instants.size(); ++node) {
+    pose_hit(hit, level.instants[node], false, posed);
+    store(posed.point, rows, point, PointToPose::kPosition, node);
+    store(posed.normal, rows, point, PointToPose::kNormal, node);
+    rows.row(point, PointToPose::kAreaRatio)[node] = posed.area_ratio;
+  }
+  pad(rows, point, PointToPose::kNumRows);
+}
+
+void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool receivers) {
+  of_receivers = receivers;
+  const std::vector<PosedAntenna>& antennas = antennas_of(level.instants.front(), of_receivers);
+  const NodeRows& own = level.poses.antennas[of_receivers];
+  num_antennas = antennas.size();
+  pattern.clear();
+  bool has_table = false;
+  for (const PosedAntenna& antenna : antennas) {
+    pattern.push_back(antenna.pattern);
+    has_table = has_table || antenna.pattern->kind == AntennaPattern::Kind::kTable;
+  }
+  const size_t num_entries = plan.images.size() * num_antennas;
+  rows.resize(num_entries, LegToMeasure::kNumImageRows, level.instants.size());
+  antenna_from_image.resize(has_table ? num_entries * level.instants.size() : 0);
+  if (has_table) store_axes(level.instants, of_receivers, *this);
+  for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
+    std::copy_n(own.row(antenna, 0), LegToMeasure::kNumImageRows * rows.stride(), rows.row(antenna, 0));
+  }
+  for (size_t image = 1; image < plan.images.size(); ++image) {
+    for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
+      store_image(mirrors, plan.images[image].mirror, plan.images[image].parent * num_antennas + antenna,
+                  image * num_antennas + antenna, *this);
+    }
+  }
+}
+
+void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages* images, bool with_phase) {
+  stride = std::max(images[0].num_antennas, images[1].num_antennas);
+  rows.resize(plan.legs.size() * stride, LegToMeasure::kNumRows, points.rows.num_nodes());
+  if (with_phase) phases.resize(plan.legs.size() * stride, 1, points.rows.num_nodes());
+  for (size_t id = 0; id < plan.legs.size(); ++id) {
+    const ChainPlan::Leg& leg = plan.legs[id];
+    const AntennaImages& of = images[leg.of_receivers];
+    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
+      const size_t to = id * stride + antenna;
+      double* const phase = with_phase ? phases.row(to, 0) : nullptr;
+      of.measure(of.entry(leg.image, antenna), points.rows.row(leg.point, 0), rows.row(to, 0), phase);
+    }
+  }
+}
+
+// Axes of the world for the antennas themselves, and what each mirror makes of them.
+void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors) {
+  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
+  for (size_t image = 0; image < plan.images.size(); ++image) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
+      for (size_t node = 0; node < axes.num_nodes(); ++node) {
+        Vec3 seen = Vec3::Unit(axis);
+        if (image > 0) {
+          const Vec3 normal = load(mirrors, plan.images[image].mirror, 0, node);
+          seen = mirrored(load(axes, plan.images[image].parent, row, node), normal);
+        }
+        store(seen, axes, image, row, node);
+      }
+    }
+    pad(axes, image, ComponentsToFind::kNumAxisRows);
+  }
+}
+
+void LegPolarizations::find(const ChainPlan& plan, const ChainTables& tables, const LevelView& level) {
+  const size_t num_nodes = level.instants.size(), stride = tables.legs.stride;
+  rows.resize(plan.legs.size() * stride, ComponentsToFind::kNumRows, num_nodes);
+  for (size_t id = 0; id < plan.legs.size(); ++id) {
+    const ChainPlan::Leg& leg = plan.legs[id];
+    const AntennaImages& images = tables.images[leg.of_receivers];
+    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
+      across(images, {leg.image, antenna}, level, tables.points.rows.row(leg.point, 0), rows.row(id * stride + antenna, 0));
+    }
+  }
+  const SlidingParts& slides = tables.sliding;
+  sliding_rows.resize(plan.sliding.size() * stride, ComponentsToFind::kNumRows, num_nodes);
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    if (chain.slide == ChainPlan::kNone) continue;
+    const AntennaImages& images = tables.images[chain.is_reversed];
+    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
+      const size_t entry = chain.slide * stride + antenna;
+      across(images, {plan.legs[chain.start].image, antenna}, level, slides.points.row(entry, 0), sliding_rows.row(entry, 0));
+    }
+  }
+}
+
+void LegPolarizations::across(const AntennaImages& images, ImageOfAntenna of, const LevelView& level, const double* point,
+                              double* out) const {
+  const double* own = level.poses.polarizations[images.of_receivers].row(of.antenna, 0);
+  chain_kernels(axes.stride()).find_components({images.rows.row(images.entry(of.image, of.antenna), 0), axes.row(of.image, 0), own,
+                                                point, out}, axes.stride());
+}
+
+LocalPath path_of(const ChainPlan::Inner& inner) {
+  LocalPath path;
+  path.count = static_cast<int>(inner.end - inner.begin);
+  path.diffuse = inner.diffuse;
+  path.image = inner.image;
+  path.first_material = 0;
+  path.last_material = path.count - 1;
+  return path;
+}
+
+namespace {
+
+// Of hits as posed at a node.
+DiffuseInner store_inner(const LocalPath& path, const PosedHit* hits, size_t entry, size_t node, NodeRows& rows) {
+  const InnerPart part = inner_part(path, hits);
+  const auto set = [&](size_t row, double value) { rows.row(entry, row)[node] = value; };
+  set(InnerRows::kLength, part.length);
+  if (path.diffuse == 0) {
+    store(part.last_arrival, rows, entry, InnerRows::kArrival, node);
+    return {};
+  }
+  const DiffuseInner found = diffuse_inner(path, hits, part);
+  set(InnerRows::kToFirst, found.to_first);
+  set(InnerRows::kRootCosFirst, found.root_cos_first);
+  set(InnerRows::kFactor, found.factor);
+  set(InnerRows::kFirstSign, found.first_sign);
+  set(InnerRows::kLastSign, found.last_sign);
+  return found;
+}
+
+}  // namespace
+
+void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
+  begins_specular.assign(plan.inner.size(), 0);
+  is_single.assign(plan.inner.size(), 0);
+  rows.resize(plan.inner.size(), InnerRows::kNumRows, points.rows.num_nodes());
+  std::array<PosedHit, 64> hits;  // a path has no more
+  for (size_t id = 0; id < plan.inner.size(); ++id) {
+    const ChainPlan::Inner& inner = plan.inner[id];
+    const LocalPath path = path_of(inner);
+    for (size_t node = 0; node < rows.num_nodes(); ++node) {
+      for (size_t k = inner.begin; k < inner.end; ++k) hits[k - inner.begin] = points.at(plan.inner_points[k], node);
+      const DiffuseInner found = store_inner(path, hits.data(), id, node, rows);
+      begins_specular[id] = found.begins_specular;
+      is_single[id] = found.is_single;
+    }
+    pad(rows, id, InnerRows::kNumRows);
+  }
+}
+
+void SlidingParts::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const AntennaImages* images,
+                        bool with_phase) {
+  if (plan.sliding.empty()) return;
+  const LocalPaths local = localise(plan.sliding);
+  stride = std::max(images[0].num_antennas, images[1].num_antennas);
+  const size_t num_entries = plan.sliding.size() * stride, num_nodes = level.instants.size();
+  points.resize(num_entries, PointToPose::kNumRows, num_nodes);
+  legs.resize(num_entries, LegToMeasure::kNumRows, num_nodes);
+  if (with_phase) phases.resize(num_entries, 1, num_nodes);
+  inner.resize(num_entries, InnerRows::kNumRows, num_nodes);
+  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide, level);
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    if (chain.slide == ChainPlan::kNone) continue;
+    const AntennaImages& of = images[chain.is_reversed];
+    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
+      const size_t entry = chain.slide * stride + antenna;
+      double* const phase = with_phase ? phases.row(entry, 0) : nullptr;
+      of.measure(of.entry(plan.legs[chain.start].image, antenna), points.row(entry, 0), legs.row(entry, 0), phase);
+    }
+  }
+}
+
+void SlidingParts::move_points(const LocalPath& path, size_t slide, const LevelView& level) {
+  std::array<PosedHit, 64> recorded, moved;  // a path has no more
+  SpecularSlide scratch;
+  for (size_t node = 0; node < level.instants.size(); ++node) {
+    pose_hits(path, level.instants[node], recorded.data());
+    const std::vector<PosedAntenna>& starts = antennas_of(level.instants[node], path.is_reversed);
+    for (size_t antenna = 0; antenna < starts.size(); ++antenna) {
+      const size_t entry = slide * stride + antenna;
+      std::copy_n(recorded.begin(), path.count, moved.begin());
+      step_to_fermat(path, starts[antenna].position, scratch, moved.data());
+      const PosedHit& first = moved[static_cast<size_t>(path.first_material)];
+      store(first.point, points, entry, PointToPose::kPosition, node);
+      store(first.normal, points, entry, PointToPose::kNormal, node);
+      points.row(entry, PointToPose::kAreaRatio)[node] = first.area_ratio;
+      store_inner(path, moved.data(), entry, node, inner);
+    }
+  }
+  for (size_t entry = slide * stride; entry < (slide + 1) * stride; ++entry) {
+    pad(points, entry, PointToPose::kNumRows);
+    pad(inner, entry, InnerRows::kNumRows);
+  }
+}
+
+namespace {
+
+// An antenna turns the phase of what it sends or receives, by direction.
+bool any_phase(const AntennaImages& images) {
+  return std::any_of(images.pattern.begin(), images.pattern.end(),
+                     [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
+}
+
+}  // namespace
+
+void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
+  points.find(plan, localise, level);
+  find_mirrors(plan, localise, level, mirrors);
+  for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
+  has_phase = any_phase(images[0]) || any_phase(images[1]);
+  has_polarizations = needs_polarizations(localise.paths(), level);
+  legs.find(plan, points, images, has_phase);
+  inner.find(plan, points);
+  sliding.find(plan, localise, level, images, has_phase);
+  const bool of_mirrors = !localise.paths().jones.empty() && !plan.mirror_paths.empty();
+  if (has_polarizations || of_mirrors) polarizations.find_axes(plan, mirrors);
+  if (has_polarizations) polarizations.find(plan, *this, level);
+}
+
+size_t ChainTables::num_bytes() const {
+  return points.rows.num_bytes() + mirrors.num_bytes() + images[0].rows.num_bytes() + images[1].rows.num_bytes() +
+         legs.rows.num_bytes() + inner.rows.num_bytes() + polarizations.axes.num_bytes() + polarizations.rows.num_bytes();
+}
+
+}  // namespace echopath

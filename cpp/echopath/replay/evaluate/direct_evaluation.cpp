@@ -1,0 +1,308 @@
+#include "echopath/replay/evaluate/direct_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/simd.h"
+
+namespace echopath {
+namespace {
+
+constexpr size_t kSlots = DirectSlots::kSlots, kOfNode = DirectToEvaluate::kNumRows * kSlots;
+
+void copy_matrix(const Mat3& matrix, double* to) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to[3 * row + column] = matrix(row, column);
+  }
+}
+
+void set_vector(const Vec3& vector, size_t slot, DirectSlots::Row* rows) {
+  for (int axis = 0; axis < 3; ++axis) rows[axis][slot] = vector[axis];
+}
+
+void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, DirectSlots& slots) {
+  const Triangle& triangle = mesh.triangles()[hit.triangle_id];
+  const std::vector<Vec3>& vertices = mesh.vertices();
+  const Vec3& corner = vertices[triangle[0]];
+  set_vector(corner, slot, slots.corner);
+  set_vector(vertices[triangle[1]] - corner, slot, slots.edge[0]);
+  set_vector(vertices[triangle[2]] - corner, slot, slots.edge[1]);
+  slots.along_edge[0][slot] = hit.u;
+  slots.along_edge[1][slot] = hit.v;
+}
+
+}  // namespace
+
+bool can_evaluate_directly(const Radar& radar) {
+  const auto is_power = [](const Antenna& antenna) { return exponent_of(antenna.pattern) != LegToMeasure::kNoExponent; };
+  return std::all_of(radar.transmitters.begin(), radar.transmitters.end(), is_power) &&
+         std::all_of(radar.receivers.begin(), radar.receivers.end(), is_power);
+}
+
+void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level,
+                                  const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
+  if (plan.direct.empty()) return;
+  sort_by_mesh(plan);
+  set_antennas(level);
+  const size_t num_nodes = level.instants.size();
+  out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
+  const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
+  legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
+  const bool is_polarized = ChainTables::needs_polarizations(localise.paths(), level);
+  if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
+  work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
+           is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
+            radio.filter(), kNoFacets, is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
+  const DirectKernels& kernels = direct_kernels(work_.stride);
+  for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
+    const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
+    count = 1;
+    while (count < kSlots && first + count < sorted_.size() && sorted_[first + count]->hit->mesh_id == mesh_id) ++count;
+    const Points points(sorted_.data() + first, count);
+    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
+      set_mesh(mesh_id, localise);
+      work_.facet_area = localise.facet_area(mesh_id);
+      see_antennas(mesh_id, localise, level);
+      if (is_polarized) see_axes(mesh_id, localise, level);
+    }
+    set_slots(points, localise, radio);
+    kernels.prepare(trace_, slots_);
+    work_.has_coherent &= wanted.with_amplitudes;
+    kernels.evaluate(work_);
+    const double* values = out_.data();
+    for (const ChannelNodes& to : channels.nodes) {
+      put(points, to, values);
+      values += num_nodes * kOfNode;
+    }
+    if (wanted.turned) mark_turned(points, wanted.turned);
+  }
+}
+
+void DirectEvaluation::sort_by_mesh(const ChainPlan& plan) {
+  first_of_mesh_.clear();
+  for (const ChainPlan::Direct& direct : plan.direct) {
+    const size_t mesh = direct.hit->mesh_id;
+    if (mesh + 2 > first_of_mesh_.size()) first_of_mesh_.resize(mesh + 2);
+    ++first_of_mesh_[mesh + 1];
+  }
+  for (size_t mesh = 1; mesh < first_of_mesh_.size(); ++mesh) first_of_mesh_[mesh] += first_of_mesh_[mesh - 1];
+  sorted_.resize(plan.direct.size());
+  for (const ChainPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
+}
+
+void DirectEvaluation::set_antennas(const LevelView& level) {
+  for (const bool of_receivers : {false, true}) {
+    const std::vector<PosedAntenna>& posed = antennas_of(level.instants.front(), of_receivers);
+    seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, level.instants.size());
+    antennas_[of_receivers].clear();
+    for (const PosedAntenna& one : posed) {
+      const size_t antenna = antennas_[of_receivers].size();
+      const double *rows = seen_[of_receivers].row(antenna, 0), *own = level.poses.polarizations[of_receivers].row(antenna, 0);
+      antennas_[of_receivers].push_back({rows, own, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
+    }
+  }
+}
+
+bool DirectEvaluation::is_monostatic(const LevelView& level) const {
+  if (antennas_[0].size() != antennas_[1].size()) return false;
+  const NodeRows &transmitters = level.poses.antennas[0], &receivers = level.poses.antennas[1];
+  for (size_t i = 0; i < antennas_[0].size(); ++i) {
+    if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak) return false;
+    const double* rows = transmitters.row(i, 0);
+    if (!std::equal(rows, rows + LegToMeasure::kNumImageRows * transmitters.stride(), receivers.row(i, 0))) return false;
+    const NodeRows* own = level.poses.polarizations;
+    const size_t count = ComponentsToFind::kNumPolarizationRows * own[0].stride();
+    if (!std::equal(own[0].row(i, 0), own[0].row(i, 0) + count, own[1].row(i, 0))) return false;
+  }
+  return true;
+}
+
+// From what stands still they look as they are, whatever its scale does to the digits of its matrix.
+void DirectEvaluation::see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
+  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
+  for (const bool of_receivers : {false, true}) {
+    NodeRows& seen = seen_[of_receivers];
+    for (size_t antenna = 0; antenna < antennas_[of_receivers].size(); ++antenna) {
+      const double* const in_world = level.poses.antennas[of_receivers].row(antenna, 0);
+      double* const out = seen.row(antenna, 0);
+      if (is_still) std::copy_n(in_world, LegToMeasure::kNumImageRows * seen.stride(), out);
+      else direct_kernels(seen.stride()).see(trace_, {level.poses.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
+    }
+  }
+}
+
+// The rotation of the mesh since the trace undone, as in `see_antennas`.
+void DirectEvaluation::see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
+  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
+  for (size_t node = 0; node < axes_.num_nodes(); ++node) {
+    Mat3 world_from_seen = Mat3::Identity();
+    if (!is_still) world_from_seen = level.instants[node].rotation(mesh_id) * localise.mesh_from_trace(mesh_id);
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
+      store(world_from_seen.row(axis), axes_, 0, row, node);
+    }
+  }
+  pad(axes_, 0, ComponentsToFind::kNumAxisRows);
+}
+
+void DirectEvaluation::set_mesh(uint32_t mesh_id, const Localiser& localise) {
+  const Instant& trace = localise.trace_instant();
+  copy_matrix(trace.rotation(mesh_id), trace_.linear);
+  copy_matrix(trace.normal_matrix(mesh_id), trace_.normal);
+  copy_matrix(localise.mesh_from_trace(mesh_id), trace_.mesh_from_trace);
+  std::copy_n(trace.translation(mesh_id).data(), 3, trace_.translation);
+}
+
+// Slots behind the last are filled with the last.
+void DirectEvaluation::set_slots(Points points, const Localiser& localise, const RadioConstants& radio) {
+  const Paths& paths = localise.paths();
+  const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
+  work_.has_coherent = false;
+  for (size_t slot = 0; slot < kSlots; ++slot) {
+    const ChainPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
+    set_triangle(*direct.hit, mesh, slot, slots_);
+    set_weights(direct, slot, paths, radio);
+    const int64_t coherent = direct.path[DirectSlots::kCoherent];
+    const bool is_coherent = coherent != ChainPlan::Direct::kNoPath;
+    work_.has_coherent |= is_coherent;
+    slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
+  }
+}
+
+// Polarised paths between upright antennas have no more to them than one entry of their matrix.
+void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
+  const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
+  for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+    const bool is_there = point.path[kind] != ChainPlan::Direct::kNoPath;
+    const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
+    const std::complex<double> weight = is_there ? scale[kind] * std::complex<double>(paths.weight[path]) : 0.0;
+    const auto set = [&](DirectSlots::Row* rows, std::complex<double> value) {
+      rows[0][slot] = value.real();
+      rows[1][slot] = value.imag();
+    };
+    if (paths.jones.empty()) {
+      set(slots_.weight[kind], weight);
+    } else if (!work_.axes) {
+      set(slots_.weight[kind], weight * std::complex<double>(paths.jones[path][3]));
+    } else {
+      for (size_t entry = 0; entry < 4; ++entry) {
+        set(slots_.matrix[kind][entry], weight * std::complex<double>(paths.jones[path][entry]));
+      }
+    }
+  }
+}
+
+namespace {
+
+std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot) {
+  const double* from = values + (DirectToEvaluate::kRe + 2 * kind) * kSlots + slot;
+  return {from[0], from[kSlots]};
+}
+
+bool has_path(const ChainPlan::Direct& point, size_t kind) { return point.path[kind] != ChainPlan::Direct::kNoPath; }
+
+// Nodes of eight points, each with two paths, that follow each other.
+struct PairNodes {
+  const double* values;  // [node, DirectToEvaluate::Row, slot]
+  size_t count, stride;
+  double scale;
+  double *length, *amplitude;  // of the first path at the first node
+};
+
+// Values of pairs side by side.
+ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
+  const double* from = nodes->values;
+  double* length = nodes->length;
+  double* amplitude = nodes->amplitude;
+  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+    for (size_t slot = 0; slot < kSlots; ++slot) {
+      length[2 * slot] = length[2 * slot + 1] = nodes->scale * from[slot];
+      for (size_t row = 0; row < 4; ++row) amplitude[4 * slot + row] = from[(DirectToEvaluate::kRe + row) * kSlots + slot];
+    }
+  }
+}
+
+// Sums of pairs are added to their echoes.
+ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
+  const double* from = nodes->values;
+  double* length = nodes->length;
+  double* amplitude = nodes->amplitude;
+  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+    for (size_t slot = 0; slot < kSlots; ++slot) {
+      length[slot] = nodes->scale * from[slot];
+      for (size_t part = 0; part < 2; ++part) {
+        const double* kinds = from + (DirectToEvaluate::kRe + part) * kSlots + slot;
+        amplitude[2 * slot + part] += kinds[0] + kinds[2 * kSlots];
+      }
+    }
+  }
+}
+
+// All points have both paths, whose echoes follow each other at these steps: from kind to kind, from point to point.
+bool are_neighbours(std::span<const ChainPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
+  if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
+  const size_t first = to.echo(points[0]->place[0]);
+  for (size_t slot = 0; slot < kSlots; ++slot) {
+    const ChainPlan::Direct& point = *points[slot];
+    if (!has_path(point, 0) || !has_path(point, 1)) return false;
+    if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds) return false;
+  }
+  return true;
+}
+
+PairNodes pair_nodes(const ChainPlan::Direct& first, const ChannelNodes& to, const double* values, size_t num_nodes) {
+  const size_t echo = to.echo(first.place[0]);
+  return {values, num_nodes, to.stride, to.scale, to.length + echo, reinterpret_cast<double*>(to.amplitude + echo)};
+}
+
+// Both its paths go to one echo, or there is only one.
+bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
+  return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
+}
+
+}  // namespace
+
+void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
+  if (to.echo_of) return put_joined(points, to, values);
+  if (are_neighbours(points, to, 1, 2)) {
+    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
+    return run_simd<put_pairs>(&nodes);
+  }
+  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
+    for (size_t slot = 0; slot < points.size(); ++slot) {
+      for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+        if (has_path(*points[slot], kind)) to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
+      }
+    }
+  }
+}
+
+// A path that is not there has amplitude 0.
+void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
+  if (are_neighbours(points, to, 0, 1)) {
+    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
+    return run_simd<add_pairs>(&nodes);
+  }
+  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
+    for (size_t slot = 0; slot < points.size(); ++slot) {
+      const ChainPlan::Direct& point = *points[slot];
+      const std::complex<double> coherent = amplitude_at(values, 0, slot), diffuse = amplitude_at(values, 1, slot);
+      if (is_one_echo(point, to)) {
+        to.set(node, point.place[has_path(point, 0) ? 0 : 1], values[slot], coherent + diffuse);
+      } else {
+        to.set(node, point.place[0], values[slot], coherent);
+        to.set(node, point.place[1], values[slot], diffuse);
+      }
+    }
+  }
+}
+
+void DirectEvaluation::mark_turned(Points points, uint8_t* turned) const {
+  for (size_t slot = 0; slot < points.size(); ++slot) {
+    for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+      if (has_path(*points[slot], kind)) turned[points[slot]->place[kind]] = work_.turned[slot] != 0.0;
+    }
+  }
+}
+
+}  // namespace echopath

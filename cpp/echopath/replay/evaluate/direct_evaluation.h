@@ -1,0 +1,51 @@
+#pragma once
+// Paths of one point each at all nodes, eight points of a mesh at a time: they share nothing but the antennas as seen from there.
+#include <vector>
+
+#include "echopath/replay/kernels/direct_kernels.h"
+#include "echopath/replay/evaluate/evaluate_chains.h"
+
+namespace echopath {
+
+// Keeps its memory from block to block; for one thread at a time.
+class DirectEvaluation {
+ public:
+  struct Wanted {
+    uint8_t* turned = nullptr;    // [P] or null, see ChainEvaluation::mark_turned
+    bool with_amplitudes = true;  // else they are of no interest
+  };
+  // Writes the direct paths of the plan, for antennas that can_evaluate_directly.
+  void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+                  const ChannelSpan& channels, const Wanted& wanted);
+  size_t num_bytes() const { return (out_.capacity() + legs_.capacity()) * sizeof(double); }  // of its memory, nearly all
+
+ private:
+  using Points = std::span<const ChainPlan::Direct* const>;
+  void sort_by_mesh(const ChainPlan& plan);
+  void set_antennas(const LevelView& level);
+  bool is_monostatic(const LevelView& level) const;
+  void see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
+  void see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
+  void set_mesh(uint32_t mesh_id, const Localiser& localise);
+  void set_slots(Points points, const Localiser& localise, const RadioConstants& radio);
+  void set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
+  void put(Points points, const ChannelNodes& to, const double* values) const;
+  void put_joined(Points points, const ChannelNodes& to, const double* values) const;
+  void mark_turned(Points points, uint8_t* turned) const;
+
+  std::vector<const ChainPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
+  std::vector<size_t> first_of_mesh_;
+  std::vector<DirectAntenna> antennas_[2];        // of transmitters, of receivers
+  NodeRows seen_[2];                              // [antenna] of these, as they are seen from the mesh in hand
+  NodeRows axes_;                                 // of the world, likewise, where polarisations ask for them
+  DirectTrace trace_;
+  DirectSlots slots_;
+  DirectToEvaluate work_;
+  std::vector<double> legs_, out_;
+  double turned_[DirectSlots::kSlots];
+};
+
+// Antennas whose gains are whole powers of cosines.
+bool can_evaluate_directly(const Radar& radar);
+
+}  // namespace echopath

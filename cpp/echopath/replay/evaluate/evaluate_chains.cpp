@@ -1,0 +1,239 @@
+#include "echopath/replay/evaluate/evaluate_chains.h"
+
+#include <algorithm>
+#include <cmath>
+
+
+namespace echopath {
+
+void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+                                 const ChannelSpan& channels) {
+  if (plan.chains.empty() && plan.mirror_paths.empty()) return;
+  num_receivers_ = level.instants.front().receivers.size();
+  paths_ = &localise.paths();
+  tables_.find(plan, localise, level);
+  values_.resize(kTogether, PathToCombine::kNumRows, level.instants.size());
+  kernels_ = &chain_kernels(values_.stride());
+  const TraceCells cells(plan, localise, tables_.points);
+  const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
+  for (CoherentPath& path : coherent_) path.filter = radio.filter();
+  for (size_t first = 0; first < plan.chains.size(); first += kTogether) {
+    const Chains chains(plan.chains.data() + first, std::min(kTogether, plan.chains.size() - first));
+    for (size_t slot = 0; slot < chains.size(); ++slot) {
+      if (chains[slot].is_coherent) place_cell(plan, chains[slot], cells, level, slot);
+    }
+    for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+      for (size_t slot = 0; slot < chains.size(); ++slot) {
+        const ChainPlan::Chain& chain = chains[slot];
+        const Ends ends = ends_of(chain, channels.first + channel);
+        if (chain.is_coherent) evaluate_coherent(plan, chain, ends, of_coherent, slot);
+        else evaluate_diffuse(chain, ends, of_diffuse, slot);
+        if (tables_.has_polarizations) polarize(chain, ends, slot);
+        if (tables_.has_phase) turn_phase(chain, ends, slot);
+      }
+      put(chains, channels.nodes[channel]);
+    }
+  }
+  for (const ChainPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, level, channels, radio.mirror_scale());
+}
+
+ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, size_t channel) const {
+  const size_t transmitter = channel / num_receivers_, receiver = channel % num_receivers_;
+  return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
+}
+
+// Between upright antennas one entry of a matrix is all that counts.
+ComplexOf<double> ChainEvaluation::scaled_weight(const ChainPlan::Chain& chain, double scale) const {
+  std::complex<double> weight = scale * chain.weight;
+  if (!paths_->jones.empty() && !tables_.has_polarizations) {
+    weight *= std::complex<double>(paths_->jones[static_cast<size_t>(chain.path)][3]);
+  }
+  return {weight.real(), weight.imag()};
+}
+
+const double* ChainEvaluation::start_leg_of(const ChainPlan::Chain& chain, size_t antenna) const {
+  if (chain.slide != ChainPlan::kNone) return tables_.sliding.legs.row(chain.slide * tables_.sliding.stride + antenna, 0);
+  return tables_.legs.rows.row(chain.start * tables_.legs.stride + antenna, 0);
+}
+
+const double* ChainEvaluation::end_leg_of(const ChainPlan::Chain& chain, size_t antenna) const {
+  return tables_.legs.rows.row(chain.end * tables_.legs.stride + antenna, 0);
+}
+
+// antenna: at the start; null where there is one material point.
+const double* ChainEvaluation::inner_of(const ChainPlan::Chain& chain, size_t antenna) const {
+  if (chain.slide != ChainPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.sliding.stride + antenna, 0);
+  return chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
+}
+
+PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+  return {start_leg_of(chain, ends.start), end_leg_of(chain, ends.end), inner_of(chain, ends.start),
+          scaled_weight(chain, scale), values_.row(slot, 0)};
+}
+
+const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const {
+  const AntennaImages& images = tables_.images[plan.legs[leg].of_receivers];
+  return images.rows.row(images.entry(plan.legs[leg].image, antenna), 0);
+}
+
+namespace {
+
+void set_cell(const PlacedCell& cell, CoherentPath& path) {
+  path.cell = cell.shape;
+  path.root_area = cell.root_area;
+  for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
+}
+
+// A mesh in whose frame the tangents of stretching cells are.
+void resize_world(size_t num_nodes, NodeRows& world) {
+  world.resize(1, PointToPose::kNumMeshRows, num_nodes);
+  for (size_t row = 0; row < PointToPose::kNumMeshRows; ++row) {
+    const bool is_diagonal = row < PointToPose::kTranslation && row % 4 == 0;
+    std::fill_n(world.row(0, row), world.stride(), is_diagonal ? 1.0 : 0.0);
+  }
+}
+
+}  // namespace
+
+void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells,
+                                 const LevelView& level, size_t slot) {
+  const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
+  CoherentPath& path = coherent_[slot];
+  path.point = tables_.points.rows.row(point, 0);
+  stretching_[slot].clear();
+  if (cells.may_stretch(mesh_id)) {
+    resize_world(level.instants.size(), world_);
+    path.mesh = world_.row(0, 0);
+    stretching_[slot] = cells.on_stretching(chain, level.instants);
+  } else {
+    path.mesh = level.poses.meshes.row(mesh_id, 0);
+    set_cell(cells.on_rigid(chain), path);
+  }
+}
+
+void ChainEvaluation::evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale,
+                                        size_t slot) {
+  CoherentPath& path = coherent_[slot];
+  path.path = path_of(chain, ends, scale, slot);
+  path.start_image = image_of(plan, chain.start, ends.start);
+  path.end_image = image_of(plan, chain.end, ends.end);
+  if (stretching_[slot].empty()) kernels_->reflect(path, 0, values_.stride(), values_.stride());
+  else reflect_from_stretching(slot);
+}
+
+// Cells differ from node to node, and so does the area that the ray stands for.
+void ChainEvaluation::reflect_from_stretching(size_t slot) {
+  CoherentPath path = coherent_[slot];
+  const ComplexOf<double> weight = path.path.weight;
+  for (size_t node = 0; node < values_.num_nodes(); ++node) {
+    set_cell(stretching_[slot][node], path);
+    const double area_ratio = path.point[PointToPose::kAreaRatio * values_.stride() + node];
+    path.path.weight = {area_ratio * weight.re, area_ratio * weight.im};
+    chain_kernels_of_one().reflect(path, node, node + 1, values_.stride());
+  }
+}
+
+void ChainEvaluation::evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+  const bool has_inner = chain.inner != ChainPlan::kNone;
+  const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
+  const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
+  kernels_->combine({path_of(chain, ends, scale, slot), begins_specular, is_single}, values_.stride());
+}
+
+void ChainEvaluation::polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot) {
+  const size_t stride = tables_.legs.stride;
+  const LegPolarizations& across = tables_.polarizations;
+  const double* start = chain.slide == ChainPlan::kNone ? across.rows.row(chain.start * stride + ends.start, 0)
+                                                        : across.sliding_rows.row(chain.slide * stride + ends.start, 0);
+  polarize(chain.path, start, across.rows.row(chain.end * stride + ends.end, 0), slot);
+}
+
+// start, end: ComponentsToFind::Row
+void ChainEvaluation::polarize(int64_t path, const double* start, const double* end, size_t slot) {
+  PathToPolarize work{start, end, {}, {}, values_.row(slot, 0)};
+  const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(path)];
+  for (size_t entry = 0; entry < matrix.size(); ++entry) {
+    work.re[entry] = matrix[entry].real();
+    work.im[entry] = matrix[entry].imag();
+  }
+  kernels_->polarize(work, values_.stride());
+}
+
+void ChainEvaluation::turn_phase(const ChainPlan::Chain& chain, const Ends& ends, size_t slot) {
+  const size_t stride = tables_.legs.stride;
+  const double* start = chain.slide == ChainPlan::kNone ? tables_.legs.phases.row(chain.start * stride + ends.start, 0)
+                                                        : tables_.sliding.phases.row(chain.slide * stride + ends.start, 0);
+  turn_phase(start, tables_.legs.phases.row(chain.end * stride + ends.end, 0), slot);
+}
+
+// By the phases of both antennas at the nodes, rad.
+void ChainEvaluation::turn_phase(const double* start, const double* end, size_t slot) {
+  double *re = values_.row(slot, PathToCombine::kRe), *im = values_.row(slot, PathToCombine::kIm);
+  for (size_t node = 0; node < values_.num_nodes(); ++node) {
+    const std::complex<double> turned = std::complex(re[node], im[node]) * std::polar(1.0, start[node] + end[node]);
+    re[node] = turned.real();
+    im[node] = turned.imag();
+  }
+}
+
+// Each end sees the other over the mirrors: a leg from the transmitter's image to the receiver, and one back.
+void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels,
+                                       double scale) {
+  constexpr size_t kSlot = 0;
+  mirror_legs_.resize(2, LegToMeasure::kNumRows, level.instants.size());
+  mirror_components_.resize(2, ComponentsToFind::kNumRows, level.instants.size());
+  mirror_phases_.resize(2, 1, level.instants.size());
+  double* const legs[] = {mirror_legs_.row(0, 0), mirror_legs_.row(1, 0)};
+  double* const phases[] = {mirror_phases_.row(0, 0), mirror_phases_.row(1, 0)};
+  double* const components[] = {mirror_components_.row(0, 0), mirror_components_.row(1, 0)};
+  const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
+  const bool is_polarized = !paths_->jones.empty();  // between upright antennas too: straight up or down these send nothing
+  for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+    const size_t of_all = channels.first + channel, antennas[] = {of_all / num_receivers_, of_all % num_receivers_};
+    const uint32_t seen[] = {path.image, 0};  // which image of each end
+    for (const int end : {0, 1}) {
+      const AntennaImages &own = tables_.images[end], &other = tables_.images[1 - end];
+      // An antenna stands in the rows of an image where a point stands in its own.
+      const double* point = other.rows.row(other.entry(seen[1 - end], antennas[1 - end]), 0);
+      own.measure(own.entry(seen[end], antennas[end]), point, legs[end], phases[end]);
+      if (is_polarized) {
+        tables_.polarizations.across(own, {seen[end], antennas[end]}, level, point, components[end]);
+      }
+    }
+    kernels_->connect({legs[0], legs[1], nullptr, weight, values_.row(kSlot, 0)}, values_.stride());
+    if (is_polarized) polarize(path.path, components[0], components[1], kSlot);
+    if (tables_.has_phase) turn_phase(phases[0], phases[1], kSlot);
+    put_one(path.place, kSlot, channels.nodes[channel]);
+  }
+}
+
+bool ChainEvaluation::turns(uint32_t leg) const {
+  const double* factor = tables_.legs.rows.row(leg * tables_.legs.stride, LegToMeasure::kFactor);
+  return std::signbit(factor[0]) != std::signbit(factor[values_.num_nodes() - 1]);
+}
+
+void ChainEvaluation::mark_turned(const ChainPlan& plan, uint8_t* turned) const {
+  for (const ChainPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
+}
+
+// The values of some paths to their places, node by node: neighbours share the lines of the cache.
+void ChainEvaluation::put(Chains chains, const ChannelNodes& to) const {
+  const double* const values = values_.row(0, 0);
+  const size_t stride = values_.stride(), of_slot = PathToCombine::kNumRows * stride;
+  for (size_t node = 0; node < values_.num_nodes(); ++node) {
+    const double* value = values + node;
+    for (const ChainPlan::Chain& chain : chains) {
+      to.set(node, chain.place, value[PathToCombine::kLength * stride],
+             {value[PathToCombine::kRe * stride], value[PathToCombine::kIm * stride]});
+      value += of_slot;
+    }
+  }
+}
+
+void ChainEvaluation::put_one(size_t place, size_t slot, const ChannelNodes& to) const {
+  const double *length = values_.row(slot, PathToCombine::kLength), *re = values_.row(slot, PathToCombine::kRe);
+  const double* im = values_.row(slot, PathToCombine::kIm);
+  for (size_t node = 0; node < values_.num_nodes(); ++node) to.set(node, place, length[node], {re[node], im[node]});
+}
+
+}  // namespace echopath

@@ -1,0 +1,83 @@
+#pragma once
+// Paths of a block at all nodes, from the legs that they share: a path costs a sum of lengths, a product of factors and, where it is
+// coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
+#include <array>
+
+#include "echopath/replay/evaluate/chain_tables.h"
+#include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/evaluate/trace_cells.h"
+
+namespace echopath {
+
+// Where the values of one channel go, a row of echoes for each node: lengths (m) times `scale`, amplitudes in sqrt(W).
+struct ChannelNodes {
+  double* length;
+  std::complex<double>* amplitude;
+  size_t stride;      // between nodes
+  size_t first_path;  // places count from there
+  double scale;
+  const uint32_t* echo_of = nullptr;  // [path] to which it is added, amplitudes are 0 before; null: each has its own
+
+  size_t echo(size_t place) const { return echo_of ? echo_of[first_path + place] : first_path + place; }
+  void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
+    const size_t at = node * stride + echo(place);
+    length[at] = scale * length_there;
+    amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
+  }
+};
+
+// Some channels [tx * num_rx + rx] for the antennas of the instants: one after the other from `first` on.
+struct ChannelSpan {
+  size_t first;
+  std::span<const ChannelNodes> nodes;
+};
+
+// Keeps its memory from block to block; for one thread at a time.
+class ChainEvaluation {
+ public:
+  // Writes the chains and mirror paths of the plan.
+  void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+                  const ChannelSpan& channels);
+  // Of the plan and level of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
+  // the first antenna there between the first and the last node. Its amplitude has a root on the way.
+  void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
+  size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
+
+ private:
+  static constexpr size_t kTogether = 8;  // paths whose values are written side by side: a line of the cache for each node
+  using Chains = std::span<const ChainPlan::Chain>;
+  struct Ends {
+    size_t start, end;  // antennas of both
+  };
+  Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
+  PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  const double* start_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  const double* end_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  const double* inner_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
+  void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const LevelView& level, size_t slot);
+  void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void reflect_from_stretching(size_t slot);
+  void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void put(Chains chains, const ChannelNodes& to) const;
+  void put_one(size_t place, size_t slot, const ChannelNodes& to) const;
+  ComplexOf<double> scaled_weight(const ChainPlan::Chain& chain, double scale) const;
+  void polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
+  void polarize(int64_t path, const double* start, const double* end, size_t slot);
+  void turn_phase(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
+  void turn_phase(const double* start, const double* end, size_t slot);
+  void evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels, double scale);
+  bool turns(uint32_t leg) const;
+
+  ChainTables tables_;
+  NodeRows values_;                              // [slot], PathToCombine::Row
+  std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
+  std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
+  NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
+  NodeRows mirror_legs_, mirror_phases_, mirror_components_;  // of one channel: from the transmitter's image, from the receiver
+  size_t num_receivers_ = 0;
+  const ChainKernels* kernels_ = nullptr;
+  const Paths* paths_ = nullptr;
+};
+
+}  // namespace echopath

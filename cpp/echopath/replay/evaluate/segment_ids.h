@@ -1,0 +1,79 @@
+#pragma once
+// Values by runs of neighbouring hits of a record, told apart by their contents.
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+
+class SegmentIds {
+ public:
+  static constexpr uint32_t kNone = ~uint32_t{0};
+
+  // The value of `count` hits (which must stay where they are) under `kind`; kNone where they are new, for the caller to set.
+  // Valid until the next call.
+  uint32_t& operator()(const Hit* hits, int count, uint64_t kind) {
+    if (2 * size_ >= entries_.size()) grow();
+    const uint64_t hash = hash_of(hits, count, kind);
+    size_t slot = hash & (entries_.size() - 1);
+    while (is_taken(entries_[slot]) && !is(entries_[slot], hash, hits, count, kind)) slot = (slot + 1) & (entries_.size() - 1);
+    Entry& entry = entries_[slot];
+    if (!is_taken(entry)) {
+      entry = {hits, hash, kind, kNone, static_cast<uint16_t>(count), turn_};
+      ++size_;
+    }
+    return entry.value;
+  }
+
+  // Forgets all, and keeps the memory.
+  void clear() {
+    size_ = 0;
+    if (++turn_ != 0) return;
+    entries_.assign(entries_.size(), {});
+    turn_ = 1;
+  }
+
+ private:
+  struct Entry {
+    const Hit* hits = nullptr;
+    uint64_t hash = 0, kind = 0;
+    uint32_t value = kNone;
+    uint16_t count = 0, turn = 0;  // of `clear` in which it was taken
+  };
+
+  bool is_taken(const Entry& entry) const { return entry.turn == turn_; }
+  static bool is(const Entry& entry, uint64_t hash, const Hit* hits, int count, uint64_t kind) {
+    return entry.hash == hash && entry.kind == kind && entry.count == count &&
+           (entry.hits == hits || std::memcmp(entry.hits, hits, static_cast<size_t>(count) * sizeof(Hit)) == 0);
+  }
+  // Odd multipliers without a pattern; high bits of a product depend on all bits of its factors, and are brought down.
+  static uint64_t hash_of(const Hit* hits, int count, uint64_t kind) {
+    uint64_t hash = kind * 0xD6E8FEB86659FD93u + static_cast<uint64_t>(count);
+    for (int k = 0; k < count; ++k) {
+      uint64_t words[2];
+      std::memcpy(words, hits + k, sizeof words);
+      hash = ((hash ^ words[0]) * 0x9E3779B97F4A7C15u) ^ (words[1] * 0xC2B2AE3D27D4EB4Fu);
+      hash ^= hash >> 29;
+    }
+    hash *= 0x9E3779B97F4A7C15u;
+    return hash ^ hash >> 32;
+  }
+  void grow() {
+    std::vector<Entry> old(entries_.empty() ? 256 : 2 * entries_.size());
+    old.swap(entries_);
+    for (const Entry& entry : old) {
+      if (!is_taken(entry)) continue;
+      size_t slot = entry.hash & (entries_.size() - 1);
+      while (is_taken(entries_[slot])) slot = (slot + 1) & (entries_.size() - 1);
+      entries_[slot] = entry;
+    }
+  }
+
+  std::vector<Entry> entries_;  // power of two, at most half full
+  size_t size_ = 0;
+  uint16_t turn_ = 1;
+};
+
+}  // namespace echopath

@@ -1,0 +1,115 @@
+#include "echopath/replay/evaluate/trace_cells.h"
+
+#include <cmath>
+
+#include "echopath/base/plane.h"
+#include "echopath/replay/evaluate/inner_part.h"
+#include "echopath/scene/smooth.h"
+
+namespace echopath {
+
+TraceCells::TraceCells(const ChainPlan& plan, const Localiser& localise, const PosedPoints& points)
+    : plan_(plan), localise_(localise), points_(points), origin_{Vec3::Zero()} {
+  std::deque<std::array<Vec3, 3>> normals;
+  for (size_t image = 1; image < plan.images.size(); ++image) {
+    PosedHit mirror;
+    pose_hit(localise.hit(plan.mirrors[plan.images[image].mirror], normals), localise.trace_instant(), false, mirror);
+    origin_.push_back(Plane{mirror.point, mirror.normal}.image(origin_[plan.images[image].parent]));
+  }
+}
+
+double TraceCells::density_of(const ChainPlan::Chain& chain) const {
+  const Paths& paths = localise_.paths();
+  return paths.frame.lattice_density(paths.stratum[static_cast<size_t>(chain.path)]);
+}
+
+const std::array<float, 7>* TraceCells::curved_cell_of(const ChainPlan::Chain& chain) const {
+  const Paths& paths = localise_.paths();
+  const auto p = static_cast<size_t>(chain.path);
+  const bool is_flat = paths.curved_cell.empty() || paths.curved_cell[p] == std::array<float, 7>{};
+  return is_flat ? nullptr : &paths.curved_cell[p];
+}
+
+bool TraceCells::has_cell(const ChainPlan::Chain& chain) const {
+  const Paths& paths = localise_.paths();
+  if (paths.stratum[static_cast<size_t>(chain.path)] >= paths.frame.strata.size()) return false;
+  return curved_cell_of(chain) || paths.frame.footprint != Footprint::kNone;
+}
+
+TraceCells::Arrival TraceCells::arrival_of(const ChainPlan::Chain& chain) const {
+  const ChainPlan::Leg& start = plan_.legs[chain.start];
+  const Vec3 line = points_.traced[start.point].position - origin_[start.image];
+  const double length = line.norm();
+  if (chain.inner == ChainPlan::kNone) return {length, line / length};
+  const ChainPlan::Inner& inner = plan_.inner[chain.inner];
+  std::array<PosedHit, 64> hits;  // a path has no more
+  for (size_t k = inner.begin; k < inner.end; ++k) hits[k - inner.begin] = points_.at_trace(plan_.inner_points[k]);
+  const InnerPart part = inner_part(path_of(inner), hits.data());
+  return {length + part.length, part.last_arrival};
+}
+
+// Of the cell of the path's own stratum, on the plane of the surface.
+CellTangents TraceCells::flat_tangents(const ChainPlan::Chain& chain, const PosedHit& hit, double density) const {
+  const Arrival arrival = arrival_of(chain);
+  const double cos_in = hit.normal.dot(arrival.direction), side = arrival.length / std::sqrt(density);  // of the tube, m
+  Vec3 along = arrival.direction - cos_in * hit.normal;
+  const double sine = along.norm();
+  along = sine > 1e-9 ? Vec3(along / sine) : hit.normal.unitOrthogonal();
+  return {along * (side / std::max(std::abs(cos_in), 1e-3)), hit.normal.cross(along) * side};
+}
+
+PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
+  PlacedCell out;
+  if (!has_cell(chain)) return out;
+  const double density = density_of(chain);
+  PosedHit hit = points_.at_trace(plan_.legs[chain.end].point);
+  CellTangents tangents;
+  LaunchCell cell;
+  if (const std::array<float, 7>* curved = curved_cell_of(chain)) {
+    cell = recorded_cell(*curved);
+    PosedHit with_edges;
+    pose_facet(localise_.hit(hit_of(chain)), localise_.trace_instant(), with_edges);
+    hit.edge_u = with_edges.edge_u;
+    hit.edge_v = with_edges.edge_v;
+    tangents = cell_tangents(cell, hit);
+    out.root_area = root_area(tangents, hit, density);
+  } else {
+    tangents = flat_tangents(chain, hit, density);
+    cell.is_known = tangents[0].allFinite() && tangents[1].allFinite();
+  }
+  const uint32_t mesh_id = hit_of(chain).mesh_id;
+  cell.facet_area = localise_.facet_area(mesh_id);
+  out.shape = cell_shape(cell, hit, tangents);
+  for (size_t a = 0; a < 2; ++a) out.tangent[a] = localise_.mesh_from_trace(mesh_id) * tangents[a];
+  return out;
+}
+
+// Tangents stretch with their triangle.
+std::vector<PlacedCell> TraceCells::on_stretching(const ChainPlan::Chain& chain, std::span<const Instant> instants) const {
+  std::vector<PlacedCell> out(instants.size());
+  if (!has_cell(chain)) return out;
+  const double density = density_of(chain);
+  std::deque<std::array<Vec3, 3>> normals;
+  const LocalHit local = localise_.hit(hit_of(chain), normals);
+  PosedHit hit;
+  LaunchCell cell;
+  if (const std::array<float, 7>* curved = curved_cell_of(chain)) {
+    cell = recorded_cell(*curved);
+  } else {
+    pose_hit(local, localise_.trace_instant(), true, hit);
+    const CellTangents tangents = flat_tangents(chain, hit, density);
+    for (size_t a = 0; a < 2; ++a) cell.tangent[a] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, tangents[a]);
+    cell.is_known = cell.tangent[0].allFinite() && cell.tangent[1].allFinite();
+  }
+  cell.facet_area = localise_.facet_area(local.mesh_id);
+  for (size_t node = 0; node < instants.size(); ++node) {
+    pose_hit(local, instants[node], true, hit);
+    const CellTangents tangents = cell_tangents(cell, hit);
+    out[node].shape = cell_shape(cell, hit, tangents);
+    for (size_t a = 0; a < 2; ++a) out[node].tangent[a] = tangents[a];
+    if (cell.is_curved) out[node].root_area = root_area(tangents, hit, density);
+  }
+  return out;
+}
+
+}  // namespace echopath

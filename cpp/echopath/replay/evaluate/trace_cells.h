@@ -1,0 +1,44 @@
+#pragma once
+// Launch cells of the coherent paths of a block, found by what these paths share.
+#include "echopath/replay/evaluate/chain_tables.h"
+#include "echopath/replay/evaluate/launch_cell.h"
+
+namespace echopath {
+
+// A launch cell where it lies.
+struct PlacedCell {
+  CellShape shape;
+  Vec3 tangent[2];         // T_a, m: in the mesh's frame where the mesh is rigid, else in the world
+  double root_area = 0.0;  // of curved cells: sqrt(|T_1 x T_2| density), m sr^-1/2
+};
+
+class TraceCells {
+ public:
+  // All must outlive it.
+  TraceCells(const ChainPlan& plan, const Localiser& localise, const PosedPoints& points);
+  bool may_stretch(uint32_t mesh_id) const { return localise_.may_stretch(mesh_id); }
+  // On a mesh that moves rigidly: the same at all times.
+  PlacedCell on_rigid(const ChainPlan::Chain& chain) const;
+  // On a mesh that may stretch, at each of the instants.
+  std::vector<PlacedCell> on_stretching(const ChainPlan::Chain& chain, std::span<const Instant> instants) const;
+
+ private:
+  struct Arrival {
+    double length;    // m, unfolded, from the mean transmitter
+    Vec3 direction;   // of travel, unit
+  };
+  Arrival arrival_of(const ChainPlan::Chain& chain) const;
+  CellTangents flat_tangents(const ChainPlan::Chain& chain, const PosedHit& hit, double density) const;
+  const Hit& hit_of(const ChainPlan::Chain& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
+  bool has_cell(const ChainPlan::Chain& chain) const;
+  double density_of(const ChainPlan::Chain& chain) const;  // rays per sr
+  // As recorded behind a curved bounce; null where chains are flat.
+  const std::array<float, 7>* curved_cell_of(const ChainPlan::Chain& chain) const;
+
+  const ChainPlan& plan_;
+  const Localiser& localise_;
+  const PosedPoints& points_;
+  std::vector<Vec3> origin_;  // [image] of the mean transmitter at the trace, m
+};
+
+}  // namespace echopath

@@ -1,0 +1,98 @@
+#pragma once
+// The inner loops of replay along nodes, compiled once per instruction set from chain_kernels_body.h. The headers that this one
+// includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
+//
+// Pointers to constant or written doubles are the first of several rows of `stride` nodes each (node_rows.h).
+#include <cstddef>
+
+#include "echopath/base/scalar_math.h"
+#include "echopath/replay/kernels/cell_formula.h"
+
+namespace echopath {
+
+// A point and its normal that move with a mesh.
+struct PointToPose {
+  enum MeshRow { kLinear, kTranslation = 9, kNumMeshRows = 12 };  // world from mesh: matrix row by row; m
+  enum Row { kPosition, kNormal = 3, kAreaRatio = 6, kNumRows };
+  const double* mesh;
+  double position[3], normal[3];  // in the mesh's frame: m; unit behind the matrix
+  double* out;                    // area ratio 1
+};
+
+// From the image of an antenna to a point.
+struct LegToMeasure {
+  enum ImageRow { kImagePosition, kBoresight = 3, kNumImageRows = 6 };  // m; unit
+  // Length in m, diffuse_leg (path_formula.h), root of the gain.
+  enum Row { kLength, kFactor, kGain, kNumRows };
+  static constexpr int kNoExponent = -1;
+  const double *image, *point;
+  // gain = root_peak^2 cos^exponent in front of the antenna; kNoExponent: cosines of the boresight and of the point stand in
+  // the places of gain and factor.
+  int exponent;
+  double root_peak;
+  double* out;
+};
+
+// Between the first and the last material point (DiffuseInner, InnerPart::last_arrival).
+struct InnerRows {
+  enum Row { kLength, kToFirst, kRootCosFirst, kFactor, kFirstSign, kLastSign, kArrival, kNumRows = 9 };
+};
+
+// Two legs and what lies between.
+struct PathToCombine {
+  enum Row { kLength, kRe, kIm, kNumRows };  // m, sqrt(W)
+  const double *start, *end;
+  const double* inner;            // null: one material point
+  ComplexOf<double> weight;       // with all that does not change
+  double* out;
+};
+
+struct DiffusePath {
+  PathToCombine path;
+  bool begins_specular, is_single;  // of `inner`
+};
+
+// Physical optics at the last material point.
+struct CoherentPath {
+  PathToCombine path;
+  const double *start_image, *end_image, *point;
+  const double* mesh;               // in whose frame the tangents are
+  double tangent[2][3];             // T_a, m
+  CellShape cell;
+  CellFilter filter;
+  double root_area;                 // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
+};
+
+// The polarisation of an antenna across a leg, as it departs: horizontal and vertical components at the antenna. Of what
+// arrives over the same leg the horizontal one is the opposite.
+struct ComponentsToFind {
+  enum AxisRow { kAxes, kNumAxisRows = 9 };          // of the world as they look over the mirrors of the image, one by one; unit
+  enum PolarizationRow { kNumPolarizationRows = 3 };  // of the antenna, in the world
+  enum Row { kHorizontal, kVertical, kNumRows };
+  const double *image, *axes, *polarization, *point;
+  double* out;
+};
+
+// What the polarisations of both ends make of a path that is combined.
+struct PathToPolarize {
+  const double *start, *end;  // ComponentsToFind::Row
+  double re[4], im[4];        // JonesMatrix
+  double* out;                // PathToCombine::Row
+};
+
+struct ChainKernels {
+  void (*pose)(const PointToPose& point, size_t stride);
+  void (*measure)(const LegToMeasure& leg, size_t stride);
+  void (*combine)(const DiffusePath& path, size_t stride);
+  void (*connect)(const PathToCombine& path, size_t stride);  // over flagged mirrors alone
+  void (*reflect)(const CoherentPath& path, size_t begin, size_t end, size_t stride);  // nodes [begin, end)
+  void (*find_components)(const ComponentsToFind& leg, size_t stride);
+  void (*polarize)(const PathToPolarize& path, size_t stride);
+};
+
+// Those of instruction_set() for rows of that many nodes.
+const ChainKernels& chain_kernels(size_t stride);
+// For one node after the other.
+const ChainKernels& chain_kernels_of_one();
+
+}  // namespace echopath

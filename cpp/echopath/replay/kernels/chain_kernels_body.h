@@ -1,0 +1,248 @@
+// The inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
+// ECHOPATH_LANES set (no include guard).
+#include "echopath/base/phasor.h"
+#include "echopath/base/vector_of.h"
+#include "echopath/replay/kernels/chain_kernels.h"
+#include "echopath/replay/kernels/path_formula.h"
+#include "echopath/signal/vector.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+namespace {
+
+constexpr double kMostNegativeExponent = -708.0;  // e^x below is taken as 0
+
+struct LaneMath {
+  using Real = Vec;
+  static constexpr size_t kCount = kLanes;
+  static ECHOPATH_INLINE Vec load(const double* from) { return ECHOPATH_KERNELS::load(from); }
+  static ECHOPATH_INLINE void store(double* to, Vec x) { ECHOPATH_KERNELS::store(to, x); }
+
+  static ECHOPATH_INLINE Vec root(Vec x) {
+#if ECHOPATH_LANES == 8
+    return _mm512_maskz_sqrt_pd(0xFF, x);  // the plain one warns of its own undefined lanes
+#elif ECHOPATH_LANES == 4
+    return _mm256_sqrt_pd(x);
+#else
+    return Vec{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
+#endif
+  }
+  static constexpr int64_t kSignBit = int64_t{-1} ^ int64_t{0x7FFFFFFFFFFFFFFF};
+  static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
+  static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
+  static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
+  static ECHOPATH_INLINE Vec smaller(Vec x, Vec y) { return x < y ? x : y; }
+  static ECHOPATH_INLINE bool any(Mask x) {
+#if ECHOPATH_LANES == 8
+    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(x)) != 0;
+#elif ECHOPATH_LANES == 4
+    return _mm256_movemask_pd(reinterpret_cast<__m256d>(x)) != 0;
+#endif
+    int64_t found = 0;
+    for (int lane = 0; lane < kLanes; ++lane) found |= x[lane];
+    return found != 0;
+  }
+
+  // e^x for x <= 0, relative error 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
+  static ECHOPATH_INLINE Vec exp(Vec x) {
+    constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
+    const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
+    const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
+    // 1/n! for n to 13, in pairs, so that most terms do not wait for others; what is large comes last.
+    const Vec square = rest * rest, fourth = square * square;
+    const Vec high = (rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0) * fourth +
+                     ((rest * (1.0 / 39916800.0) + 1.0 / 3628800.0) * square + (rest * (1.0 / 362880.0) + 1.0 / 40320.0));
+    const Vec middle = (rest * (1.0 / 5040.0) + 1.0 / 720.0) * square + (rest * (1.0 / 120.0) + 1.0 / 24.0);
+    const Vec tail = (high * fourth + middle) * square + (rest * (1.0 / 6.0) + 0.5);
+    const Vec sum = (tail * square + rest) + 1.0;
+    const Vec power = from_bits(bits(sum) + (bits(shifted) << 52));
+    return x < kMostNegativeExponent ? Vec{} : power;
+  }
+
+  static ECHOPATH_INLINE ComplexOf<Vec> cis(Vec x) {
+    constexpr double kPerPi = 0.3183098861837907, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
+    const Vec shifted = x * kPerPi + kRoundingShift, half_turns = shifted - kRoundingShift;
+    const Vec rest = exact_multiply_add(half_turns, all(-kPiHigh), x) - half_turns * kPiLow;
+    const ComplexOf<Vec> phasor = phasor_of_half_turns(rest * kPerPi);
+    const Mask sign = bits(shifted) << 63;
+    return {from_bits(bits(phasor.re) ^ sign), from_bits(bits(phasor.im) ^ sign)};
+  }
+};
+
+// One node.
+struct OneMath : ScalarMath {
+  static constexpr size_t kCount = 1;
+  static ECHOPATH_INLINE double load(const double* from) { return *from; }
+  static ECHOPATH_INLINE void store(double* to, double x) { *to = x; }
+};
+
+// Rows at some neighbouring nodes.
+template <class Math>
+struct At {
+  using Real = typename Math::Real;
+  size_t node, stride;
+
+  ECHOPATH_INLINE Real value(const double* rows, int row) const { return Math::load(rows + static_cast<size_t>(row) * stride + node); }
+  ECHOPATH_INLINE VectorOf<Real> vector(const double* rows, int row) const {
+    return {value(rows, row), value(rows, row + 1), value(rows, row + 2)};
+  }
+  ECHOPATH_INLINE void set(double* rows, int row, Real x) const { Math::store(rows + static_cast<size_t>(row) * stride + node, x); }
+  ECHOPATH_INLINE void set(double* rows, int row, const VectorOf<Real>& v) const {
+    set(rows, row, v.x);
+    set(rows, row + 1, v.y);
+    set(rows, row + 2, v.z);
+  }
+  // A vector of a mesh's frame in the world.
+  ECHOPATH_INLINE VectorOf<Real> turned(const double* mesh, const double* v) const {
+    const auto along = [&](int axis) {
+      return value(mesh, 3 * axis) * v[0] + value(mesh, 3 * axis + 1) * v[1] + value(mesh, 3 * axis + 2) * v[2];
+    };
+    return {along(0), along(1), along(2)};
+  }
+};
+
+template <class Math>
+void pose(const PointToPose& point, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto turned = at.turned(point.mesh, point.position), moved = at.vector(point.mesh, PointToPose::kTranslation);
+    at.set(point.out, PointToPose::kPosition, {turned.x + moved.x, turned.y + moved.y, turned.z + moved.z});
+    at.set(point.out, PointToPose::kNormal, at.turned(point.mesh, point.normal));
+    at.set(point.out, PointToPose::kAreaRatio, typename Math::Real{} + 1.0);
+  }
+}
+
+template <class Math>
+void measure(const LegToMeasure& leg, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto line = at.vector(leg.point, PointToPose::kPosition) - at.vector(leg.image, LegToMeasure::kImagePosition);
+    const auto length = Math::root(dot(line, line)), inverse = 1.0 / length;
+    const auto cosine = -inverse * dot(at.vector(leg.point, PointToPose::kNormal), line);
+    const auto boresight = inverse * dot(at.vector(leg.image, LegToMeasure::kBoresight), line);
+    at.set(leg.out, LegToMeasure::kLength, length);
+    if (leg.exponent == LegToMeasure::kNoExponent) {
+      at.set(leg.out, LegToMeasure::kFactor, cosine);
+      at.set(leg.out, LegToMeasure::kGain, boresight);
+      continue;
+    }
+    const auto gain = root_gain_of<Math>(leg.root_peak, leg.exponent, boresight);
+    at.set(leg.out, LegToMeasure::kFactor, diffuse_leg<Math>(gain, cosine, length));
+    at.set(leg.out, LegToMeasure::kGain, gain);
+  }
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_size(const DiffusePath& diffuse, const At<Math>& at, Real start, Real end) {
+  const double* inner = diffuse.path.inner;
+  if (diffuse.begins_specular) {
+    start = specular_leg(at.value(diffuse.path.start, LegToMeasure::kGain), at.value(diffuse.path.start, LegToMeasure::kLength),
+                         at.value(inner, InnerRows::kToFirst), at.value(inner, InnerRows::kRootCosFirst));
+  }
+  const Real product = diffuse.is_single ? diffuse_product<Math>(start, end)
+                                         : diffuse_product<Math>(start, end, at.value(inner, InnerRows::kFirstSign),
+                                                                 at.value(inner, InnerRows::kLastSign));
+  return product * at.value(inner, InnerRows::kFactor);
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE void set_path(const PathToCombine& path, const At<Math>& at, const Real& length, const ComplexOf<Real>& amplitude) {
+  at.set(path.out, PathToCombine::kLength, length);
+  at.set(path.out, PathToCombine::kRe, amplitude.re);
+  at.set(path.out, PathToCombine::kIm, amplitude.im);
+}
+
+template <class Math>
+void combine(const DiffusePath& diffuse, size_t stride) {
+  const PathToCombine& path = diffuse.path;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    auto length = at.value(path.start, LegToMeasure::kLength);  // added up as in `reflect`: both may be of one echo
+    const auto start = at.value(path.start, LegToMeasure::kFactor), end = at.value(path.end, LegToMeasure::kFactor);
+    auto size = diffuse_product<Math>(start, end);
+    if (path.inner) {
+      length = length + at.value(path.inner, InnerRows::kLength);
+      size = diffuse_size<Math>(diffuse, at, start, end);
+    }
+    length = length + at.value(path.end, LegToMeasure::kLength);
+    set_path(path, at, length, amplitude_of<Math>(path.weight, size, length));
+  }
+}
+
+template <class Math>
+void connect(const PathToCombine& path, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto length = at.value(path.start, LegToMeasure::kLength);
+    const auto size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) / length;
+    set_path(path, at, length, amplitude_of<Math>(path.weight, size, length));
+  }
+}
+
+template <class Math>
+void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stride) {
+  using Real = typename Math::Real;
+  const PathToCombine& path = coherent.path;
+  for (size_t node = begin; node < end; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
+    const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
+    const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
+    const Real inverse_in = 1.0 / in, inverse_out = 1.0 / out;
+    const VectorOf<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
+                                            : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
+    const VectorOf<Real> departure = inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
+    const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
+    CellWaves<Real> waves;
+    set_waves<Math>(cos_in, cos_out, inverse_in, inverse_out, waves);
+    for (int a = 0; a < 2; ++a) {
+      const VectorOf<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
+      waves.along_arrival[a] = dot(tangent, arrival);
+      waves.along_departure[a] = dot(tangent, departure);
+    }
+    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter);
+    const Real inverse_tube = coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(waves.cos_in)) : inverse_in;
+    const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
+    const auto is_lit = (cos_in * cos_out > 0.0) & (first >= kNearAntenna) & (out >= kNearAntenna);
+    const Real length = in + out;
+    set_path(path, at, length, amplitude_of<Math>(path.weight, coherent_factor(waves, gains, inverse_tube, filter, is_lit), length));
+  }
+}
+
+template <class Math>
+void find_components(const ComponentsToFind& leg, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto line = at.vector(leg.point, PointToPose::kPosition) - at.vector(leg.image, LegToMeasure::kImagePosition);
+    const auto along = [&](int axis) { return dot(at.vector(leg.axes, ComponentsToFind::kAxes + 3 * axis), line); };
+    const VectorOf<typename Math::Real> at_antenna{along(0), along(1), along(2)};
+    const auto found = transverse_of<Math>(at.vector(leg.polarization, 0), at_antenna);
+    at.set(leg.out, ComponentsToFind::kHorizontal, found.horizontal);
+    at.set(leg.out, ComponentsToFind::kVertical, found.vertical);
+  }
+}
+
+template <class Math>
+void polarize(const PathToPolarize& path, size_t stride) {
+  using Real = typename Math::Real;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto components = [&](const double* rows) {
+      return TransverseOf<Real>{at.value(rows, ComponentsToFind::kHorizontal), at.value(rows, ComponentsToFind::kVertical)};
+    };
+    const PairOfPolarizations<Real> pairs(components(path.start), components(path.end));
+    const Real factor_re = pairs.through(path.re), factor_im = pairs.through(path.im);
+    const Real re = at.value(path.out, PathToCombine::kRe), im = at.value(path.out, PathToCombine::kIm);
+    at.set(path.out, PathToCombine::kRe, re * factor_re - im * factor_im);
+    at.set(path.out, PathToCombine::kIm, re * factor_im + im * factor_re);
+  }
+}
+
+}  // namespace
+
+extern const ChainKernels kKernels, kKernelsOfOne;
+const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, connect<LaneMath>, reflect<LaneMath>,
+                               find_components<LaneMath>, polarize<LaneMath>};
+const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, connect<OneMath>, reflect<OneMath>,
+                                    find_components<OneMath>, polarize<OneMath>};
+
+}  // namespace echopath::ECHOPATH_KERNELS

@@ -1,0 +1,84 @@
+#pragma once
+// The inner loops of replay over paths of one point each, side by side in vectors, compiled once per instruction set from
+// direct_kernels_body.h (see chain_kernels.h).
+#include <cstddef>
+
+#include "echopath/replay/kernels/cell_formula.h"
+
+namespace echopath {
+
+// Points of one mesh that both antennas see, and what comes back from each: a coherent and a diffuse path. The mesh is rigid:
+// what moves, seen from it, are the antennas, and its points stay where they were at the trace.
+struct DirectSlots {
+  static constexpr size_t kSlots = 8;  // whatever the instruction set
+  enum Kind { kCoherent, kDiffuse, kNumKinds };
+  typedef double Row[kSlots];
+
+  // Given: the triangle in the mesh's frame, m, and where the point is in it; rays per sr of the launch cell's stratum, 0
+  // where there is no cell; weights with all that does not change, re and im.
+  alignas(64) Row corner[3];
+  alignas(64) Row edge[2][3];
+  alignas(64) Row along_edge[2];
+  alignas(64) Row density;
+  alignas(64) Row weight[kNumKinds][2];
+  alignas(64) Row matrix[kNumKinds][4][2];  // polarised: the same times the path's JonesMatrix
+
+  // Found, at the trace: m; unit; tangents of the launch cell and their products, m and m^2; 1 or 0.
+  alignas(64) Row point[3];
+  alignas(64) Row normal[3];
+  alignas(64) Row tangent[2][3];
+  alignas(64) Row product[3];
+  alignas(64) Row has_cell;
+};
+
+// A mesh at the trace, relative to the mean transmitter: matrices row by row.
+struct DirectTrace {
+  double linear[9], translation[3];
+  double normal[9];           // of normals, not normalised
+  double mesh_from_trace[9];  // undoes `linear`
+};
+
+// How an antenna moves about the mesh, as if that stayed where it was at the trace.
+struct AntennaToSee {
+  const double* mesh;         // PointToPose::MeshRow
+  const double* antenna;      // LegToMeasure::ImageRow, in the world
+  double* out;                // likewise, about the mesh
+};
+
+struct DirectAntenna {
+  const double* rows;         // AntennaToSee::out, rows of `stride` nodes
+  const double* polarization;  // ComponentsToFind::PolarizationRow, likewise
+  int exponent;               // LegToMeasure::exponent, a whole one
+  double root_peak;
+};
+
+struct DirectToEvaluate {
+  static constexpr size_t kNodesTogether = 8;
+  enum LegRow { kLegLength, kInverse, kLegFactor, kGain, kCosine, kAlong, kHorizontal = 7, kVertical, kNumLegRows };
+  enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
+
+  const DirectSlots* slots;
+  bool has_coherent;          // any; else its rows are 0
+  const DirectAntenna* antennas[2];
+  size_t num_antennas[2];
+  bool is_monostatic;         // both ends have the same antennas, hence the same legs
+  size_t first_channel, num_channels;  // [tx * num_rx + rx]
+  size_t num_nodes, stride;
+  CellFilter filter;
+  double facet_area;          // m^2, of the mesh in hand (Localiser::facet_area)
+  const double* axes;         // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
+  double* legs;               // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
+  double* out;                // [channel, node, kNumRows, slot]
+  double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end in between
+};
+
+struct DirectKernels {
+  void (*see)(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride);
+  void (*prepare)(const DirectTrace& trace, DirectSlots& slots);
+  void (*evaluate)(const DirectToEvaluate& paths);
+};
+
+// Those of instruction_set() for rows of that many nodes.
+const DirectKernels& direct_kernels(size_t stride);
+
+}  // namespace echopath

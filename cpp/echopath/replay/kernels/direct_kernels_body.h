@@ -1,0 +1,327 @@
+// The loops of direct_kernels.h for one instruction set; stands behind chain_kernels_body.h (no include guard).
+#include "echopath/replay/kernels/direct_kernels.h"
+
+namespace echopath::ECHOPATH_KERNELS {
+namespace {
+
+using Rows3 = const DirectSlots::Row*;
+
+// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kLeastSquare as if
+// it were that. Roots and divisions of eight lanes take the place of twenty multiplications.
+struct Roots {
+  Vec root, inverse;
+};
+constexpr double kLeastSquare = 1e-60;
+ECHOPATH_INLINE Roots roots_of(Vec square) {
+  const Vec x = LaneMath::larger(square, all(kLeastSquare));
+#if ECHOPATH_LANES == 8
+  Vec y = _mm512_maskz_rsqrt14_pd(0xFF, x);
+  for (int step = 0; step < 2; ++step) y = y + 0.5 * y * exact_multiply_add(-x * y, y, all(1.0));
+  const Vec root = x * y;
+  return {root + 0.5 * y * exact_multiply_add(-root, root, x), y};
+#else
+  const Vec root = LaneMath::root(x);
+  return {root, 1.0 / root};
+#endif
+}
+
+// A launch cell on a flat triangle.
+struct FlatCell {
+  static constexpr bool is_curved = false;
+  static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
+  Vec product[3];
+};
+
+ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {
+  return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
+}
+ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const VectorOf<Vec>& v) {
+  store(rows[0] + slot, v.x);
+  store(rows[1] + slot, v.y);
+  store(rows[2] + slot, v.z);
+}
+ECHOPATH_INLINE VectorOf<Vec> times(const double* matrix, const VectorOf<Vec>& v) {
+  const auto along = [&](int axis) {
+    return matrix[3 * axis] * v.x + matrix[3 * axis + 1] * v.y + matrix[3 * axis + 2] * v.z;
+  };
+  return {along(0), along(1), along(2)};
+}
+ECHOPATH_INLINE VectorOf<Vec> choose(Mask first, const VectorOf<Vec>& a, const VectorOf<Vec>& b) {
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+}
+
+// Any unit vector across a unit vector.
+ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
+  const Vec least = 1e-12 * LaneMath::magnitude(v.z);
+  const Mask is_upright = (LaneMath::magnitude(v.x) <= least) & (LaneMath::magnitude(v.y) <= least);
+  const Vec of_xy = 1.0 / LaneMath::root(v.x * v.x + v.y * v.y), of_yz = 1.0 / LaneMath::root(v.y * v.y + v.z * v.z);
+  return choose(is_upright, {Vec{}, -v.z * of_yz, v.y * of_yz}, {-v.y * of_xy, v.x * of_xy, Vec{}});
+}
+
+ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
+
+// Where the point is, and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
+void prepare(const DirectTrace& trace, DirectSlots& slots) {
+  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+    const VectorOf<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
+    const Vec u = load(slots.along_edge[0] + slot), v = load(slots.along_edge[1] + slot);
+    const VectorOf<Vec> point = vector_at(slots.corner, slot) + u * edge_u + v * edge_v;
+    const VectorOf<Vec> across = times(trace.normal, cross(edge_u, edge_v));
+    const VectorOf<Vec> normal = (1.0 / LaneMath::root(dot(across, across))) * across;
+    const VectorOf<Vec> moved{all(trace.translation[0]), all(trace.translation[1]), all(trace.translation[2])};
+    const VectorOf<Vec> at = times(trace.linear, point) + moved;
+    const Vec length = LaneMath::root(dot(at, at));
+    const VectorOf<Vec> arrival = (1.0 / length) * at;
+    const Vec cos_in = dot(normal, arrival), side = length / LaneMath::root(load(slots.density + slot));  // of the tube, m
+    const VectorOf<Vec> slope = arrival - cos_in * normal;
+    const Vec sine = LaneMath::root(dot(slope, slope));
+    const VectorOf<Vec> along = choose(sine > 1e-9, (1.0 / sine) * slope, orthogonal(normal));
+    const VectorOf<Vec> first = (side / LaneMath::larger(LaneMath::magnitude(cos_in), all(1e-3))) * along;
+    const VectorOf<Vec> second = side * cross(normal, along), none{};
+    const Mask has_cell = is_finite(first) & is_finite(second);
+    const VectorOf<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
+    set_vector(slots.point, slot, at);
+    set_vector(slots.normal, slot, normal);
+    for (int a = 0; a < 2; ++a) set_vector(slots.tangent[a], slot, tangent[a]);
+    store(slots.product[0] + slot, dot(tangent[0], tangent[0]));
+    store(slots.product[1] + slot, dot(tangent[0], tangent[1]));
+    store(slots.product[2] + slot, dot(tangent[1], tangent[1]));
+    store(slots.has_cell + slot, has_cell ? all(1.0) : Vec{});
+  }
+}
+
+// v times the matrix.
+template <class Real>
+ECHOPATH_INLINE VectorOf<Real> times_transposed(const double* matrix, const VectorOf<Real>& v) {
+  const auto along = [&](int axis) { return matrix[axis] * v.x + matrix[3 + axis] * v.y + matrix[6 + axis] * v.z; };
+  return {along(0), along(1), along(2)};
+}
+
+// The motion since the trace is a rotation, linear * mesh_from_trace, and a shift: what undoes it is the transposed matrix.
+template <class Math>
+void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    const auto turned_back = [&](const auto& v) {
+      const auto along = [&](int axis) {
+        const auto entry = [&](int row) { return at.value(antenna.mesh, PointToPose::kLinear + 3 * row + axis); };
+        return entry(0) * v.x + entry(1) * v.y + entry(2) * v.z;
+      };
+      return times_transposed(trace.mesh_from_trace, VectorOf<typename Math::Real>{along(0), along(1), along(2)});
+    };
+    const auto moved = at.vector(antenna.mesh, PointToPose::kTranslation);
+    const auto position = turned_back(at.vector(antenna.antenna, LegToMeasure::kImagePosition) - moved);
+    const double* origin = trace.translation;
+    at.set(antenna.out, LegToMeasure::kImagePosition,
+           {position.x + origin[0], position.y + origin[1], position.z + origin[2]});
+    at.set(antenna.out, LegToMeasure::kBoresight, turned_back(at.vector(antenna.antenna, LegToMeasure::kBoresight)));
+  }
+}
+
+struct PointLanes {
+  VectorOf<Vec> point, normal, tangent[2];
+};
+
+ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
+  return {vector_at(slots.point, slot), vector_at(slots.normal, slot),
+          {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
+}
+
+// ComponentsToFind of a leg along `line`.
+ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+                                                  const VectorOf<Vec>& line) {
+  const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
+  const auto along = [&](int axis) {
+    const int row = ComponentsToFind::kAxes + 3 * axis;
+    return value(paths.axes, row) * line.x + value(paths.axes, row + 1) * line.y + value(paths.axes, row + 2) * line.z;
+  };
+  const double* own = antenna.polarization;
+  return transverse_of<LaneMath>(VectorOf<Vec>{all(value(own, 0)), all(value(own, 1)), all(value(own, 2))},
+                                 VectorOf<Vec>{along(0), along(1), along(2)});
+}
+
+template <bool kIsPolarized>
+ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+                                 const PointLanes& at, double* leg) {
+  const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
+  const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
+                         at.point.z - value(LegToMeasure::kImagePosition + 2)};
+  const Roots distance = roots_of(dot(line, line));
+  const Vec inverse = distance.inverse, cosine = -inverse * dot(at.normal, line);
+  Vec gain = all(antenna.root_peak);
+  if (antenna.exponent != 0) {
+    const Vec along = value(LegToMeasure::kBoresight) * line.x + value(LegToMeasure::kBoresight + 1) * line.y +
+                      value(LegToMeasure::kBoresight + 2) * line.z;
+    gain = root_gain_of<LaneMath>(antenna.root_peak, antenna.exponent, inverse * along);
+  }
+  const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * DirectSlots::kSlots, x); };
+  set(DirectToEvaluate::kLegLength, distance.root);
+  set(DirectToEvaluate::kInverse, inverse);
+  const Vec root_cosine = roots_of(LaneMath::magnitude(cosine)).root;
+  set(DirectToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, root_cosine, cosine, distance.root, inverse));
+  set(DirectToEvaluate::kGain, gain);
+  set(DirectToEvaluate::kCosine, cosine);
+  if constexpr (kIsPolarized) {
+    const TransverseOf<Vec> found = transverse_over(paths, antenna, node, line);
+    set(DirectToEvaluate::kHorizontal, found.horizontal);
+    set(DirectToEvaluate::kVertical, found.vertical);
+  }
+  if (!paths.has_coherent) return;
+  for (int a = 0; a < 2; ++a) set(DirectToEvaluate::kAlong + a, inverse * dot(at.tangent[a], line));
+}
+
+ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t slot, const CellWaves<Vec>& waves,
+                                              const CellFilter& filter, double facet_area) {
+  const Vec without = filter.view.weight == CellWeight::kFilter ? all(1.0) : Vec{};
+  if (filter.order == Footprint::kNone) return {without, Vec{}};
+  const FlatCell cell{{load(slots.product[0] + slot), load(slots.product[1] + slot), load(slots.product[2] + slot)}};
+  ComplexOf<Vec> found{};
+  if (filter.view.weight != CellWeight::kFilter) {
+    found.re = between_rays_of_cell<LaneMath>(cell, is_coarse_cell<LaneMath>(cell.product, facet_area), waves, filter);
+  } else if (filter.order == Footprint::kFirstOrder) {
+    found.re = first_order_footprint_of<LaneMath>(cell_phase(cell, waves, filter));
+  } else {
+    found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter);
+  }
+  const Mask has_cell = load(slots.has_cell + slot) > 0.0;
+  return {has_cell ? found.re : without, has_cell ? found.im : Vec{}};
+}
+
+// Rows of one leg.
+struct LegLanes {
+  const double* rows;
+  ECHOPATH_INLINE Vec operator()(int row) const { return load(rows + static_cast<size_t>(row) * DirectSlots::kSlots); }
+};
+
+// Physical optics over in and out legs, relative to the weight.
+ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
+  using D = DirectToEvaluate;
+  const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
+  CellWaves<Vec> waves;
+  set_waves<LaneMath>(cos_in, cos_out, in(D::kInverse), out(D::kInverse), waves);
+  for (int a = 0; a < 2; ++a) {
+    waves.along_arrival[a] = in(D::kAlong + a);
+    waves.along_departure[a] = -out(D::kAlong + a);
+  }
+  const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter, paths.facet_area);
+  const Mask is_far = (in(D::kLegLength) >= kNearAntenna) & (out(D::kLegLength) >= kNearAntenna);
+  const Mask is_lit = (cos_in * cos_out > 0.0) & is_far;
+  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, is_lit);
+}
+
+// Weights of both kinds, with what the polarisations of both ends make of them.
+template <bool kIsPolarized>
+struct WeightLanes;
+template <>
+struct WeightLanes<false> {
+  const DirectSlots& slots;
+  size_t slot;
+
+  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes&, const LegLanes&, size_t first) : slots(from), slot(first) {}
+  ECHOPATH_INLINE Vec operator()(int kind, int part) const { return load(slots.weight[kind][part] + slot); }
+};
+template <>
+struct WeightLanes<true> {
+  const DirectSlots& slots;
+  size_t slot;
+  PairOfPolarizations<Vec> pairs;
+
+  static ECHOPATH_INLINE TransverseOf<Vec> components(const LegLanes& leg) {
+    return {leg(DirectToEvaluate::kHorizontal), leg(DirectToEvaluate::kVertical)};
+  }
+  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes& in, const LegLanes& out, size_t first)
+      : slots(from), slot(first), pairs(components(in), components(out)) {}
+  ECHOPATH_INLINE Vec operator()(int kind, int part) const {
+    const auto entry = [&](int i) { return load(slots.matrix[kind][i][part] + slot); };
+    const Vec matrix[] = {entry(0), entry(1), entry(2), entry(3)};
+    return pairs.through(matrix);
+  }
+};
+
+template <bool kIsPolarized>
+ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
+  using D = DirectToEvaluate;
+  const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * DirectSlots::kSlots + slot, x); };
+  const WeightLanes<kIsPolarized> weight(*paths.slots, in, out, slot);
+  const auto put = [&](int kind, ComplexOf<Vec> amplitude) {
+    set(D::kRe + 2 * kind, amplitude.re);
+    set(D::kIm + 2 * kind, amplitude.im);
+  };
+  const auto weight_of = [&](int kind) { return ComplexOf<Vec>{weight(kind, 0), weight(kind, 1)}; };
+  const Vec length = in(D::kLegLength) + out(D::kLegLength);
+  set(D::kLength, length);
+  const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
+  put(DirectSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(DirectSlots::kDiffuse), diffuse, length));
+  ComplexOf<Vec> factor{};
+  if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
+  put(DirectSlots::kCoherent, amplitude_of<LaneMath>(weight_of(DirectSlots::kCoherent), factor, length));
+}
+
+ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
+  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 || paths.is_monostatic ? 0 : paths.num_antennas[0];
+  const size_t leg = node % DirectToEvaluate::kNodesTogether * num_legs + of_end + antenna;
+  return paths.legs + leg * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
+}
+
+// Sides that the points show to the first antennas: at the first node, and whether others are shown at the last.
+ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_t slot, Mask* first) {
+  Mask turned = {};
+  for (int end = 0; end < 2; ++end) {
+    const Mask side = bits(LegLanes{leg_of(paths, node, end, 0, slot)}(DirectToEvaluate::kCosine)) < 0;
+    if (node == 0) first[end] = side;
+    turned |= side ^ first[end];
+  }
+  store(paths.turned + slot, turned ? all(1.0) : Vec{});
+}
+
+template <bool kIsPolarized>
+ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, size_t slot) {
+  const PointLanes at = points_at(*paths.slots, slot);
+  for (int end = 0; end < (paths.is_monostatic ? 1 : 2); ++end) {
+    for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
+      measure_leg<kIsPolarized>(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
+    }
+  }
+}
+
+template <bool kIsPolarized>
+ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, size_t slot) {
+  constexpr size_t kOfNode = DirectToEvaluate::kNumRows * DirectSlots::kSlots;
+  const size_t num_receivers = paths.num_antennas[1];
+  for (size_t i = 0; i < paths.num_channels; ++i) {
+    const size_t channel = paths.first_channel + i;
+    const LegLanes in{leg_of(paths, node, 0, channel / num_receivers, slot)};
+    const LegLanes out{leg_of(paths, node, 1, channel % num_receivers, slot)};
+    combine_legs<kIsPolarized>(paths, in, out, slot, paths.out + (i * paths.num_nodes + node) * kOfNode);
+  }
+}
+
+// First the legs of some nodes, then what they make: the processor has several nodes of either in hand while each waits for
+// its own results.
+template <bool kIsPolarized>
+void evaluate_all(const DirectToEvaluate& paths) {
+  constexpr size_t kTogether = DirectToEvaluate::kNodesTogether;
+  Mask sides[2] = {};
+  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+    for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
+      const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
+      for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot);
+      if (first == 0) see_sides(paths, 0, slot, sides);
+      if (end == paths.num_nodes) see_sides(paths, end - 1, slot, sides);
+      for (size_t node = first; node < end; ++node) combine_node<kIsPolarized>(paths, node, slot);
+    }
+  }
+}
+
+void evaluate(const DirectToEvaluate& paths) {
+  if (paths.axes) evaluate_all<true>(paths);
+  else evaluate_all<false>(paths);
+}
+
+}  // namespace
+
+extern const DirectKernels kDirectKernels, kDirectKernelsOfOne;
+const DirectKernels kDirectKernels = {see<LaneMath>, prepare, evaluate};
+const DirectKernels kDirectKernelsOfOne = {see<OneMath>, prepare, evaluate};
+
+}  // namespace echopath::ECHOPATH_KERNELS

@@ -1,0 +1,119 @@
+#pragma once
+// The amplitude of a path in factors of its legs and of what lies between: the only home of the formula, for doubles and for
+// vectors of doubles (Math as in base/scalar_math.h).
+//
+// Coherent path (regime C), physical optics at its last material point:
+//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
+//   dS is that of the time: the stored one times the area of the triangle over its area at the trace,
+//   sqrt(D) = unfolded length TX -> point on flat chains, else sqrt(|T_1 x T_2| cos_i density) of the launch cell,
+//   r = unfolded length point -> RX, obliquity cos_i, F the footprint filter (cell_formula.h).
+// Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:
+//   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in / r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
+//   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert), hence
+//   |a| = |weight| sqrt(Pt/pi) lambda/(4 pi) * start * inner * end
+//   start, end = sqrt(G |cos|)/r of the legs between the antennas and the first and the last diffuse hit,
+//   inner = sqrt(prod dS/dS_trace) * prod sqrt(|cos_out cos_in|/pi)/r over the legs between diffuse hits.
+//   Factors carry the signs of their cosines: a surface that is seen from opposite sides makes no echo.
+// Flagged mirrors alone: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
+// In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all coefficients.
+// Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}.
+// An antenna nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of
+// the amplitude.
+#include "echopath/em/footprint_formula.h"
+#include "echopath/em/transverse_formula.h"
+#include "echopath/replay/kernels/cell_formula.h"
+#include "echopath/trace/near_antenna.h"
+
+namespace echopath {
+
+// Every amplitude is made here, of the path's weight and of what its legs make of it; length: m, of the whole path, for what acts
+// along the way.
+template <class Math, class Weight, class Real>
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size, Real /*length*/) {
+  return {weight.re * size, weight.im * size};
+}
+template <class Math, class Weight, class Real>
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf<Real> factor, Real length) {
+  const ComplexOf<Real> scale = amplitude_of<Math>(weight, Real{} + 1.0, length);
+  return {scale.re * factor.re - scale.im * factor.im, scale.re * factor.im + scale.im * factor.re};
+}
+
+// --- antennas ---
+
+// Root of a gain that is root_peak^2 cos^exponent in front of the antenna and 0 behind; an exponent of 0 is a gain all around.
+// cosine: of the boresight.
+template <class Math, class Real>
+ECHOPATH_INLINE Real root_gain_of(double root_peak, int exponent, Real cosine) {
+  Real power = Real{} + root_peak;
+  if (exponent == 0) return power;
+  for (int i = 0; i < exponent / 2; ++i) power = power * cosine;
+  if (exponent % 2) power = power * Math::root(Math::magnitude(cosine));
+  return cosine > 0.0 ? power : Real{};
+}
+
+// Of a path: (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v), the products of its ends' components (JonesMatrix).
+template <class Real>
+struct PairOfPolarizations {
+  Real product[4];
+
+  // Components of both ends as they depart: what arrives has the opposite horizontal one.
+  ECHOPATH_INLINE PairOfPolarizations(const TransverseOf<Real>& start, const TransverseOf<Real>& end)
+      : product{-end.horizontal * start.horizontal, -end.horizontal * start.vertical, end.vertical * start.horizontal,
+                end.vertical * start.vertical} {}
+  template <class Entry>
+  ECHOPATH_INLINE Real through(const Entry* matrix) const {
+    return (product[0] * matrix[0] + product[1] * matrix[1]) + (product[2] * matrix[2] + product[3] * matrix[3]);
+  }
+};
+
+// --- coherent paths ---
+
+// Signed cosines at the point, of the arrival and of the departure, and one over the unfolded lengths, 1/m.
+template <class Math, class Real>
+ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real inverse_out,
+                               CellWaves<Real>& waves) {
+  waves.cos_in = Math::magnitude(cos_in);
+  waves.cos_out = Math::magnitude(cos_out);
+  waves.side = Math::with_sign_of(Real{} + 1.0, cos_in);
+  waves.inverse_in = inverse_in;
+  waves.inverse_out = inverse_out;
+}
+
+// root_gains: sqrt(Gt Gr); inverse_tube: 1/sqrt(D), 1/m; is_lit: seen from one side, by antennas that are not near.
+template <class Real, class Truth>
+ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Real root_gains, Real inverse_tube,
+                                                const ComplexOf<Real>& filter, Truth is_lit) {
+  const Real size = root_gains * waves.cos_in * inverse_tube * waves.inverse_out;
+  return {is_lit ? size * filter.re : Real{}, is_lit ? size * filter.im : Real{}};
+}
+
+// --- diffuse paths ---
+
+// cosine: signed, at the diffuse hit; inverse: 1/m, over the length in m from the antenna to there.
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, Real length,
+                                 Real inverse) {
+  return length < kNearAntenna ? Real{} : Math::with_sign_of(root_gain * root_cosine * inverse, cosine);
+}
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real cosine, Real length) {
+  return diffuse_leg<Math>(root_gain, Math::root(Math::magnitude(cosine)), cosine, length, 1.0 / length);
+}
+
+// The same for legs to a specular point, from which it is `to_first` (m) to the first diffuse hit.
+template <class Real>
+ECHOPATH_INLINE Real specular_leg(Real root_gain, Real length, Real to_first, Real root_cos_first) {
+  return length < kNearAntenna ? Real{} : root_gain * root_cos_first / (length + to_first);
+}
+
+// One diffuse hit: its cosines must have one sign. Several: so must those of the first and those of the last hit.
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_product(Real start, Real end) {
+  return Math::larger(Real{}, start * end);
+}
+template <class Math, class Real>
+ECHOPATH_INLINE Real diffuse_product(Real start, Real end, Real first_sign, Real last_sign) {
+  return Math::larger(Real{}, start * first_sign) * Math::larger(Real{}, end * last_sign);
+}
+
+}  // namespace echopath

@@ -1,0 +1,67 @@
+#pragma once
+// A block of a record's paths with all that does not depend on time: hits in the frames of their meshes, launch cells.
+#include <array>
+#include <deque>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/path_geometry.h"
+
+namespace echopath {
+
+struct LocalPaths {
+  std::vector<LocalPath> paths;
+  int longest = 0;  // hits of a path at most
+
+  // What the paths point into.
+  std::vector<LocalHit> hits;
+  std::deque<std::array<Vec3, 3>> normals;
+};
+
+// Thread-safe.
+class Localiser {
+ public:
+  // The record must outlive it. patches: of its deforming meshes (hit_patches.h), those of the instants that its paths are
+  // posed by.
+  Localiser(const Paths& paths, std::vector<SurfacePatch> patches);
+  // The paths of these indices, hits in the order in which they were traced.
+  LocalPaths operator()(std::span<const int64_t> indices) const;
+  // A hit in the frame of its mesh, without its normals.
+  LocalHit hit(const Hit& hit) const;
+  // With them, which `normals` keeps.
+  LocalHit hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const;
+  bool is_mirror(uint32_t mesh_id) const { return mesh_is_mirror_[mesh_id] != 0; }
+  bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
+  // Each of its triangles is a plane in the mesh's frame for good.
+  bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
+  // m^2, mean of the triangles of a mesh, with the scale that it has at the trace and the shape that it has at rest;
+  // kNoFacets where the mesh is smooth or a plane.
+  double facet_area(uint32_t mesh_id) const { return facet_area_[mesh_id]; }
+  // Normals of its corners; false where facets are meant or the crease guard refuses this one.
+  bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
+  // Unit vertex normals by mesh ID; empty where facets are meant. As the rays saw the mesh: at rest, or deformed as at the
+  // trace, and then zero outside of its patch.
+  const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
+  const std::vector<SurfacePatch>& patches() const { return patches_; }
+  const Instant& trace_instant() const { return trace_instant_; }
+  // Undoes the matrix of the instant of the trace.
+  const Mat3& mesh_from_trace(uint32_t mesh_id) const { return mesh_from_trace_[mesh_id]; }
+  const Paths& paths() const { return paths_; }
+
+ private:
+  std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
+  double facet_area_at_trace(uint32_t mesh_id) const;
+  LocalPath local_path(int64_t index, LocalPaths& block) const;
+
+  const Paths& paths_;
+  std::vector<SurfacePatch> patches_;                         // by mesh ID
+  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;    // by mesh ID
+  Instant trace_instant_;
+  std::vector<Mat3> mesh_from_trace_;  // by mesh ID
+  std::vector<std::vector<Vec3>> smooth_normals_;
+  std::vector<double> facet_area_;  // by mesh ID
+};
+
+}  // namespace echopath

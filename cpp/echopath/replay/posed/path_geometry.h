@@ -1,0 +1,66 @@
+#pragma once
+// Hits of paths, posed: points, normals and the legs between them, with images for flagged mirrors.
+#include <vector>
+
+#include "echopath/replay/posed/instant.h"
+
+namespace echopath {
+
+// A hit in the frame of its mesh.
+struct LocalHit {
+  uint32_t mesh_id = 0, triangle_id = 0;
+  bool deformed = false;        // the corners are those of the instant, `triangle` counts places in the mesh's patch
+  Triangle triangle{};
+  double u = 0.0, v = 0.0;
+  Vec3 corner, edge_u, edge_v;  // of its triangle at rest, of deformed ones as at the trace
+  Vec3 point, normal;           // likewise, on the facet; unit
+  double trace_area = 0.0;      // m^2, |edge_u x edge_v| in the world at the trace; 0: its area never changes
+  // Unit vertex normals at rest where the triangle is taken as smooth (of deformed ones: any), else null.
+  const std::array<Vec3, 3>* normals = nullptr;
+};
+
+struct PosedHit {
+  Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
+  Vec3 edge_u, edge_v;   // only where they are asked for or the triangle bends
+  Vec3 facet;            // the point on the flat triangle; only where is_smooth
+  Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
+  bool is_smooth = false;
+  double area_ratio = 1.0;  // of its triangle, over that at the trace
+};
+
+// What of a path does not depend on time.
+struct LocalPath {
+  const LocalHit* hits = nullptr;
+  const Hit* recorded = nullptr;   // the same in the order of the record
+  int count = 0;
+  bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
+  uint64_t diffuse = 0;
+  uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
+  uint64_t sliding = 0;            // bit per hit: specular otherwise; the point of reflection slides over its surface
+
+  bool is_image(int hit) const { return image >> hit & 1; }
+  bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
+  bool is_sliding(int hit) const { return sliding >> hit & 1; }
+  // First and last hit that are not images; -1 where the path has mirrors only. The last one is a material point.
+  int first_material = -1, last_material = -1;
+};
+
+// Point, edges and normal of a hit on its flat triangle.
+void pose_facet(const LocalHit& hit, const Instant& instant, PosedHit& out);
+// with_triangle: the edges are needed too.
+void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out);
+void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
+
+// From one point to another over the mirrors `first` to `last` - 1 of a path, unfolded.
+struct UnfoldedLeg {
+  double length;            // m
+  Vec3 departure, arrival;  // unit directions of travel at both ends
+};
+UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to);
+// A vector as it stands behind these mirrors.
+Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last);
+
+// Between the hits `from` < `to` of a path, which are not images, over the mirrors between.
+UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);
+
+}  // namespace echopath

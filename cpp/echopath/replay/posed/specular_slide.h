@@ -1,0 +1,64 @@
+#pragma once
+// How far the points of reflection of a path have slid from the recorded hits, and what that does to its length.
+//
+// A recorded specular hit moves with its triangle, while the point of reflection slides over the surface (Fermat). For
+// tangential slides x of all sliding hits of a path,
+//   L(x) = L + g.x + x.Hx/2,   g_k = (a_k - d_k) along the surface,
+//   H_kk = P[(I - a a^T)/r_in + (I - d d^T)/r_out]P + n.(d - a) II,   H_kl = -P (R^T (I - a a^T)/r) P
+// with a, d the directions of arrival and departure, II the curvature about n (positive where convex), P the projector on the
+// tangent plane and R the flagged mirrors between two sliding hits in a row, k and l. Fermat's points lie at x = -H^-1 g,
+// where the path is shorter by e = g.H^-1 g/2, to second order in the slide. H is block-tridiagonal; hits with a material
+// point between do not know each other.
+#include <vector>
+
+#include "echopath/replay/posed/path_geometry.h"
+
+namespace echopath {
+
+// Where sliding hits stand in a replay.
+enum class SpecularPoints {
+  kMaterial,  // where the trace found them, moving with their triangles
+  kFermat,    // one Newton step from there, on the plane or the circle of curvature along the step
+};
+
+class SpecularSlide {
+ public:
+  // For the path as posed in `hits`, begun at the antenna position `start` (m, relative to the origin; a reversed path begins
+  // at its receiver). False where H is singular: no statement is possible, and nothing slides.
+  bool solve(const LocalPath& path, const PosedHit* hits, const Vec3& start);
+
+  // e in m: what the recorded points make the path too long by; negative where the path is the longest of its neighbours.
+  double excess() const { return excess_; }
+  // m, of the legs that end at sliding hits; differs between two places of these as the whole path does.
+  double length() const { return length_; }
+  size_t size() const { return points_.size(); }
+  int hit(size_t i) const { return points_[i].hit; }  // ascending
+  // Tangential step of sliding hit i to Fermat's point, m; faded out where it is longer than the shorter leg.
+  Vec3 step(size_t i) const;
+
+ private:
+  struct Point {
+    int hit;
+    Vec3 axis[2];  // of the tangent plane, unit
+    double reach;  // m, the shorter leg
+    Eigen::Vector2d gradient;
+    Eigen::Matrix2d hessian, coupling;  // coupling with the next point, zero across a material point
+    Eigen::Vector2d slide;
+  };
+  void add_leg(const LocalPath& path, const PosedHit* hits, int from, int to, const UnfoldedLeg& leg);
+  Point* point_at(int hit);
+  bool eliminate();
+
+  std::vector<Point> points_;
+  double excess_ = 0.0, length_ = 0.0;  // m
+};
+
+// Moves the sliding hits of a path as posed in `hits` by one Newton step, as seen from `start` (see SpecularSlide::solve);
+// their normals stay. Where H is singular nothing moves.
+void step_to_fermat(const LocalPath& path, const Vec3& start, SpecularSlide& scratch, PosedHit* hits);
+
+// The point that a tangential step from a hit leads to on its surface: on the plane, or where the line from the centre of
+// curvature meets the circle of curvature along the step; exact on spheres, to third order in the step otherwise.
+Vec3 surface_point(const PosedHit& hit, const Vec3& step);
+
+}  // namespace echopath

@@ -1,0 +1,52 @@
+#include "echopath/replay/time/motion_knots.h"
+
+#include <algorithm>
+
+#include "echopath/motion/skin.h"
+
+namespace echopath {
+namespace {
+
+// The parts of one body share their times, which then come but once.
+void append(const std::vector<double>& times, std::vector<double>& all) {
+  const auto count = static_cast<ptrdiff_t>(times.size());
+  if (all.size() >= times.size() && std::equal(times.begin(), times.end(), all.end() - count)) return;
+  all.insert(all.end(), times.begin(), times.end());
+}
+
+void append_knots(const Motion* motion, std::vector<double>& all) {
+  if (const auto* keyframes = dynamic_cast<const KeyframeMotion*>(motion)) append(keyframes->times(), all);
+}
+
+void append_knots(const Deformation* deformation, std::vector<double>& all) {
+  if (const auto* sequence = dynamic_cast<const VertexSequence*>(deformation)) append(sequence->times(), all);
+  if (const auto* skin = dynamic_cast<const Skin*>(deformation)) {
+    for (const Joint& joint : skin->joints()) append_knots(joint.motion.get(), all);
+  }
+}
+
+std::vector<double> ascending(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace
+
+std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar) {
+  std::vector<double> times = scene.breakpoints();
+  if (radar.motion) append(radar.motion->breakpoints(), times);
+  return ascending(std::move(times));
+}
+
+std::vector<double> motion_knots(const Scene& scene, const Radar& radar) {
+  std::vector<double> times = motion_breakpoints(scene, radar);
+  append_knots(radar.motion.get(), times);
+  for (const Node& node : scene.nodes()) {
+    append_knots(node.motion.get(), times);
+    append_knots(node.deformation.get(), times);
+  }
+  return ascending(std::move(times));
+}
+
+}  // namespace echopath

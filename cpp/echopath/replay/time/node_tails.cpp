@@ -1,0 +1,108 @@
+#include "echopath/replay/time/node_tails.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "echopath/base/simd.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kShareOfBeforeLast = 0.25;
+
+// Values relative to those of the first node: the sums must not drown in the rounding of whole delays.
+ECHOPATH_INLINE void add_node(const double* values, const double* first, double weight_before_last, double weight_last, size_t count,
+                            double* __restrict before_last, double* __restrict last) {
+  for (size_t i = 0; i < count; ++i) {
+    const double value = values[i] - first[i];
+    before_last[i] += weight_before_last * value;
+    last[i] += weight_last * value;
+  }
+}
+
+ECHOPATH_INLINE void raise_by_delays(const double* before_last, const double* last, size_t count, double* __restrict tail) {
+  for (size_t i = 0; i < count; ++i) {
+    tail[i] = std::max(tail[i], std::abs(last[i]) + kShareOfBeforeLast * std::abs(before_last[i]));
+  }
+}
+
+ECHOPATH_INLINE double modulus(const double* complex) { return std::sqrt(complex[0] * complex[0] + complex[1] * complex[1]); }
+
+ECHOPATH_INLINE void raise_by_amplitudes(const double* before_last, const double* last, size_t count, double* __restrict tail) {
+  for (size_t i = 0; i < count; ++i) {
+    tail[i] = std::max(tail[i], modulus(last + 2 * i) + kShareOfBeforeLast * modulus(before_last + 2 * i));
+  }
+}
+
+ECHOPATH_INLINE void raise_by_norms(const double* amplitude, size_t count, double* __restrict largest) {
+  for (size_t i = 0; i < count; ++i) {
+    const double norm = amplitude[2 * i] * amplitude[2 * i] + amplitude[2 * i + 1] * amplitude[2 * i + 1];
+    largest[i] = std::max(largest[i], norm);
+  }
+}
+
+ECHOPATH_INLINE void divide_by_roots(const double* norm, size_t count, double* __restrict values) {
+  for (size_t i = 0; i < count; ++i) values[i] = norm[i] > 0.0 ? values[i] / std::sqrt(norm[i]) : 0.0;
+}
+
+// Last two coefficients of one piece, for `count` neighbouring sequences at its nodes, `stride` values apart.
+class Coefficients {
+ public:
+  Coefficients(const FrameNodes& nodes, size_t count) : nodes_(nodes), before_last_(count), last_(count) {}
+
+  void find(const double* values, int piece, size_t stride, size_t count) {
+    const size_t order = static_cast<size_t>(nodes_.order);
+    std::fill_n(before_last_.begin(), count, 0.0);
+    std::fill_n(last_.begin(), count, 0.0);
+    const double* first = values + static_cast<size_t>(piece) * order * stride;
+    for (size_t k = 1; k < order; ++k) {
+      run_simd<add_node>(first + k * stride, first, nodes_.tail[k], nodes_.tail[order + k], count, before_last_.data(), last_.data());
+    }
+  }
+  const double* before_last() const { return before_last_.data(); }
+  const double* last() const { return last_.data(); }
+
+ private:
+  const FrameNodes& nodes_;
+  std::vector<double> before_last_, last_;
+};
+
+constexpr size_t kTogether = 128;  // paths whose sums stay in the first-level cache
+
+}  // namespace
+
+NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
+  const auto num_paths = static_cast<size_t>(echoes.num_echoes);
+  const auto* amplitude = reinterpret_cast<const double*>(echoes.amplitude.data());
+  NodeTails tails{std::vector<double>(num_paths), std::vector<double>(num_paths)};
+  Coefficients of_delays(nodes, kTogether), of_amplitudes(nodes, 2 * kTogether);
+  std::array<double, kTogether> largest;
+  for (size_t begin = 0; begin < num_paths; begin += kTogether) {
+    const size_t count = std::min(kTogether, num_paths - begin);
+    for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
+      of_delays.find(echoes.delay.data() + begin, piece, num_paths, count);
+      run_simd<raise_by_delays>(of_delays.before_last(), of_delays.last(), count, tails.delay.data() + begin);
+      of_amplitudes.find(amplitude + 2 * begin, piece, 2 * num_paths, 2 * count);
+      run_simd<raise_by_amplitudes>(of_amplitudes.before_last(), of_amplitudes.last(), count, tails.amplitude.data() + begin);
+    }
+    largest.fill(0.0);
+    for (size_t node = 0; node < nodes.times.size(); ++node) {
+      run_simd<raise_by_norms>(amplitude + 2 * (node * num_paths + begin), count, largest.data());
+    }
+    run_simd<divide_by_roots>(largest.data(), count, tails.amplitude.data() + begin);
+  }
+  return tails;
+}
+
+double tail_of(const FrameNodes& nodes, const std::vector<double>& values) {
+  Coefficients coefficients(nodes, 1);
+  double tail = 0.0;
+  for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
+    coefficients.find(values.data(), piece, 1, 1);
+    run_simd<raise_by_delays>(coefficients.before_last(), coefficients.last(), 1, &tail);
+  }
+  return tail;
+}
+
+}  // namespace echopath

@@ -1,0 +1,27 @@
+#pragma once
+// Joins the last hit of a chain of diffuse hits, in both orders of the chain (diffuse_chain.h).
+#include "echopath/trace/connect/diffuse_chain.h"
+#include "echopath/trace/connect/path_writer.h"
+
+namespace echopath {
+
+template <class Weight>
+class ChainConnector {
+ public:
+  ChainConnector(const RayContext& context, const AntennaLegs& legs)
+      : context_(context), legs_(legs), orders_(context), writer_(context), weight_(context) {}
+  // Adds the paths over the chain and each leg behind its last hit. The receive legs are there.
+  void connect(Connection& at) const;
+
+ private:
+  const RayContext& context_;
+  const AntennaLegs& legs_;
+  ChainOrders orders_;
+  PathWriter<Weight> writer_;
+  Weight weight_;
+};
+
+extern template class ChainConnector<ScalarWeight>;
+extern template class ChainConnector<JonesWeight>;
+
+}  // namespace echopath

@@ -1,0 +1,81 @@
+#include "echopath/trace/connect/connector.h"
+
+#include <cmath>
+
+#include "echopath/trace/near_antenna.h"
+
+namespace echopath {
+namespace {
+
+// The sign of the field that comes back to the radar.
+//
+// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h), which point opposite ways where a wave turns back, so
+// that what comes back changes its sign once: at normal incidence TE and TM then are the same. Conductors count as TE at every
+// angle: an odd number of them has made that change.
+double sign_of_return(const Ray& ray) { return ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0; }
+
+}  // namespace
+
+template <class Weight>
+bool Connector<Weight>::is_near_antenna(const Vec3& point) const {
+  const auto is_near = [&](const Vec3& antenna) { return (point - antenna).squaredNorm() < kNearAntenna * kNearAntenna; };
+  return is_near(context_.settings.receiver) || is_near(context_.settings.transmitter);
+}
+
+template <class Weight>
+void Connector<Weight>::connect(Connection& at) const {
+  const Ray& ray = at.ray;
+  const SurfaceHit& surface = at.surface;
+  at.legs.receive.clear();
+  at.legs.has_receive = false;
+  if (!ray.is_owned) return;
+  if (is_near_antenna(surface.point.position)) {
+    ++at.block.statistics.num_near_antenna;
+    return;
+  }
+  const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
+  const bool radiates_power = surface.response.diffuse > 0 && ray.holds_zones;
+  if (!radiates_field && !radiates_power) return;
+  const bool is_in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
+  // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
+  legs_.find_receive(surface, context_.settings.max_bounces - (is_in_pairs ? 1 : ray.depth), at.legs);
+  if (at.legs.receive.empty() && ray.coherent) return;
+  weight_.find_receive_axes(at);
+  if (radiates_field) connect_coherent(at);
+  if (!radiates_power) return;
+  if (!ray.coherent) chains_.connect(at);
+  else if (is_in_pairs) pairs_.connect(at);
+  else connect_diffuse(at);
+}
+
+template <class Weight>
+void Connector<Weight>::connect_coherent(Connection& at) const {
+  const Ray& ray = at.ray;
+  const SurfaceHit& surface = at.surface;
+  // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
+  const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
+  const double launch_area = ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
+  const std::complex<double> coefficient =
+      ray.coefficient * surface.response.gamma * surface.response.coherent * sign_of_return(ray);
+  const std::complex<double> weight =
+      std::complex<double>(0.0, 1.0) * ray.field_factor * weight_.held(coefficient) * launch_area;
+  for (const Leg& leg : at.legs.receive) {
+    const OrderShares shares =
+        ray.num_mirrors > 0 ? orders_.shares(ray, surface, leg, at.block.statistics.num_queries) : OrderShares{};
+    writer_.write(at, leg, 0, weight * weight_.held(leg.gain), shares);
+  }
+}
+
+template <class Weight>
+void Connector<Weight>::connect_diffuse(Connection& at) const {
+  const SurfaceHit& surface = at.surface;
+  const std::complex<double> coefficient = weight_.held(at.ray.coefficient * diffuse_coefficient(surface.response));
+  const std::complex<double> weight = coefficient * std::sqrt(surface.area) * surface.samples.phase;
+  const OrderShares shares{1.0, at.ray.num_mirrors > 0 ? 1.0 : 0.0};
+  for (const Leg& leg : at.legs.receive) writer_.write(at, leg, last_bit(at.ray), weight * weight_.held(leg.gain), shares);
+}
+
+template class Connector<ScalarWeight>;
+template class Connector<JonesWeight>;
+
+}  // namespace echopath

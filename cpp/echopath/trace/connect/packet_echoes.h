@@ -1,0 +1,58 @@
+#pragma once
+// The echoes of plain first hits, all lanes at once: hits of no flagged mirror, which have no legs but straight ones.
+#include "echopath/trace/sbr/first_hits.h"
+#include "echopath/trace/near_antenna.h"
+#include "echopath/trace/record/path_block.h"
+
+namespace echopath {
+
+// Whether the hit of a lane is plain, where all legs are straight.
+inline bool is_plain(const FirstHits& first, int lane) {
+  return !first.models[static_cast<size_t>(lane)]->material().mirror && first.near_squared[lane] >= kNearAntenna * kNearAntenna;
+}
+
+// The weights of the coherent and of the diffuse echo to the receiver.
+struct EchoWeights {
+  LanesOf<float> field_re, field_im, power_re, power_im;
+
+  std::complex<float> field(int lane) const { return {field_re[lane], field_im[lane]}; }
+  std::complex<float> power(int lane) const { return {power_re[lane], power_im[lane]}; }
+};
+
+// Both policies (weight.h) find the echoes of all lanes, and add those of a lane over the first hit of the current ray.
+class ScalarEchoes {
+ public:
+  void find(const FirstHits& first, const Vec3& receiver);
+  void add(const FirstHits& first, int lane, PathBlock& block) const {
+    const auto k = static_cast<size_t>(lane);
+    if (first.receiver[k] != ShadowState::kOpen) return;
+    if (first.coherent[lane] > 0) block.add_prefix(1, 0, weights_.field(lane), first.places.strata[k]);
+    if (first.diffuse[lane] > 0) block.add_prefix(1, 1, weights_.power(lane), first.places.strata[k]);
+  }
+
+ private:
+  EchoWeights weights_;
+};
+
+// What the matrices of both echoes are made of.
+struct LaneModes {
+  LaneValues te_re, te_im, tm_re, tm_im;           // of reflection
+  LaneValues cross_share, axis_cosine, axis_sine;  // of diffuse hits
+};
+
+using LaneMatrices = LanesOf<float>[4][2];  // [entry][re, im]
+
+class JonesEchoes {
+ public:
+  void find(const FirstHits& first, const Vec3& receiver);
+  void add(const FirstHits& first, int lane, PathBlock& block) const;
+
+ private:
+  void find_modes(const FirstHits& first, int lane);
+
+  LaneModes modes_;
+  EchoWeights weights_;  // without coefficients, which are in the matrices
+  LaneMatrices field_matrices_, power_matrices_;
+};
+
+}  // namespace echopath

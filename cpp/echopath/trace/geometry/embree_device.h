@@ -1,0 +1,132 @@
+#pragma once
+// The only header that knows Embree and its versions. Internal to the module.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <limits>
+#include <vector>
+
+#include "echopath/trace/geometry/embree_scene.h"
+
+namespace echopath {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// A hit is close when it lies this near its ray, a few units of single precision. More is due to (u, v): on a triangle 10 m long
+// and 1 mm high they are off by up to a millimetre.
+inline constexpr double kRoundedAbsolute = 1e-6;  // m
+inline constexpr double kRoundedRelative = 5e-7;
+
+template <class Real>
+void set_ray(RTCRay& ray, const VectorOf<Real>& from, const VectorOf<Real>& direction, float far) {
+  ray.org_x = static_cast<float>(from.x);
+  ray.org_y = static_cast<float>(from.y);
+  ray.org_z = static_cast<float>(from.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tnear = 0.0f;
+  ray.tfar = far;
+  ray.time = 0.0f;
+  ray.mask = 0xFFFFFFFFu;
+  ray.id = 0;
+  ray.flags = 0;
+}
+
+// Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
+// says.
+template <class Real>
+ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& from, const VectorOf<Real>& direction,
+                             float far) {
+  rays.org_x[lane] = static_cast<float>(from.x);
+  rays.org_y[lane] = static_cast<float>(from.y);
+  rays.org_z[lane] = static_cast<float>(from.z);
+  rays.dir_x[lane] = static_cast<float>(direction.x);
+  rays.dir_y[lane] = static_cast<float>(direction.y);
+  rays.dir_z[lane] = static_cast<float>(direction.z);
+  rays.tnear[lane] = 0.0f;
+  rays.tfar[lane] = far;
+  rays.time[lane] = 0.0f;
+  rays.mask[lane] = 0xFFFFFFFFu;
+  rays.id[lane] = 0;
+  rays.flags[lane] = 0;
+}
+
+#if RTC_VERSION_MAJOR >= 4
+inline void embree_intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &queries, &arguments);
+}
+
+inline void embree_occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+
+inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays); }
+#else
+inline void embree_intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &context, &queries);
+}
+
+inline void embree_occluded(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+
+inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene, &context, &rays);
+}
+#endif
+
+inline void forget_hit(RTCHit& hit) {
+  hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+inline void forget_hits(RTCHit16& hits) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    hits.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    hits.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+// -1 for each lane of a packet that is in use, else 0.
+struct alignas(64) ValidLanes {
+  int lanes[kPacketSize];
+};
+
+struct EmbreeScene::Device {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  bool has_tree_per_mesh = false;
+  std::vector<bool> has_mesh;  // by mesh ID
+
+  Device();
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  void check(const char* what) const;
+  // One tree over all triangles, or (`tree_per_mesh`) one for each mesh and one over those: then a mesh that moves costs a new tree
+  // of its own and the upper one. Both are functions of the triangles alone, however often they were built before.
+  void start_scene(size_t num_meshes, bool tree_per_mesh);
+  void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+  void build(Job* job);
+};
+
+}  // namespace echopath

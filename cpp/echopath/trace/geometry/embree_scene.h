@@ -1,0 +1,132 @@
+#pragma once
+// The posed triangles of a scene, and what rays meet of them.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/scene/scene.h"
+#include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/record/paths.h"
+#include "echopath/trace/geometry/posed_meshes.h"
+#include "echopath/trace/geometry/query_log.h"
+#include "echopath/trace/sbr/ray_formula.h"
+
+namespace echopath {
+
+struct RayHit {
+  Hit hit;
+  Vec3 position;  // rebuilt in double from (u, v), relative to the origin; on the curved surface where it is smooth
+  Vec3 normal;    // unit, flipped against the ray
+  double distance = 0.0;  // m, along the ray
+  bool is_smooth = false;
+  double stretch = 1.0;
+  Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
+};
+
+struct PacketFacets;  // embree_packets.cpp, as the next one
+struct RayLanes;
+struct ValidLanes;
+
+struct Segment {
+  Vec3 from, to;
+};
+
+// Coordinates are relative to `origin` (world), so that single precision resolves what lies around it. A ray that starts far
+// outside the scene is moved up to it in double precision first.
+// Thread-safe for queries.
+class EmbreeScene {
+ public:
+  // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build.
+  EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  // As if made anew, with the same answers, but builds only what differs from before: where something moves and meshes overlap
+  // little, trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the constructor; then it
+  // may only be destroyed.
+  void update(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
+
+  enum class Verdict { kMiss, kHit, kFalseHit };
+  // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
+  // does not find on the ray (slivers near grazing); treated as lost.
+  Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // Likewise from a point of the scene itself, on a surface or lifted off it.
+  Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // What the rays of a packet meet, lane by lane.
+  struct PacketHits {
+    std::array<Verdict, kPacketSize> verdicts;
+    std::array<Hit, kPacketSize> met;
+    LaneVectors position, normal;
+    LaneValues distance, stretch;
+    std::array<bool, kPacketSize> is_smooth{};
+    std::array<Mat3, kPacketSize> curvature;
+
+    RayHit operator[](int lane) const;
+    void set(int lane, const RayHit& hit);
+  };
+  // Likewise of the first `count` rays of a packet, from one point; 4 times as fast where they are nearly parallel. Lanes
+  // behind them hold finite numbers, too, and meet nothing.
+  void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
+  // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
+  bool occluded(const Vec3& from, const Vec3& to) const;
+  // Likewise of `count` segments; 4 times as fast, in whatever order.
+  void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
+  // Likewise between the points of a packet, in the lanes where `asked` is set, and one other point; elsewhere nothing is
+  // blocked.
+  using Lanes = std::array<bool, kPacketSize>;
+  void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
+  // From now on every query is written down, too; null: no more. One thread at a time may ask while that lasts.
+  void record_queries(QueryLog* log) { log_ = log; }
+  // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
+  // nothing else.
+  void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
+  // The point moved off its surface by a few units of single precision, so that it does not meet it again.
+  Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
+  double lift() const { return lift_; }  // m
+
+  // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
+  // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
+  // it is the same for most times, and what is at rest need not be built again.
+  static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near, bool near_moves = false);
+
+  std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
+    const Surface& surface = surfaces_[mesh_id];
+    const Triangle& triangle = surface.triangles[triangle_id];
+    return {surface.vertices[triangle[0]], surface.vertices[triangle[1]], surface.vertices[triangle[2]]};
+  }
+  // Relative to the origin.
+  const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
+
+ private:
+  struct Device;
+  struct Surface {  // of one mesh: where its arrays begin
+    const Triangle* triangles;
+    const Vec3* vertices;
+    const Vec3* normals;  // null where facets are meant
+  };
+  Vec3 moved_up(const Vec3& from, const Vec3& direction) const {
+    return from + way_up(unpacked(from), unpacked(direction), reach_) * direction;
+  }
+  SegmentRay ray_between(const Vec3& from, const Vec3& to) const {
+    return segment_ray(unpacked(from), unpacked(to), 2.0 * lift_, reach_);
+  }
+  // Of packets (embree_packets.cpp).
+  void fetch(const PacketHits& hits, PacketFacets& facets) const;
+  void ask_segments(const RayLanes& rays, ValidLanes& blocked) const;
+  // `start`: where Embree has the ray begin.
+  Verdict intersect(const Vec3& from, const Vec3& start, const Vec3& direction, RayHit& out) const;
+  Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
+  void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
+
+  std::unique_ptr<Device> device_;
+  QueryLog* log_ = nullptr;
+  double lift_ = 0.0;   // m
+  double reach_ = 0.0;  // m: rays from farther away are moved up to there
+  PosedMeshes meshes_;
+  std::vector<Surface> surfaces_;  // by mesh ID
+};
+
+}  // namespace echopath

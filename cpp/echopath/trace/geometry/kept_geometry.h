@@ -1,0 +1,39 @@
+#pragma once
+// Geometry kept from one trace of a scene to the next.
+#include <memory>
+#include <mutex>
+
+#include "echopath/trace/geometry/embree_scene.h"
+
+namespace echopath {
+
+class KeptGeometry;
+
+// Geometry in use by one trace; goes back to where it was kept, if anywhere.
+class GeometryLoan {
+ public:
+  // Of the scene at the pose: the kept one brought up to it, or a new one where `kept` is null or lends its own to another.
+  // Raises as EmbreeScene; nothing is kept then.
+  GeometryLoan(KeptGeometry* kept, const Scene& scene, const Pose& pose, const Vec3& origin, Job* job);
+  ~GeometryLoan();
+  GeometryLoan(const GeometryLoan&) = delete;
+  GeometryLoan& operator=(const GeometryLoan&) = delete;
+  EmbreeScene& operator*() const { return *geometry_; }
+
+ private:
+  KeptGeometry* kept_;
+  std::unique_ptr<EmbreeScene> geometry_;
+};
+
+// Holds the memory of one EmbreeScene between loans. Thread-safe; must outlive its loans.
+class KeptGeometry {
+ private:
+  friend class GeometryLoan;
+  std::unique_ptr<EmbreeScene> take();
+  void put_back(std::unique_ptr<EmbreeScene> geometry);
+
+  std::mutex mutex_;
+  std::unique_ptr<EmbreeScene> geometry_;
+};
+
+}  // namespace echopath

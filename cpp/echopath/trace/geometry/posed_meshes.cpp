@@ -1,0 +1,63 @@
+#include "echopath/trace/geometry/posed_meshes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace echopath {
+
+bool PosedMeshes::Source::is_same(const Source& other) const {
+  return mesh == other.mesh && deformation == other.deformation && time == other.time && smooth == other.smooth &&
+         world_from_mesh.matrix() == other.world_from_mesh.matrix();
+}
+
+PosedMeshes::Source PosedMeshes::source_of(const Scene& scene, const Pose& pose, uint32_t mesh_id) {
+  const Node& node = scene.node_of(mesh_id);
+  return {node.mesh, node.deformation, node.deformation ? pose.time() : 0.0, pose.world_from_mesh(mesh_id), node.smooth};
+}
+
+void PosedMeshes::place(Posed& posed, const Pose& pose, uint32_t mesh_id) const {
+  posed.vertices = pose.world_vertices(mesh_id);
+  posed.box.setEmpty();
+  for (Vec3& vertex : posed.vertices) {
+    vertex -= origin_;
+    posed.box.extend(vertex);
+  }
+  posed.normals = posed.source.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>();
+}
+
+std::vector<uint32_t> PosedMeshes::update(const Scene& scene, const Pose& pose, const Vec3& origin) {
+  if (origin != origin_ || meshes_.size() != scene.meshes().size()) meshes_.clear();
+  origin_ = origin;
+  meshes_.resize(scene.meshes().size());
+  std::vector<uint32_t> changed;
+  for (uint32_t mesh_id = 0; mesh_id < size(); ++mesh_id) {
+    Posed& posed = meshes_[mesh_id];
+    Source source = source_of(scene, pose, mesh_id);
+    if (source.is_same(posed.source)) continue;
+    posed.source = std::move(source);
+    place(posed, pose, mesh_id);
+    changed.push_back(mesh_id);
+  }
+  return changed;
+}
+
+double PosedMeshes::largest_coordinate() const {
+  double largest = 0.0;
+  for (const Posed& posed : meshes_) {
+    if (posed.box.isEmpty()) continue;
+    largest = std::max({largest, posed.box.min().cwiseAbs().maxCoeff(), posed.box.max().cwiseAbs().maxCoeff()});
+  }
+  return largest;
+}
+
+double PosedMeshes::mean_cover() const {
+  Eigen::AlignedBox3d whole;
+  double volumes = 0.0;
+  for (const Posed& posed : meshes_) {
+    whole.extend(posed.box);
+    if (!posed.box.isEmpty()) volumes += posed.box.volume();
+  }
+  return volumes > 0.0 ? volumes / whole.volume() : 0.0;
+}
+
+}  // namespace echopath

@@ -1,0 +1,145 @@
+#include "echopath/trace/launch/aim.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/trace/launch/fit_stratum.h"
+#include "echopath/trace/launch/scene_objects.h"
+
+namespace echopath {
+namespace {
+
+// Below kNoStratum, the field of view counted.
+constexpr size_t kMostAims = 65000;
+// Differences of axes and solid angles, relative to the latter.
+constexpr double kSameStratum = 1e-6;
+
+struct Target {
+  int object = 0, node = 0;
+  std::string name;
+  std::vector<Vec3> vertices;
+  Sphere sphere;
+  bool moves = false;
+};
+
+// As the antenna sees it over a sequence of mirrors (in travel order from there).
+Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
+  for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
+  return point;
+}
+
+bool is_same(const Stratum& a, const Stratum& b) {
+  const double size = a.solid_angle();
+  return (a.axis - b.axis).squaredNorm() < kSameStratum * size && std::abs(size - b.solid_angle()) < kSameStratum * size &&
+         (a.across - b.across).norm() < kSameStratum;
+}
+
+class Aimer {
+ public:
+  Aimer(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const AimSettings& settings)
+      : scene_(scene), mirrors_(mirrors), settings_(settings),
+        frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {}
+
+  std::optional<Aim> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
+
+  // At each image that a frustum may show.
+  std::vector<Aim> at_images(const Target& target) const {
+    std::vector<Aim> images;
+    std::vector<Vec3> vertices(target.vertices.size());
+    for (const MirrorFrustum& frustum : frusta_) {
+      if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
+      std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
+                     [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
+      const int num_mirrors = static_cast<int>(frustum.mirrors.size());
+      std::optional<Aim> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
+      if (!made) continue;
+      const auto same = std::find_if(images.begin(), images.end(), [&](const Aim& other) { return is_same(made->stratum, other.stratum); });
+      Aim& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
+      image.sequences.push_back(frustum.sequence);
+    }
+    return images;
+  }
+
+ private:
+  std::optional<Aim> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name, int num_mirrors) const {
+    std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
+    if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
+    stratum->object = target.node;
+    stratum->num_mirrors = num_mirrors;
+    Aim made{std::move(*stratum), target.object, {}, target.moves};
+    if (num_mirrors == 0) made.sequences.push_back(kDirect);
+    return made;
+  }
+
+  std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
+    std::string name = target.name;
+    for (size_t k = frustum.mirrors.size(); k-- > 0;) {
+      name += " over " + scene_.node_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])].mesh_id).name;
+    }
+    return name;
+  }
+
+  const Scene& scene_;
+  const std::vector<Mirror>& mirrors_;
+  const AimSettings& settings_;
+  std::vector<MirrorFrustum> frusta_;
+};
+
+Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObject& object, int index) {
+  Target target;
+  target.object = index;
+  target.node = object.node;
+  target.name = scene.nodes()[static_cast<size_t>(object.node)].name;
+  target.sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, object.mesh_ids);
+  for (const uint32_t id : object.mesh_ids) {
+    const std::vector<Vec3>& vertices = geometry.vertices(id);
+    target.vertices.insert(target.vertices.end(), vertices.begin(), vertices.end());
+    target.moves = target.moves || scene.is_moving(id);
+  }
+  return target;
+}
+
+// Leaves out images over the most mirrors first, then the objects that fill least of the view.
+void limit(std::vector<Aim>& objects, std::vector<Aim>& images, Aims& out) {
+  const size_t all = objects.size() + images.size();
+  std::stable_sort(images.begin(), images.end(), [](const Aim& a, const Aim& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
+  if (objects.size() > kMostAims) {
+    const auto wider = [](const Aim& a, const Aim& b) { return a.stratum.solid_angle() > b.stratum.solid_angle(); };
+    std::stable_sort(objects.begin(), objects.end(), wider);
+    objects.resize(kMostAims);
+  }
+  images.resize(std::min(images.size(), kMostAims - objects.size()));
+  out.num_left_out = static_cast<int64_t>(all - objects.size() - images.size());
+  out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
+}
+
+}  // namespace
+
+double weight_of_aim(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
+
+Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                    const AimSettings& settings) {
+  Aims out;
+  out.object_of_mesh.assign(scene.meshes().size(), -1);
+  const Aimer aimer(scene, geometry, mirrors, settings);
+  std::vector<Aim> objects, images;
+  for (const SceneObject& object : objects_of(scene)) {
+    const int index = out.num_objects++;
+    for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
+    const Target target = target_of(scene, geometry, object, index);
+    std::optional<Aim> direct = aimer.at_object(target);
+    if (!direct) {
+      out.any_unaimed = true;
+      continue;
+    }
+    objects.push_back(std::move(*direct));
+    std::vector<Aim> more = aimer.at_images(target);
+    std::move(more.begin(), more.end(), std::back_inserter(images));
+  }
+  limit(objects, images, out);
+  out.aims = std::move(objects);
+  std::move(images.begin(), images.end(), std::back_inserter(out.aims));
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,38 @@
+#pragma once
+// The objects of a scene and their images over mirrors, as targets of rays.
+#include <vector>
+
+#include "echopath/trace/mirrors/mirror_frusta.h"
+#include "echopath/trace/launch/stratum.h"
+
+namespace echopath {
+
+struct Aim {
+  Stratum stratum;                        // that holds it, without rays
+  int object = 0;                         // index into objects_of(scene)
+  std::vector<MirrorSequence> sequences;  // over which rays find it there; planes at right angles have one image in both orders
+  bool moves = false;
+};
+
+// Of the share of the rays of an image over that many mirrors (0: of the object itself), relative to others.
+double weight_of_aim(int num_mirrors);
+
+struct AimSettings {
+  Vec3 transmitter;
+  int max_mirrors = 0;
+  double largest_solid_angle = 0.0;  // sr: what fills more is left to the field of view
+  bool may_use_strips = true;
+};
+
+struct Aims {
+  std::vector<Aim> aims;             // objects first, then images
+  std::vector<int> object_of_mesh;   // by mesh ID, -1: a mirror
+  int num_objects = 0;
+  bool any_unaimed = false;          // some object has no stratum
+  int64_t num_left_out = 0;          // objects and images beyond the number of strata that a record can tell apart
+};
+
+Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                    const AimSettings& settings);
+
+}  // namespace echopath

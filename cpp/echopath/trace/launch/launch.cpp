@@ -1,0 +1,197 @@
+#include "echopath/trace/launch/launch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/random.h"
+#include "echopath/trace/launch/aim.h"
+#include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kFieldShare = 0.15;
+constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
+
+// Each batch has a shift of its own in each stratum.
+std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
+  std::vector<Eigen::Vector2d> shifts;
+  for (int batch = 0; batch < batches; ++batch) {
+    const auto k = static_cast<uint64_t>(stratum);
+    const auto shift = uniform2(seed, Stream::kLaunchShift, k, static_cast<uint32_t>(batch));
+    shifts.emplace_back(shift[0], shift[1]);
+  }
+  return shifts;
+}
+
+void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sampler) {
+  const auto k = static_cast<int64_t>(plan.strata.size());
+  const LaunchDomain domain = domain_of(stratum);
+  plan.points.push_back(launch_points(sampler, domain, num_rays, shifts_of(plan.seed, k, plan.batches)));
+  stratum.num_rays = plan.points.back()->size();
+  if (stratum.num_rays > 0) stratum.ray_density = domain.area() / plan.points.back()->cell_area() / stratum.solid_angle();
+  plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
+  plan.strata.push_back(std::move(stratum));
+}
+
+// A focus of an aim or, where `of` is their number, of the field of view.
+struct Focus {
+  const LaunchFocus* asked;
+  size_t of;
+};
+
+// The foci that are asked for in strata that there are, as far as a record can tell strata apart.
+std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<Aim>& aims, const Stratum& field) {
+  std::map<std::string, size_t> index{{field.name, aims.size()}};
+  for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, k);
+  std::vector<Focus> foci;
+  for (const LaunchFocus& one : asked) {
+    const auto found = index.find(one.of);
+    if (found != index.end() && aims.size() + foci.size() + 1 < kNoStratum) foci.push_back({&one, found->second});
+  }
+  return foci;
+}
+
+// Named by the order of the foci of one stratum.
+Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_of_owner, int number) {
+  Stratum cone;
+  cone.axis = asked.axis;
+  cone.versine = asked.versine;
+  cone.name = owner.name + ", focus " + std::to_string(number);
+  cone.object = owner.object;
+  cone.num_mirrors = owner.num_mirrors;
+  cone.focus_of = index_of_owner;
+  return cone;
+}
+
+// Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
+std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
+  double moving = 0.0, resting = 0.0;
+  for (const Aim& aim : aims) (aim.moves ? moving : resting) += weight_of_aim(aim.stratum.num_mirrors);
+  const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
+  const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
+  std::vector<double> shares;
+  for (const Aim& aim : aims) {
+    const double of_tier = aim.moves ? moving_share / moving : (1.0 - moving_share) / resting;
+    shares.push_back(aimed * of_tier * weight_of_aim(aim.stratum.num_mirrors));
+  }
+  shares.push_back(1.0 - aimed);
+  return shares;
+}
+
+// Those of the strata in the order of the plan.
+std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector<Focus>& foci, const Stratum& field,
+                                 const RayShares& shares) {
+  double mean = 0.0;
+  for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
+  const auto share_of = [&](const std::string& name) {
+    const auto found = shares.find(name);
+    return found == shares.end() ? mean : found->second;
+  };
+  std::vector<double> out;
+  for (const Aim& aim : aims) out.push_back(share_of(aim.stratum.name));
+  for (const Focus& focus : foci) out.push_back(focus.asked->share);
+  out.push_back(share_of(field.name));
+  return out;
+}
+
+// Whole rays, which add up; what is too little for a stratum falls to the last one.
+std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
+  double all = 0.0, before = 0.0;
+  for (const double share : shares) all += share;
+  std::vector<int64_t> rays;
+  int64_t done = 0, given = 0;
+  for (size_t k = 0; k + 1 < shares.size(); ++k) {
+    before += shares[k];
+    const auto end = static_cast<int64_t>(std::llround(before / all * static_cast<double>(num_rays)));
+    const int64_t here = end - done >= LaunchPlan::kFewestRays ? end - done : 0;
+    done = end;
+    given += here;
+    rays.push_back(here);
+  }
+  rays.push_back(num_rays - given);
+  return rays;
+}
+
+Stratum field_of_view(const LaunchSettings& settings) {
+  Stratum field;
+  field.axis = settings.boresight;
+  field.versine = settings.field_versine;
+  field.name = "field of view";
+  return field;
+}
+
+}  // namespace
+
+LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                       const LaunchSettings& settings) {
+  const Stratum field = field_of_view(settings);
+  Aims found = aim_at_objects(scene, geometry, mirrors,
+                              {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(),
+                               settings.sampler == Sampler::kLattice});
+  const bool is_guided = !settings.guide.shares.empty();
+  std::vector<Focus> foci;
+  if (is_guided) foci = foci_of(settings.guide.foci, found.aims, field);
+  const std::vector<double> shares = is_guided ? named_shares(found.aims, foci, field, settings.guide.shares)
+                                               : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
+  std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
+  for (size_t i = 0; i < foci.size(); ++i) {  // what has no rays of its own owns nothing
+    if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0) rays.back() += std::exchange(rays[found.aims.size() + i], 0);
+  }
+  LaunchPlan plan;
+  plan.seed = settings.seed;
+  plan.batches = settings.batches;
+  plan.num_unaimed = found.num_left_out;
+  plan.first_ray.assign(1, 0);
+  const int field_of_view = static_cast<int>(found.aims.size() + foci.size());
+  plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, field_of_view);
+  for (size_t k = 0; k < found.aims.size(); ++k) {
+    add_stratum(plan, found.aims[k].stratum, rays[k], settings.sampler);
+    if (plan.strata[k].num_rays == 0) continue;
+    for (const MirrorSequence sequence : found.aims[k].sequences) plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
+  }
+  std::map<size_t, int> numbers;
+  for (size_t i = 0; i < foci.size(); ++i) {
+    const bool is_in_field = foci[i].of == found.aims.size();
+    const Stratum& owner = is_in_field ? field : found.aims[foci[i].of].stratum;
+    const int index_of_owner = is_in_field ? field_of_view : static_cast<int>(foci[i].of);
+    const Stratum cone = focus_stratum(*foci[i].asked, owner, index_of_owner, ++numbers[foci[i].of]);
+    add_stratum(plan, cone, rays[found.aims.size() + i], settings.sampler);
+  }
+  add_stratum(plan, field, rays.back(), settings.sampler);
+  plan.foci = LaunchFoci(plan.strata);
+  return plan;
+}
+
+int LaunchPlan::stratum_of(int64_t ray) const {
+  return static_cast<int>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) - first_ray.begin()) - 1;
+}
+
+int LaunchPlan::batch_of(int stratum, int64_t ray) const {
+  const auto k = static_cast<size_t>(stratum);
+  return points[k]->batch_of(ray - first_ray[k]);
+}
+
+Eigen::Vector2d LaunchPlan::point_of(int stratum, int64_t ray) const {
+  const auto k = static_cast<size_t>(stratum);
+  return points[k]->point(ray - first_ray[k]);
+}
+
+void LaunchPlan::place(int64_t begin, int count, Places& out) const {
+  int stratum = stratum_of(begin);
+  for (int lane = 0; lane < count; ++stratum) {
+    const auto k = static_cast<size_t>(stratum);
+    const int end = static_cast<int>(std::min<int64_t>(count, first_ray[k + 1] - begin));
+    points[k]->points(begin + lane - first_ray[k], end - lane, out.x.lanes + lane, out.y.lanes + lane);
+    for (; lane < end; ++lane) {
+      out.strata[static_cast<size_t>(lane)] = stratum;
+      out.batches[static_cast<size_t>(lane)] = batches == 1 ? 0 : batch_of(stratum, begin + lane);
+    }
+  }
+}
+
+}  // namespace echopath

@@ -1,0 +1,69 @@
+#pragma once
+// Where rays start: strata of directions and the low-discrepancy set inside each.
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "echopath/trace/launch/launch_focus.h"
+#include "echopath/trace/mirrors/mirror_frusta.h"
+#include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/launch/ray_owners.h"
+#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/stratum.h"
+
+namespace echopath {
+
+// One stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over mirrors,
+// and the antenna's field of view, the last one. Objects are the children of the scene's root, without their mirrors; those that
+// surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes of mirrors. Each
+// stratum counts the echoes that it owns (ray_owners.h).
+// Unless told otherwise, objects that move have half of the rays that are aimed at least; otherwise objects
+// and images over one mirror share alike, and images over two have a quarter of that. The field of view has 15 % where it owns
+// anything. A stratum that would get fewer than kFewestRays has none: what it would own belongs to the field of view.
+// A guide may set foci into the strata (launch_focus.h), which stand between the images and the field of view.
+struct LaunchPlan {
+  static constexpr int64_t kFewestRays = 4;
+
+  // What belongs to each of a packet's rays.
+  struct Places {
+    std::array<int, kPacketSize> strata, batches;
+    LaneValues x, y;  // of the stratum's lattice
+  };
+
+  std::vector<Stratum> strata;
+  std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
+  std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
+  RayOwners owners;
+  LaunchFoci foci;
+  uint64_t seed = 0;
+  int batches = 1;
+  int64_t num_unaimed = 0;  // objects and images that have no stratum of their own because there are too many of them
+
+  int stratum_of(int64_t ray) const;
+  int batch_of(int stratum, int64_t ray) const;
+  // Rays per sr inside the stratum, of all batches together and of one of them.
+  double density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density; }
+  double lattice_density(int stratum) const { return density(stratum) / batches; }
+  Eigen::Vector2d point_of(int stratum, int64_t ray) const;
+  // Of `count` rays in a row.
+  void place(int64_t begin, int count, Places& out) const;
+  // The field of view, or a focus in it.
+  bool is_field_of_view(int stratum) const { return foci.owner(stratum) == owners.field_of_view(); }
+};
+
+struct LaunchSettings {
+  int64_t num_rays = 0;
+  uint64_t seed = 0;
+  Sampler sampler = Sampler::kLattice;
+  int batches = 1;  // independent shifts of the set of each stratum, which share its rays
+  int max_image_mirrors = kMaxLegMirrors;  // images over more get no stratum
+  Vec3 transmitter = Vec3::Zero();
+  Vec3 boresight = Vec3::UnitX();
+  double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
+  LaunchGuide guide;  // without shares: the rule above, and no foci
+};
+
+LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                       const LaunchSettings& settings);
+
+}  // namespace echopath

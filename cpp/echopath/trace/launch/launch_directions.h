@@ -1,0 +1,55 @@
+#pragma once
+// The strata of a launch plan, made ready to turn the points of a lattice into directions.
+#include <vector>
+
+#include "echopath/base/phasor.h"
+#include "echopath/base/scalar_math.h"
+#include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/stratum.h"
+
+namespace echopath {
+
+// A cone as the equal-area (Lambert) projection of the unit disc, or a strip as that of Archimedes' cylinder: x is the azimuth along
+// the great circle in rad, y the sine of the elevation over the middle of the strip.
+class StratumFrame {
+ public:
+  explicit StratumFrame(const Stratum& stratum);
+  bool is_strip() const { return is_strip_; }
+  // Unit. In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
+  ECHOPATH_INLINE VectorOf<double> in_cone(double x, double y) const {
+    const double here = size_ * ScalarMath::smaller(1.0, x * x + y * y);
+    const double scale = ScalarMath::root(size_ * (2.0 - here));
+    return unit((1.0 - here) * axis_ + (scale * x) * first_ + (scale * y) * second_);
+  }
+  ECHOPATH_INLINE VectorOf<double> in_strip(double x, double y) const {
+    const double height = size_ + y, level = ScalarMath::root(1.0 - height * height);
+    const Phasor turn = phasor_of_cycles(kPerTurn * x);
+    return unit((level * turn.re) * axis_ + (level * turn.im) * first_ + height * second_);
+  }
+
+ private:
+  static constexpr double kPerTurn = 0.15915494309189535;  // 1 / (2 pi)
+  ECHOPATH_INLINE static VectorOf<double> unit(const VectorOf<double>& out) { return (1.0 / ScalarMath::root(dot(out, out))) * out; }
+
+  VectorOf<double> axis_, first_, second_;
+  double size_;  // versine of the cone; sine of the elevation of the strip's middle
+  bool is_strip_;
+};
+
+// In which the points of a stratum's lattice lie.
+LaunchDomain domain_of(const Stratum& stratum);
+
+class LaunchDirections {
+ public:
+  explicit LaunchDirections(const std::vector<Stratum>& strata) : frames_(strata.begin(), strata.end()) {}
+  // Unit, of a point of the stratum's lattice.
+  Vec3 direction(int stratum, const Eigen::Vector2d& point) const;
+  // Of rays of one packet and one stratum, in the given lanes.
+  void launch(int stratum, const LaneValues& x, const LaneValues& y, LaneRange lanes, LaneVectors& directions) const;
+
+ private:
+  std::vector<StratumFrame> frames_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,59 @@
+#pragma once
+// Cones inside a stratum in which rays lie closer, about what its own rays are too far apart for.
+#include <string>
+#include <vector>
+
+#include "echopath/trace/launch/stratum.h"
+
+namespace echopath {
+
+// A cone that is asked for. share: of the rays, in the units of RayShares.
+struct LaunchFocus {
+  std::string of;  // name of the stratum that it is a part of
+  Vec3 axis = Vec3::UnitX();
+  double versine = 0.0;
+  double share = 0.0;
+};
+
+// How to launch rays: RayShares of the strata and the foci inside them.
+struct LaunchGuide {
+  RayShares shares;
+  std::vector<LaunchFocus> foci;
+
+  // Raises invalid_argument naming the field, the rule and the value.
+  void validate() const;
+};
+
+// That of a plan that was carried out, to do the same once more.
+LaunchGuide guide_like(const std::vector<Stratum>& strata);
+
+// How much of a direction belongs to a focus: 1 up to kFocusCore of its radius, and from there on smoothly (with two continuous
+// derivatives) down to 0 at its rim. An edge there would cut the surface, and radiate.
+double focus_weight(const Stratum& focus, const Vec3& direction);
+inline constexpr double kFocusCore = 0.6;
+
+// The foci of a launch plan. A direction belongs to its owner, the stratum without foci, and to the foci inside in parts that
+// add up to one: to the first focus with its weight w1, to the second with (1 - w1) w2, and so on; to the owner with the rest.
+// Each is an even lattice, of which a ray counts with its part of the direction, so that together they are as unbiased as the
+// owner would be alone.
+class LaunchFoci {
+ public:
+  LaunchFoci() = default;
+  explicit LaunchFoci(const std::vector<Stratum>& strata);
+  // Whose echoes the rays of a stratum count: of a focus its owner.
+  int owner(int stratum) const { return owner_.empty() ? stratum : owner_[static_cast<size_t>(stratum)]; }
+  // How many rays of its owner one ray of this stratum stands for in that direction; 1 where there are no foci.
+  double rays_of_owner(int stratum, const Vec3& direction) const;
+  bool has_any(int stratum) const { return !owner_.empty() && !foci_[static_cast<size_t>(owner(stratum))].empty(); }
+
+ private:
+  struct Focus {
+    int stratum;
+    Stratum cone;
+    double spacing;  // density of the owner over its own
+  };
+  std::vector<int> owner_;                // [strata]; empty: no stratum has foci
+  std::vector<std::vector<Focus>> foci_;  // by owner
+};
+
+}  // namespace echopath

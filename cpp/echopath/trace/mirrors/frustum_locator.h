@@ -1,0 +1,34 @@
+#pragma once
+// Which frusta may light a point: the space about the mirrors in cells, each with the frusta that reach into it.
+#include <span>
+#include <vector>
+
+#include "echopath/trace/mirrors/mirror_frusta.h"
+
+namespace echopath {
+
+class FrustumLocator {
+ public:
+  FrustumLocator() = default;
+  // `radius`: m, as in MirrorFrustum::reaches.
+  FrustumLocator(const std::vector<MirrorFrustum>& frusta, double radius);
+  // Indices of all frusta that a ball about the point reaches into, and of some others; ascending.
+  std::span<const int> near(const Vec3& point) const;
+
+ private:
+  struct Cell {
+    int axis = -1;       // along which it is halved, -1: not
+    double split = 0.0;  // m
+    int second = 0;      // the half above; the one below follows this cell
+    size_t begin = 0, end = 0;  // in entries_
+  };
+  using Regions = std::vector<std::vector<HalfSpace>>;  // of the frusta
+  int grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth, int num_vain);
+
+  Eigen::AlignedBox3d box_;  // of all cells
+  std::vector<int> all_;     // what may reach a point outside
+  std::vector<Cell> cells_;
+  std::vector<int> entries_;
+};
+
+}  // namespace echopath

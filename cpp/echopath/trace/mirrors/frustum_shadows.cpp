@@ -1,0 +1,129 @@
+#include "echopath/trace/mirrors/frustum_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echopath {
+namespace {
+
+constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near has no direction
+constexpr double kOffPlane = 1e-6;    // m: what hides a mirror lies this far before its plane, and behind that of the last one
+constexpr double kBefore = 1e-3;      // m: what is met this near to the mirror does not hide it
+constexpr double kFarAway = 1e12;     // m
+constexpr int kMostLooks = 24;        // rays for one window; what they leave unseen counts as seen
+constexpr size_t kMostPieces = 24;    // likewise of the parts into which shadows cut it
+
+using Polygons = std::vector<std::vector<Vec3>>;
+
+Vec3 centre_of(const std::vector<Vec3>& polygon) {
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& corner : polygon) centre += corner / static_cast<double>(polygon.size());
+  return centre;
+}
+
+// Cuts a shadow, the cone from `apex` whose inward normals are `rims`, out of a polygon; appends what is outside.
+void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3>& rims, Polygons& outside) {
+  for (const Vec3& rim : rims) {
+    std::vector<Vec3> beside = clipped(polygon, -rim, -rim.dot(apex));
+    if (!beside.empty()) outside.push_back(std::move(beside));
+    polygon = clipped(polygon, rim, rim.dot(apex));
+    if (polygon.empty()) return;
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
+  std::vector<Vec3> inside;
+  const auto add = [&](const Vec3& corner) {
+    if (inside.empty() || (corner - inside.back()).norm() > kSameCorner) inside.push_back(corner);
+  };
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double before = normal.dot(from) - offset, behind = normal.dot(to) - offset;
+    if (before >= 0) add(from);
+    if ((before < 0) != (behind < 0)) add(from + before / (before - behind) * (to - from));
+  }
+  if (inside.size() > 1 && (inside.front() - inside.back()).norm() <= kSameCorner) inside.pop_back();
+  return inside.size() < 3 ? std::vector<Vec3>() : inside;
+}
+
+std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
+  const Vec3 centre = centre_of(polygon);
+  std::vector<Vec3> rims;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 rim = (polygon[i] - apex).cross(polygon[(i + 1) % polygon.size()] - apex);
+    rims.push_back((rim.dot(centre - apex) < 0 ? -1.0 : 1.0) * rim.normalized());
+  }
+  return rims;
+}
+
+FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors)
+    : geometry_(geometry), mirrors_(mirrors) {
+  for (size_t i = 0; i < mirrors.size(); ++i) {
+    mirror_of_mesh_.resize(std::max<size_t>(mirror_of_mesh_.size(), mirrors[i].mesh_id + 1), -1);
+    mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
+  }
+}
+
+// Whether something stands between the source and a point of the target; sets `occluder` to a polygon of it, as far as that
+// lies between the two planes, or to none where its shadow cannot be told.
+bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const {
+  Vec3 from = source.apex;
+  if (source.lit_normal) {
+    const double behind = source.offset - source.lit_normal->dot(from), ahead = source.lit_normal->dot(point) - source.offset;
+    if (ahead <= kOffPlane) return false;
+    from = geometry_.lifted(from + behind / (behind + ahead) * (point - from), *source.lit_normal);
+  }
+  RayHit met;
+  const double length = (point - from).norm();
+  const Vec3 direction = (point - from) / length;
+  const EmbreeScene::Verdict verdict = source.lit_normal ? geometry_.intersect_from_surface(from, direction, met)
+                                                         : geometry_.intersect(from, direction, met);
+  if (verdict != EmbreeScene::Verdict::kHit || met.distance > length - kBefore) return false;
+  const uint32_t mesh = met.hit.mesh_id;
+  const int mirror = mesh < mirror_of_mesh_.size() ? mirror_of_mesh_[mesh] : -1;
+  if (mirror >= 0 && mirrors_[static_cast<size_t>(mirror)].is_solid) {
+    occluder = mirrors_[static_cast<size_t>(mirror)].outline;
+  } else {
+    const auto corners = geometry_.corners(mesh, met.hit.triangle_id);
+    occluder.assign(corners.begin(), corners.end());
+  }
+  if (source.lit_normal) occluder = clipped(occluder, *source.lit_normal, source.offset + kOffPlane);
+  const double side = target.signed_distance(source.apex) > 0 ? 1.0 : -1.0;
+  occluder = clipped(occluder, side * target.normal, side * target.normal.dot(target.point) + kOffPlane);
+  if (occluder.empty()) return true;
+  const Vec3 normal = (occluder[1] - occluder[0]).cross(occluder[2] - occluder[0]).normalized();
+  if (std::abs(normal.dot(source.apex - occluder[0])) < kOffPlane) occluder.clear();
+  return true;
+}
+
+void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const {
+  Polygons unseen = {window}, seen, left;
+  std::vector<Vec3> occluder;
+  bool is_whole = true;
+  for (int looks = 0; !unseen.empty() && looks < kMostLooks && unseen.size() < kMostPieces; ++looks) {
+    if (!look(source, target, centre_of(unseen.back()), occluder) || occluder.empty()) {
+      seen.push_back(std::move(unseen.back()));
+      unseen.pop_back();
+      continue;
+    }
+    const std::vector<Vec3> rims = rims_of(occluder, source.apex);
+    left.clear();
+    for (std::vector<Vec3>& piece : unseen) cut_out(std::move(piece), source.apex, rims, left);
+    std::swap(unseen, left);
+    is_whole = false;
+  }
+  if (is_whole) return;
+  seen.insert(seen.end(), unseen.begin(), unseen.end());
+  if (seen.empty()) {
+    window.clear();
+    return;
+  }
+  std::vector<Vec3> corners;
+  for (const std::vector<Vec3>& piece : seen) corners.insert(corners.end(), piece.begin(), piece.end());
+  // Clipping by a plane far away drops corners that coincide.
+  window = seen.size() == 1 ? seen.front() : clipped(outline_of(target, corners), target.normal, -kFarAway);
+}
+
+}  // namespace echopath

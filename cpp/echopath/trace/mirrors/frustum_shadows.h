@@ -1,0 +1,39 @@
+#pragma once
+// What of a mirror the surfaces before it hide from where a frustum comes from.
+#include <vector>
+
+#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/mirrors/mirrors.h"
+
+namespace echopath {
+
+// The part of a convex polygon where normal.dot(p) >= offset (Sutherland, Hodgman 1974); empty where it is a mere line.
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset);
+
+// Inward unit normals of the planes through `apex` and each edge of a convex polygon.
+std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex);
+
+// The plane that a frustum leaves, its antenna or its last mirror.
+struct FrustumSource {
+  Vec3 apex;                      // the antenna or its image
+  const Vec3* lit_normal = nullptr;  // of the last mirror, unit, on the lit side; null for the antenna itself
+  double offset = 0.0;            // of its plane
+};
+
+class FrustumShadows {
+ public:
+  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors);
+  // Leaves of `window`, a convex polygon on the mirror `target`, a convex polygon that holds all that can be seen from the
+  // source; empty where all is hidden. What is left may hide some more: rays find out. Shadows are taken away one after
+  // the other, each of a whole mirror without holes or of the one triangle that was met.
+  void shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const;
+
+ private:
+  bool look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const;
+
+  const EmbreeScene& geometry_;
+  const std::vector<Mirror>& mirrors_;
+  std::vector<int> mirror_of_mesh_;  // by mesh ID as far as mirrors go, -1: none
+};
+
+}  // namespace echopath

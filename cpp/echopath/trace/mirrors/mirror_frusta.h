@@ -1,0 +1,73 @@
+#pragma once
+// What an antenna lights over sequences of mirrors: its images, each with the window through which it is seen.
+// Source: beam tracing after Heckbert, Hanrahan 1984.
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "echopath/trace/geometry/box_hierarchy.h"
+#include "echopath/trace/mirrors/frustum_shadows.h"
+#include "echopath/trace/mirrors/mirrors.h"
+
+namespace echopath {
+
+inline constexpr int kMaxLegMirrors = 2;  // mirrors between a surface point and an antenna
+inline constexpr size_t kMostFrusta = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
+
+// A sequence of mirrors in travel order from the antenna to the surface, as a number. 0: none.
+using MirrorSequence = int64_t;
+inline constexpr MirrorSequence kDirect = 0;
+inline constexpr MirrorSequence kLongSequence = -2;  // of more than kMaxLegMirrors, which have no number
+// `sequence` and then `mirror` (an index into `num_mirrors` mirrors).
+inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_mirrors) {
+  return sequence * (static_cast<MirrorSequence>(num_mirrors) + 1) + mirror + 1;
+}
+
+// The space that an antenna lights over one sequence of mirrors: what lies behind the window as seen from the last image.
+struct MirrorFrustum {
+  MirrorSequence sequence = kDirect;
+  std::vector<int> mirrors;   // in travel order from the antenna
+  std::vector<Vec3> images;   // of the antenna over the first 1, 2, .. of them
+  Vec3 lit_normal;            // of the last mirror, unit, on the side that is lit
+  double offset = 0.0;        // of its plane: lit_normal.dot(p) > offset is lit
+  std::vector<Vec3> window;   // corners of what the last image is seen through, on the last mirror
+  std::vector<Vec3> rims;     // inward unit normals of the planes through the last image and an edge of the window
+
+  const Vec3& image() const { return images.back(); }
+  // A ball about `point` reaches into the frustum, `radius` in m. True for all that is lit and for little else: that the mirrors
+  // have no holes and nothing stands in the way is for rays to find out.
+  bool reaches(const Vec3& point, double radius) const;
+  // All points that a ball of `radius` (m) reaches from, as half-spaces.
+  std::vector<HalfSpace> region(double radius) const;
+};
+
+struct FrustumSearch {
+  int max_mirrors = kMaxLegMirrors;
+  double slack = 0.0;  // m, by which windows are larger than what is lit
+  size_t max_frusta = kMostFrusta;
+};
+
+struct MirrorFrusta {
+  std::vector<MirrorFrustum> frusta;  // by number of mirrors and then by mirrors in travel order
+  int64_t num_unfollowed = 0;         // that have fewer mirrors than asked for, and whose further ones were not looked for
+};
+
+class FrustumFinder {
+ public:
+  // `geometry`: where given, sequences whose last mirror lies wholly behind other surfaces are left out. Both must outlive this.
+  explicit FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry = nullptr);
+  // The frusta of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing are left out.
+  // Raises Cancelled when the job is.
+  MirrorFrusta find(const Vec3& antenna, const FrustumSearch& search, const Job* job = nullptr) const;
+
+ private:
+  void extend(const MirrorFrustum* frustum, const Vec3& source, double slack, std::vector<MirrorFrustum>& out) const;
+  bool reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const;
+  void follow(size_t begin, size_t end, const FrustumSearch& search, const Job* job, MirrorFrusta& out) const;
+
+  const std::vector<Mirror>& mirrors_;
+  BoxHierarchy boxes_;  // of the mirrors
+  std::unique_ptr<const FrustumShadows> shadows_;
+};
+
+}  // namespace echopath

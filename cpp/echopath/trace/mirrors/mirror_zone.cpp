@@ -1,0 +1,128 @@
+#include "echopath/trace/mirrors/mirror_zone.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
+constexpr double kGap = 1.0 / 16.0;   // wavelengths: surfaces that lie so near to each other abut
+
+// Which way, and by how much, the lit point of the target moves as the point of the mirror does by 1 m along the axis.
+Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget& target) {
+  const Vec3& normal = target.point.normal;
+  const Vec3 across = along - target.arrival * (along.dot(normal) / target.arrival.dot(normal));
+  return (view.before + view.behind) / view.before * across;
+}
+
+class AxisCover {
+ public:
+  AxisCover(const EmbreeScene& geometry, const MirrorView& view, const ZoneAxis& axis, const ZoneTarget* target,
+            double wavelength, int64_t& num_queries)
+      : geometry_(geometry), view_(view), axis_(axis), target_(target), gap_(std::max(kGap * wavelength, 4.0 * geometry.lift())),
+        num_queries_(num_queries) {}
+
+  ZoneCover look() {
+    ZoneCover cover;
+    const double ample = 2.0 * axis_.half * kAmple;
+    const std::array<Vec3, 2> ways = {axis_.along, -axis_.along};
+    std::array<SurfaceEnd, 2> ends;
+    if (is_ample(ample, ways)) return cover;
+    double width = 0.0;
+    for (size_t k = 0; k < 2; ++k) {
+      ends[k] = find_surface_end(geometry_, view_.point, ways[k], ample, gap_, num_queries_);
+      width += ends[k].distance;
+    }
+    if (width >= ample) return cover;
+    cover.share = std::min(1.0, 0.5 * (half_covered(ends[0]) + half_covered(ends[1])) / axis_.half);
+    if (!target_) return cover;
+    const double narrowness = std::min(1.0, (2.0 * axis_.half / width - 1.0 / kAmple) / (1.0 - 1.0 / kAmple));
+    const std::complex<double> left = field_at(ends[0], ways[0]) + field_at(ends[1], ways[1]) - 1.0;
+    cover.field = 1.0 - narrowness * (1.0 - left);
+    return cover;
+  }
+
+ private:
+  // Whether the surface is so wide, as far as that can be told soon.
+  bool is_ample(double ample, const std::array<Vec3, 2>& ways) {
+    double width = 0.0;
+    for (const Vec3& way : ways) width += distance_to_rim(geometry_, view_.point.hit, view_.point.position, way);
+    if (width >= ample) return true;
+    const auto reaches = [&](const Vec3& way) {
+      return surface_reaches(geometry_, view_.point, way, ample, gap_, num_queries_);
+    };
+    return reaches(ways[0]) || reaches(ways[1]);
+  }
+
+  double half_covered(const SurfaceEnd& end) const {
+    return end.is_wall ? std::max(end.distance, axis_.half) : end.distance;
+  }
+
+  std::complex<double> field_at(const SurfaceEnd& end, const Vec3& way) {
+    if (end.is_wall || target_goes_on(2.0 * end.distance, way)) return 1.0;
+    return field_beside_edge(end.distance / axis_.half);
+  }
+
+  // Whether the target reaches over what the mirror's point lights as it moves by `distance`.
+  bool target_goes_on(double distance, const Vec3& way) {
+    if (target_->point.is_smooth) return false;
+    const Vec3 shift = shift_on_target(view_, way, *target_);
+    const double length = shift.norm(), reach = distance * length;
+    if (length == 0) return true;
+    return surface_reaches(geometry_, target_->point, shift / length, reach, gap_, num_queries_);
+  }
+
+  const EmbreeScene& geometry_;
+  const MirrorView& view_;
+  const ZoneAxis& axis_;
+  const ZoneTarget* target_;
+  double gap_;
+  int64_t& num_queries_;
+};
+
+}  // namespace
+
+std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength) {
+  const Vec3& normal = view.point.normal;
+  const double cos_incidence = -normal.dot(view.arrival);
+  const Vec3 slant = view.arrival + cos_incidence * normal;
+  const double sine = slant.norm();
+  std::array<ZoneAxis, 2> axes;
+  axes[0].along = sine > 1e-6 ? Vec3(slant / sine) : normal.unitOrthogonal();
+  axes[1].along = normal.cross(axes[0].along);
+  for (ZoneAxis& axis : axes) {
+    const double tilt = axis.along.dot(view.arrival);
+    const double flat = (1.0 - tilt * tilt) * (1.0 / view.before + 1.0 / view.behind);
+    const double curved = view.point.is_smooth ? axis.along.dot(view.point.curvature * axis.along) : 0.0;
+    const double bend = std::max(std::abs(flat + 2.0 * cos_incidence * curved), 1e-12);
+    axis.half = std::sqrt(wavelength / bend);
+    axis.spread = bend / flat;
+  }
+  return axes;
+}
+
+ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
+                        int64_t& num_queries) {
+  ZoneCover cover;
+  for (const ZoneAxis& axis : zone_axes(view, wavelength)) {
+    const ZoneCover along = AxisCover(geometry, view, axis, target, wavelength, num_queries).look();
+    cover.share *= along.share;
+    cover.field *= along.field;
+  }
+  return cover;
+}
+
+// Auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.
+std::complex<double> field_beside_edge(double within) {
+  const double x = std::sqrt(2.0) * within;
+  const double f = (1.0 + 0.926 * x) / (2.0 + x * (1.792 + x * 3.104));
+  const double g = 1.0 / (2.0 + x * (4.142 + x * (3.492 + x * 6.670)));
+  const double angle = -kPi * within * within;
+  return 1.0 + 0.5 * std::complex<double>(1.0, 1.0) * std::complex<double>(-g, f) *
+                   std::complex<double>(std::cos(angle), std::sin(angle));
+}
+
+}  // namespace echopath

@@ -1,0 +1,51 @@
+#pragma once
+// A surface as a mirror between two points: how much of the Fresnel zone it covers, and what its edges leave of the field.
+#include <array>
+#include <complex>
+
+#include "echopath/trace/geometry/surface_extent.h"
+
+namespace echopath {
+
+// A specular bounce: the point and the unit direction in which the wave arrives there, `before` and `behind` the unfolded
+// lengths in m from the source and to what is lit.
+struct MirrorView {
+  const RayHit& point;
+  Vec3 arrival;
+  double before, behind;
+};
+
+// The two axes of the zone, in the plane of incidence and across it.
+struct ZoneAxis {
+  Vec3 along;            // unit, tangent to the surface
+  double half = 0.0;     // m: a wave over a point so far off comes half a wavelength later
+  double spread = 1.0;   // of the tube of rays behind the bounce, over that behind a flat mirror
+};
+std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength);
+
+struct ZoneCover {
+  double share = 1.0;                // of the zone's extents, product of both axes, at most 1
+  std::complex<double> field = 1.0;  // what the edges of the mirror leave of the field of an endless one
+};
+
+// The share that the surface around a facet's point covers, and with a `target`, the surface that the wave lights, the field
+// that reaches it.
+//
+// field: Kirchhoff's integral over the mirror by stationary phase, for each axis F(a) + F(b) - 1 with a and b the distances
+// to its edges in half zones and F the field behind a straight edge (Born and Wolf, "Principles of Optics", 8.7). The inside of
+// a corner is no edge: images of a wedge of 90 degrees know none. What an edge takes from the lit part of a flat target it
+// adds beyond the shadow boundary, with the same phase; where the target goes on as far beyond as the point lies within, the
+// edge therefore counts as none. A surface that is wider than the zone by kAmple counts as endless: so closed forms of large
+// corners, geometrical optics up to the last surface, hold; between that and the zone's width the edges come in.
+// Valid where the surface is flat over the zone and its edges run about along the axes.
+struct ZoneTarget {
+  const RayHit& point;
+  Vec3 arrival;  // unit
+};
+ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
+                        int64_t& num_queries);
+
+// The field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
+std::complex<double> field_beside_edge(double within);
+
+}  // namespace echopath

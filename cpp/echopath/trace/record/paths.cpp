@@ -1,0 +1,150 @@
+#include "echopath/trace/record/paths.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+
+namespace echopath {
+namespace {
+
+constexpr size_t kHitsPerWord = 64;
+constexpr float kBarycentricRounding = 1e-3f;  // what u + v may exceed 1 by, as hits that are moved to an edge do
+
+template <class T>
+std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep, size_t count, Job* job) {
+  if (job) job->throw_if_cancelled();
+  std::vector<T> out;
+  out.reserve(count);
+  for (size_t i = 0; i < keep.size(); ++i) {
+    if (keep[i]) out.push_back(values[i]);
+  }
+  return out;
+}
+
+// A set of hits that tells quickly how many of its members come before one.
+class HitSet {
+ public:
+  explicit HitSet(size_t num_hits) : words_((num_hits + kHitsPerWord - 1) / kHitsPerWord), before_(words_.size()) {}
+  void insert(size_t hit) { words_[hit / kHitsPerWord] |= uint64_t{1} << (hit % kHitsPerWord); }
+  bool has(size_t hit) const { return (words_[hit / kHitsPerWord] >> (hit % kHitsPerWord)) & 1u; }
+  // Makes `rank` right; returns the number of members.
+  int64_t count() {
+    int64_t sum = 0;
+    for (size_t i = 0; i < words_.size(); ++i) {
+      before_[i] = sum;
+      sum += std::popcount(words_[i]);
+    }
+    return sum;
+  }
+  int64_t rank(size_t hit) const {
+    const uint64_t lower = words_[hit / kHitsPerWord] & ((uint64_t{1} << (hit % kHitsPerWord)) - 1);
+    return before_[hit / kHitsPerWord] + std::popcount(lower);
+  }
+
+ private:
+  std::vector<uint64_t> words_;
+  std::vector<int64_t> before_;
+};
+
+bool is_finite(std::complex<float> value) { return std::isfinite(value.real()) && std::isfinite(value.imag()); }
+
+void validate_hit(const Hit& hit, const Scene& scene) {
+  require(hit.mesh_id < scene.meshes().size(), "mesh_id", "must be a mesh of the scene", hit.mesh_id);
+  const size_t num_triangles = scene.node_of(hit.mesh_id).mesh->triangles().size();
+  require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
+  require(hit.u >= 0.0f && hit.v >= 0.0f && hit.u + hit.v <= 1.0f + kBarycentricRounding, "u and v",
+          "must not be negative, their sum at most 1", hit.u + hit.v);
+}
+
+HitSet used_hits(const Paths& paths) {
+  HitSet used(static_cast<size_t>(paths.num_hits()));
+  for (size_t i = 0; i < paths.offsets.size(); ++i) {
+    for (int k = 0; k < paths.num_bounces[i]; ++k) used.insert(static_cast<size_t>(paths.offsets[i] + k));
+  }
+  return used;
+}
+
+void validate_foci(const std::vector<Stratum>& strata) {
+  for (const Stratum& stratum : strata) {
+    const bool is_valid = stratum.focus_of == -1 || (stratum.focus_of >= 0 && stratum.focus_of < std::ssize(strata) &&
+                                                     !strata[static_cast<size_t>(stratum.focus_of)].is_focus());
+    require(is_valid, "focus_of", "must be -1 or the index of a stratum that is no focus", stratum.focus_of);
+  }
+}
+
+}  // namespace
+
+void Paths::validate() const {
+  const size_t size = offsets.size();
+  require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
+              batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size) &&
+              (jones.empty() || jones.size() == size),
+          "paths", "all arrays must have one entry per path, paths", size);
+  require(frame.num_batches >= 1 && frame.num_batches <= 64, "num_batches", "must lie in [1, 64]", frame.num_batches);
+  require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
+          "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());
+  validate_foci(frame.strata);
+  for (size_t path = 0; path < size; ++path) validate_path(path);
+  for (const Hit& hit : *hits) validate_hit(hit, *scene);
+}
+
+void Paths::validate_path(size_t path) const {
+  const int count = num_bounces[path];
+  require(count >= 1 && count <= 64, "num_bounces", "must lie in [1, 64]", count);
+  require(offsets[path] >= 0 && offsets[path] <= num_hits() - count, "offsets", "must lead to hits", offsets[path]);
+  require(count == 64 || diffuse[path] >> count == 0, "diffuse", "must have no bits beyond num_bounces", diffuse[path]);
+  require(batch[path] == kNoBatch || batch[path] < frame.num_batches, "batch", "must be one of the frame's",
+          int{batch[path]});
+  require(stratum[path] == kNoStratum || stratum[path] < frame.strata.size(), "stratum", "must be one of the frame's",
+          int{stratum[path]});
+  require(is_finite(weight[path]), "weight", "must be finite", weight[path]);
+  if (!curved_cell.empty()) {
+    const bool are_finite =
+        std::all_of(curved_cell[path].begin(), curved_cell[path].end(), [](float x) { return std::isfinite(x); });
+    require(are_finite, "curved_cell", "must be finite, path", path);
+  }
+  if (!jones.empty()) {
+    require(std::all_of(jones[path].begin(), jones[path].end(), is_finite), "jones", "must be finite, path", path);
+  }
+}
+
+Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
+  require(static_cast<int64_t>(keep.size()) == num_paths(), "keep", "must have one entry per path", keep.size());
+  const auto count = static_cast<size_t>(std::count_if(keep.begin(), keep.end(), [](uint8_t value) { return value != 0; }));
+  const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
+  Paths out;
+  out.hits = hits;
+  out.offsets = column(offsets);
+  out.num_bounces = column(num_bounces);
+  out.diffuse = column(diffuse);
+  out.weight = column(weight);
+  out.stratum = column(stratum);
+  out.batch = column(batch);
+  out.flags = column(flags);
+  if (!curved_cell.empty()) out.curved_cell = column(curved_cell);
+  if (!jones.empty()) out.jones = column(jones);
+  out.scene = scene;
+  out.radar = radar;
+  out.frame = frame;
+  return out;
+}
+
+Paths Paths::with_own_hits(Job* job) const {
+  HitSet used = used_hits(*this);
+  if (job) job->throw_if_cancelled();
+  auto own = std::make_shared<std::vector<Hit>>();
+  own->reserve(static_cast<size_t>(used.count()));
+  for (size_t hit = 0; hit < static_cast<size_t>(num_hits()); ++hit) {
+    if (used.has(hit)) own->push_back((*hits)[hit]);
+  }
+  if (job) job->throw_if_cancelled();
+  Paths out = *this;
+  out.hits = std::move(own);
+  for (int64_t& offset : out.offsets) offset = used.rank(static_cast<size_t>(offset));
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,119 @@
+#pragma once
+// The record of a trace: what every ray touched. Immutable after the trace; selections share the hits.
+#include <array>
+#include <bit>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/em/footprint.h"
+#include "echopath/em/jones.h"
+#include "echopath/radar/radar.h"
+#include "echopath/scene/scene.h"
+#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/stratum.h"
+
+namespace echopath {
+
+struct Hit {  // 16 bytes
+  uint32_t mesh_id;
+  uint32_t triangle_id;
+  float u, v;
+
+  Hit() {}  // not set: so that an array of hits is made without touching its memory
+  Hit(uint32_t mesh, uint32_t triangle, float first, float second) : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
+};
+static_assert(sizeof(Hit) == 16);
+
+// The stratum of paths that rays did not find (image method).
+inline constexpr uint16_t kNoStratum = 65535;
+
+// The batch of paths that rays did not find (image method): they stand in each batch's estimate in full.
+inline constexpr uint8_t kNoBatch = 255;
+
+// Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
+// it was traced with the antennas exchanged. A chain of several diffuse hits has the coefficients of its travel order.
+inline constexpr uint32_t kReversedPath = 1;
+// Flag of the paths of every other ray (half_of_ray): two halves of the rays, each evenly spread over the launch directions.
+// Paths of the image method belong to neither, whatever their flag.
+inline constexpr uint32_t kSecondHalf = 2;
+// The flag of a ray's paths by its index: 0 or kSecondHalf. The parity of its digits (Thue and Morse), so that
+// both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them apart.
+inline constexpr uint32_t half_of_ray(int64_t index) {
+  return std::popcount(static_cast<uint64_t>(index)) % 2 == 0 ? 0 : kSecondHalf;
+}
+
+struct TraceStatistics {
+  int64_t num_rays = 0;        // launched
+  int64_t num_queries = 0;     // closest-hit and shadow queries
+  int64_t num_hits = 0;        // surface points found
+  int64_t num_paths = 0;       // recorded; selections have fewer
+  int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
+  int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
+  int64_t num_small_mirrors = 0;  // rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
+  int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
+  int64_t num_unaimed = 0;       // objects and images that no rays aim at, because there are too many of them
+  int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMostFrusta)
+};
+
+// What a path's amplitude and length are relative to.
+struct TraceFrame {
+  double start_time = 0.0;  // s, first sample of the frame
+  double trace_time = 0.0;  // s, the time the rays saw the scene at (mid-frame)
+  Vec3 transmitter = Vec3::Zero(), receiver = Vec3::Zero();  // world, mean positions at trace_time
+  std::vector<Stratum> strata;
+  uint64_t seed = 0;
+  int max_bounces = 4;
+  PolarizationModel polarization = PolarizationModel::kScalar;
+  Footprint footprint = Footprint::kSecondOrder;
+  Sampler sampler = Sampler::kLattice;
+  TraceStatistics statistics;
+  int num_batches = 1;             // independent lattices of launch directions, which share the rays of each stratum
+  double target_error_db = 0.0;    // dB, the error of the received power that was asked for; 0: none
+  double error_db = 0.0;           // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
+
+  // Rays per sr of one batch of a stratum: what its launch cells are made of. Filters for the cells of all batches
+  // together would leave each its aliases, and these do not cancel between lattices that know nothing of each other.
+  double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / num_batches; }
+};
+
+struct Paths {
+  // [H], shared by all selections of one trace
+  std::shared_ptr<const std::vector<Hit>> hits;
+  // [P] each. offsets: index of the path's first hit; its hits are num_bounces consecutive ones, in travel order TX -> RX.
+  std::vector<int64_t> offsets;
+  std::vector<uint8_t> num_bounces;
+  std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
+  std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/kernels/path_formula.h)
+  std::vector<uint16_t> stratum;             // index into frame.strata; kNoStratum: none (image method)
+  std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
+  std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf
+  // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
+  // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
+  std::vector<std::array<float, 7>> curved_cell;
+
+  // [P] or empty (scalar): in the transverse bases of em/jones.h, with the coefficients of all hits, which then are not in the
+  // weight. Of coherent paths over cos_i at the last surface.
+  std::vector<JonesMatrix> jones;
+
+  std::shared_ptr<const Scene> scene;        // snapshot
+  Radar radar;                               // snapshot
+  TraceFrame frame;
+
+  int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
+  int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
+  const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
+
+  // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
+  void validate() const;
+  void validate_path(size_t path) const;
+  // The paths where keep [P] is not 0, in order; shares the hits. Raises Cancelled when the job is.
+  Paths select(const std::vector<uint8_t>& keep, Job* job = nullptr) const;
+  // The same paths with only the hits that they use, in their order; hits that paths share stay shared.
+  Paths with_own_hits(Job* job = nullptr) const;
+};
+
+}  // namespace echopath

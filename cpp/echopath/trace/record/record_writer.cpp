@@ -1,0 +1,109 @@
+#include "echopath/trace/record/record_writer.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+// Of the room that blocks alike are expected to need: those to come differ. What is not touched costs no memory.
+constexpr double kMargin = 1.1;
+
+void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
+  total.num_queries += part.num_queries;
+  total.num_hits += part.num_hits;
+  total.num_near_antenna += part.num_near_antenna;
+  total.num_grazing += part.num_grazing;
+  total.num_small_mirrors += part.num_small_mirrors;
+  total.num_false_hits += part.num_false_hits;
+  total.num_unfollowed_beams += part.num_unfollowed_beams;
+}
+
+// Where each block begins in the record, and where the last one ends.
+struct Places {
+  std::vector<size_t> paths, hits;
+
+  Places(const std::vector<const PathBlock*>& blocks, size_t first_path, size_t first_hit) : paths{first_path}, hits{first_hit} {
+    for (const PathBlock* block : blocks) {
+      paths.push_back(paths.back() + block->num_paths());
+      hits.push_back(hits.back() + block->num_hits());
+    }
+  }
+};
+
+template <class Column>
+bool has(const std::vector<const PathBlock*>& blocks, Column column) {
+  return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock* block) { return !(block->*column).empty(); });
+}
+
+bool has_matrices(const std::vector<const PathBlock*>& blocks) {
+  return has(blocks, &PathBlock::jones) || has(blocks, &PathBlock::fan_jones);
+}
+
+}  // namespace
+
+void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks) {
+  if (like.empty()) return;
+  std::vector<const PathBlock*> blocks;
+  for (const PathBlock& block : like) blocks.push_back(&block);
+  const Places places(blocks, 0, 0);
+  const double times = kMargin * static_cast<double>(num_blocks) / static_cast<double>(like.size());
+  const auto rows = static_cast<size_t>(times * static_cast<double>(places.paths.back()));
+  hits_->reserve(static_cast<size_t>(times * static_cast<double>(places.hits.back())));
+  paths_.offsets.reserve(rows);
+  paths_.num_bounces.reserve(rows);
+  paths_.diffuse.reserve(rows);
+  paths_.weight.reserve(rows);
+  paths_.stratum.reserve(rows);
+  paths_.batch.reserve(rows);
+  paths_.flags.reserve(rows);
+  if (has(blocks, &PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
+  if (has_matrices(blocks)) paths_.jones.reserve(rows);
+}
+
+// All columns at once: the first touch of their memory is what takes time. The optional ones are there from the first block that
+// has them on, with zeros before. No large pages are asked for: a virtual machine whose free memory went back to its host is given
+// each of them anew, in milliseconds, and a record is walked from end to end.
+void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
+  const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
+  const bool has_jones = !paths_.jones.empty() || has_matrices(blocks);
+  const std::function<void()> grow[] = {
+      [&] { hits_->resize(num_hits); },
+      [&] { paths_.offsets.resize(num_paths); },
+      [&] { paths_.diffuse.resize(num_paths); },
+      [&] { paths_.weight.resize(num_paths); },
+      [&] { paths_.flags.resize(num_paths); },
+      [&] { paths_.num_bounces.resize(num_paths); },
+      [&] { paths_.stratum.resize(num_paths); },
+      [&] { paths_.batch.resize(num_paths); },
+      [&] { paths_.curved_cell.resize(has_cells ? num_paths : 0); },
+      [&] { paths_.jones.resize(has_jones ? num_paths : 0); }};
+  parallel_for(std::ssize(grow), [&](int64_t i) { grow[i](); });
+}
+
+void RecordWriter::append(const std::vector<const PathBlock*>& blocks, Job* job) {
+  const Places places(blocks, paths_.offsets.size(), hits_->size());
+  make_room(blocks, places.paths.back(), places.hits.back());
+  Job own(job);  // its progress is not that of the rays
+  parallel_for(
+      std::ssize(blocks),
+      [&](int64_t index) {
+        const auto i = static_cast<size_t>(index);
+        const size_t row = places.paths[i], hit = places.hits[i];
+        const PathRows rows{hits_->data() + hit,             static_cast<int64_t>(hit),   paths_.offsets.data() + row,
+                            paths_.num_bounces.data() + row, paths_.diffuse.data() + row, paths_.weight.data() + row,
+                            paths_.stratum.data() + row,     paths_.batch.data() + row,   paths_.flags.data() + row};
+        blocks[i]->write(rows, paths_);
+      },
+      &own);
+  for (const PathBlock* block : blocks) add_statistics(paths_.frame.statistics, block->statistics);
+}
+
+void RecordWriter::finish() {
+  paths_.hits = std::move(hits_);
+  paths_.frame.statistics.num_paths = paths_.num_paths();
+}
+
+}  // namespace echopath

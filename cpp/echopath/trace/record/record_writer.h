@@ -1,0 +1,28 @@
+#pragma once
+// The record of a trace, put together from blocks of rays while others are yet to be shot.
+#include <memory>
+#include <vector>
+
+#include "echopath/trace/record/path_block.h"
+
+namespace echopath {
+
+class RecordWriter {
+ public:
+  // `paths`: gets hits and path arrays, of which it has none yet; must outlive the writer.
+  explicit RecordWriter(Paths& paths) : paths_(paths), hits_(std::make_shared<std::vector<Hit>>()) {}
+  // Makes room for `num_blocks` blocks like these, so that arrays need not move as they grow. More still find room.
+  void expect(const std::vector<PathBlock>& like, int64_t num_blocks);
+  // Behind what was appended before; in this order, whatever the number of threads. Raises Cancelled when the job is.
+  void append(const std::vector<const PathBlock*>& blocks, Job* job = nullptr);
+  // Gives the record its hits. Nothing is appended behind that.
+  void finish();
+
+ private:
+  void make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits);
+
+  Paths& paths_;
+  std::shared_ptr<std::vector<Hit>> hits_;
+};
+
+}  // namespace echopath

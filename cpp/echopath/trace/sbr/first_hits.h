@@ -1,0 +1,57 @@
+#pragma once
+// The first hits of neighbouring rays, lane by lane.
+#include "echopath/trace/sbr/ray.h"
+#include "echopath/trace/sbr/ray_context.h"
+
+namespace echopath {
+
+struct FirstHits {
+  int64_t begin = 0;  // index of the first ray
+  int count = 0;
+  LaunchPlan::Places places;
+  LaneVectors directions;
+  // Rays per sr, if each counted in full: those of the owner over what a ray stands for; infinite where foci have all.
+  LaneValues densities;
+  PacketSamples samples;
+  EmbreeScene::PacketHits hits;
+  LaneVectors lifted;        // the hits, off their surfaces
+  LaneValues cos_incidence;
+  LaneValues cos_receiver;   // positive where the receiver is on the lit side; not divided by its distance
+  LaneValues near_squared;   // m^2: to the nearest antenna
+  EmbreeScene::Lanes arrives;              // whether the ray is at a hit that its stratum owns, or passes over a mirror
+  std::array<bool, kPacketSize> is_owned;  // the former
+  std::array<ShadowState, kPacketSize> receiver;  // as seen from there
+  std::array<const SurfaceModel*, kPacketSize> models;
+  std::array<PolarizationMode, kPacketSize> modes;
+  LaneValues gamma_re, gamma_im, coherent, diffuse, facet;  // the responses
+  LaneValues sign;                                   // of the field that comes back (connector.cpp)
+  LaneValues specular_probability, diffuse_probability;  // of going on that way, if it does
+  LaneVectors out;                                   // the direction in which it goes on
+  std::array<bool, kPacketSize> goes_on;             // whether anything does
+
+  void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
+    gamma_re[lane] = response.gamma.real();
+    gamma_im[lane] = response.gamma.imag();
+    coherent[lane] = response.coherent;
+    diffuse[lane] = response.diffuse;
+    facet[lane] = response.facet;
+    specular_probability[lane] = lobes.specular;
+    diffuse_probability[lane] = lobes.diffuse;
+    sign[lane] = modes[static_cast<size_t>(lane)] == PolarizationMode::kTm ? -1.0 : 1.0;
+  }
+  SurfaceResponse response(int lane) const {
+    return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane], facet[lane]};
+  }
+  // How the ray of a lane goes on.
+  ScatterSample sample(int lane) const {
+    static_assert(kRouletteBounce > 1, "first hits know of no roulette");
+    ScatterSample sample;
+    sample.from = lifted[lane];
+    sample.direction = out[lane];
+    sample.is_specular = samples.lobe_sample[lane] < specular_probability[lane];
+    sample.lobe_probability = sample.is_specular ? specular_probability[lane] : diffuse_probability[lane];
+    return sample;
+  }
+};
+
+}  // namespace echopath

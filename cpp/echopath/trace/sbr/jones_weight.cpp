@@ -1,0 +1,116 @@
+// The matrices of polarised paths (Paths::jones) along a ray.
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/trace/sbr/weight.h"
+
+namespace echopath {
+namespace {
+
+// Reflects fields at a mirror or specular bounce of the given specular share of power.
+void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const SurfaceModel& model, double specular_share) {
+  const ModeCoefficients modes = model.modes(-direction.dot(normal));
+  for (FieldVector& field : fields) field = std::sqrt(specular_share) * reflected_field(field, direction, normal, modes);
+}
+
+void reflect_at(const SurfaceHit& surface, const Vec3& direction, FieldPair& fields) {
+  const double coherent = surface.response.coherent;
+  reflect_all(fields, direction, surface.point.normal, *surface.model, coherent * coherent);
+}
+
+// What a diffuse hit makes of fields that travel along `in`. Its random axis is bound to the hit, like its phase.
+FieldPair scattered(const SurfaceHit& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) {
+  const double cos_incidence = -in.dot(surface.point.normal);
+  const double reflection = diffuse_coefficient(surface.model->respond(cos_incidence, PolarizationMode::kTe));
+  Depolarization turn{surface.material->cross_polarization, 0.0};
+  if (turn.cross_share > 0) turn.axis = kPi * surface.samples.axis_sample;
+  FieldPair out_fields;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    out_fields[launch] = scattered_field(fields[launch], in, out, reflection, turn);
+  }
+  return out_fields;
+}
+
+// The transpose of what the hit makes of fields that come along -`out` and leave along -`in`: a chain of such hits, read
+// from its other end.
+FieldPair scattered_back(const SurfaceHit& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) {
+  const FieldPair axes = launched_fields(out);
+  const FieldPair back = scattered(surface, axes, -out, -in);
+  FieldPair out_fields;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    const std::complex<double> along[] = {back[0].transpose() * fields[launch], back[1].transpose() * fields[launch]};
+    out_fields[launch] = along[0] * axes[0] + along[1] * axes[1];
+  }
+  return out_fields;
+}
+
+}  // namespace
+
+void JonesWeight::reflect(Ray& ray, const SurfaceHit& surface) const {
+  reflect_at(surface, ray.direction, ray.fields);
+  if (!ray.coherent && ray.chain.back) reflect_at(surface, ray.direction, ray.chain.fields);
+}
+
+void JonesWeight::begin_chain(Ray& ray) const {
+  if (!ray.chain.back) return;
+  ray.chain.fields = ray.sequence == kOther ? ray.fields : incident_over(*ray.chain.back);
+}
+
+void JonesWeight::scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) const {
+  DiffuseChain& chain = ray.chain;
+  if (chain.back) {
+    const bool is_first = ray.depth - 1 == chain.first;
+    const Vec3 in = is_first ? Vec3(-chain.back->to_antenna) : ray.direction;
+    chain.fields = scattered_back(surface, chain.fields, in, out);
+  }
+  ray.fields = scattered(surface, ray.fields, ray.direction, out);
+}
+
+// What fields at the antenna become on the way over a leg to its surface point.
+FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
+  Vec3 direction = leg.at_antenna;
+  for (int k = leg.num_bounces; k-- > 0;) {
+    const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
+    const Mirror& mirror = context_.mirrors[static_cast<size_t>(bounce.mirror)];
+    reflect_all(fields, direction, bounce.normal, context_.surfaces.model(mirror.mesh_id), bounce.specular_share);
+    direction = mirror.reflect(direction);
+  }
+  return fields;
+}
+
+// Fields at a surface point of launches along a leg to it.
+FieldPair JonesWeight::incident_over(const Leg& leg) const { return fields_over(leg, launched_fields(leg.at_antenna)); }
+
+// Along which of the fields that leave a surface point a receiver at the end of a leg sees its two components: by
+// reciprocity what its own axes become on the way to the point.
+FieldPair JonesWeight::axes_over(const Leg& leg) const { return fields_over(leg, launched_fields(-leg.at_antenna)); }
+
+void JonesWeight::find_receive_axes(Connection& at) const {
+  at.fields.axes.clear();
+  for (const Leg& leg : at.legs.receive) at.fields.axes.push_back(axes_over(leg));
+}
+
+void JonesWeight::set_coherent_matrix(Connection& at, const Leg& leg) const {
+  const SurfaceHit& surface = at.surface;
+  const Vec3& normal = surface.point.normal;
+  const ModeCoefficients modes = surface.model->modes(surface.cos_incidence);
+  const double scale = surface.response.coherent * polarized_scale(surface.cos_incidence, normal.dot(leg.to_antenna));
+  FieldPair fields;
+  for (size_t launch = 0; launch < 2; ++launch) {
+    fields[launch] = scale * radiated_field(at.ray.fields[launch], at.ray.direction, normal, leg.to_antenna, modes);
+  }
+  at.block.set_jones(components(fields, at.axes_of(leg)));
+}
+
+void JonesWeight::set_diffuse_matrix(Connection& at, const Leg& leg) const {
+  const FieldPair fields = scattered(at.surface, at.ray.fields, at.ray.direction, leg.to_antenna);
+  at.block.set_jones(components(fields, at.axes_of(leg)));
+}
+
+// From the receiver along the ray's way to the transmitter at the end of `leg`, for the opposite order of its chain.
+void JonesWeight::set_reversed_matrix(Connection& at, const Leg& leg) const {
+  const FieldPair fields = scattered_back(at.surface, at.ray.chain.fields, at.ray.direction, leg.to_antenna);
+  at.block.set_jones(components(fields, axes_over(leg)));
+}
+
+}  // namespace echopath

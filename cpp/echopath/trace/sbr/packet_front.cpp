@@ -1,0 +1,143 @@
+#include "echopath/trace/sbr/packet_front.h"
+
+#include <cmath>
+#include <memory>
+
+#include "echopath/base/simd.h"
+
+namespace echopath {
+namespace {
+
+struct Antennas {
+  VectorOf<double> transmitter, receiver;
+};
+
+// What first hits look like from the antennas.
+ECHOPATH_INLINE void see_lanes(FirstHits* first, Antennas at, double lift) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> position = first->hits.position.at(lane), normal = first->hits.normal.at(lane);
+    const VectorOf<double> to_receiver = at.receiver - position, to_transmitter = at.transmitter - position;
+    first->cos_incidence[lane] = -dot(normal, first->directions.at(lane));
+    first->cos_receiver[lane] = dot(normal, to_receiver);
+    first->near_squared[lane] = ScalarMath::smaller(dot(to_receiver, to_receiver), dot(to_transmitter, to_transmitter));
+    first->lifted.set(lane, position + lift * normal);
+  }
+}
+
+ECHOPATH_INLINE void leave_lanes(FirstHits* first) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> normal = first->hits.normal.at(lane);
+    const VectorOf<double> specular = mirrored(normal, first->directions.at(lane), first->cos_incidence[lane]);
+    const VectorOf<double> diffuse = over_surface(normal, first->samples.lobe.at(lane));
+    const double sample = first->samples.lobe_sample[lane], probability = first->specular_probability[lane];
+    first->out.x[lane] = sample < probability ? specular.x : diffuse.x;
+    first->out.y[lane] = sample < probability ? specular.y : diffuse.y;
+    first->out.z[lane] = sample < probability ? specular.z : diffuse.z;
+  }
+}
+
+}  // namespace
+
+void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatistics& statistics) const {
+  first.begin = begin;
+  first.count = count;
+  launch(first);
+  context_.geometry.intersect(context_.settings.transmitter, first.directions, count, first.hits);
+  statistics.num_queries += count;
+  arrive(first, statistics);
+  see_receiver(first, statistics);
+  run_simd<&leave_lanes>(&first);
+}
+
+void PacketFront::launch(FirstHits& first) const {
+  const LaunchPlan& plan = context_.plan;
+  LaunchPlan::Places& places = first.places;
+  plan.place(first.begin, first.count, places);
+  for (LaneRange lanes{0, 0}; lanes.begin < first.count; lanes.begin = lanes.end) {
+    const int stratum = places.strata[static_cast<size_t>(lanes.begin)];
+    while (lanes.end < first.count && places.strata[static_cast<size_t>(lanes.end)] == stratum) ++lanes.end;
+    directions_.launch(stratum, places.x, places.y, lanes, first.directions);
+    const double density = plan.density(plan.foci.owner(stratum));
+    const bool has_foci = plan.foci.has_any(stratum);
+    for (int lane = lanes.begin; lane < lanes.end; ++lane) {
+      first.densities[lane] = has_foci ? density / plan.foci.rays_of_owner(stratum, first.directions[lane]) : density;
+    }
+  }
+  first.samples.draw(context_.settings.seed, first.begin, first.count, places.batches.data());
+}
+
+void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
+  const Antennas antennas{unpacked(context_.settings.transmitter), unpacked(context_.settings.receiver)};
+  run_simd<&see_lanes>(&first, antennas, context_.geometry.lift());
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const auto k = static_cast<size_t>(lane);
+    const EmbreeScene::Verdict verdict = first.hits.verdicts[k];
+    const bool is_hit = verdict == EmbreeScene::Verdict::kHit, is_grazing = first.cos_incidence[lane] < kGrazing;
+    if (verdict == EmbreeScene::Verdict::kFalseHit) ++statistics.num_false_hits;
+    if (is_hit && is_grazing) ++statistics.num_grazing;
+    first.arrives[k] = is_hit && !is_grazing && counts(first, lane);
+    if (!first.arrives[k]) continue;
+    ++statistics.num_hits;
+    find_response(first, lane);
+  }
+}
+
+// Whether the stratum of the ray owns its hit, or the ray passes over a mirror.
+bool PacketFront::counts(FirstHits& first, int lane) const {
+  const auto k = static_cast<size_t>(lane);
+  const uint32_t mesh = first.hits.met[k].mesh_id;
+  const bool passes_on = context_.is_passed(first.places.strata[k], mesh);
+  first.is_owned[k] = !passes_on && context_.is_owner(first.places.strata[k], mesh, kDirect);
+  return (first.is_owned[k] || passes_on) && std::isfinite(first.densities[lane]);  // else foci have it all
+}
+
+void PacketFront::find_response(FirstHits& first, int lane) const {
+  const auto k = static_cast<size_t>(lane);
+  const SurfaceModel& model = context_.surfaces.model(first.hits.met[k].mesh_id);
+  first.models[k] = &model;
+  first.modes[k] = model.is_constant() ? PolarizationMode::kTe
+                                       : mode_along(model, context_.settings.polarization, first.directions[lane],
+                                                    first.hits.normal[lane]);
+  const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
+  first.set_response(lane, response, first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn);
+  first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
+}
+
+// Asks for all first hits together: they lie beside each other. What a mirror sends depends on more.
+void PacketFront::see_receiver(FirstHits& first, TraceStatistics& statistics) const {
+  EmbreeScene::Lanes asked, blocked;
+  for (size_t k = 0; k < kPacketSize; ++k) {
+    asked[k] = first.arrives[k] && !first.models[k]->material().mirror && first.cos_receiver.lanes[k] > 0;
+    statistics.num_queries += asked[k];
+  }
+  context_.geometry.occluded(first.lifted, context_.settings.receiver, asked, blocked);
+  for (size_t k = 0; k < kPacketSize; ++k) {
+    first.receiver[k] = !asked[k] ? ShadowState::kUnknown : blocked[k] ? ShadowState::kBlocked : ShadowState::kOpen;
+  }
+}
+
+void PacketFront::start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& surface) const {
+  const auto k = static_cast<size_t>(lane);
+  std::construct_at(&ray);
+  std::construct_at(&surface);
+  ray.index = first.begin + lane;
+  ray.stratum = first.places.strata[k];
+  ray.direction = first.directions[lane];
+  ray.launch_direction = first.directions[lane];  // a copy of the other one would wait for its parts to be stored
+  ray.is_owned = first.is_owned[k];
+  ray.launch_density = context_.plan.density(context_.plan.foci.owner(ray.stratum));
+  ray.leg_density = first.densities[lane];
+  ray.stands_for = ray.launch_density / ray.leg_density;
+  if (context_.surfaces.has_smooth()) ray.differential = RayDifferential::from_point(ray.direction);
+  surface.point = first.hits[lane];
+  surface.receiver = first.receiver[k];
+  surface.samples = first.samples.hit(lane);
+  surface.cos_incidence = first.cos_incidence[lane];
+  surface.model = first.models[k];
+  surface.mode = first.modes[k];
+  surface.response = first.response(lane);
+}
+
+}  // namespace echopath

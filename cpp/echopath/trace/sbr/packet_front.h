@@ -1,0 +1,29 @@
+#pragma once
+// Traces launch rays in packets to their first hits, and draws how they go on from there.
+#include "echopath/trace/sbr/first_hits.h"
+#include "echopath/trace/launch/launch_directions.h"
+
+namespace echopath {
+
+// A ray counts what its stratum owns (ray_owners.h): one that was aimed at an object goes over flagged mirrors as they reflect,
+// without chance, and ends at whatever else it meets first.
+class PacketFront {
+ public:
+  explicit PacketFront(const RayContext& context) : context_(context), directions_(context.plan.strata) {}
+  // Traces the rays [begin, begin + count) of the plan.
+  void trace(int64_t begin, int count, FirstHits& first, TraceStatistics& statistics) const;
+  // Makes the ray of a lane, and the hit where it arrives.
+  void start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& surface) const;
+
+ private:
+  void launch(FirstHits& first) const;
+  void arrive(FirstHits& first, TraceStatistics& statistics) const;
+  bool counts(FirstHits& first, int lane) const;
+  void find_response(FirstHits& first, int lane) const;
+  void see_receiver(FirstHits& first, TraceStatistics& statistics) const;
+
+  const RayContext& context_;
+  LaunchDirections directions_;
+};
+
+}  // namespace echopath

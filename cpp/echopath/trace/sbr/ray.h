@@ -1,0 +1,113 @@
+#pragma once
+// The state of a ray and of the hit where it is.
+#include <array>
+#include <complex>
+#include <optional>
+
+#include "echopath/em/jones.h"
+#include "echopath/trace/scatter/hit_samples.h"
+#include "echopath/trace/mirrors/legs.h"
+#include "echopath/trace/scatter/lobe_probabilities.h"
+#include "echopath/trace/sbr/ray_differential.h"
+
+namespace echopath {
+
+// The transmitter was left over something else than a sequence of a leg.
+inline constexpr MirrorSequence kOther = -1;
+
+using RayHits = std::array<Hit, 64>;
+
+// One end of a coherent path over unflagged surfaces: a hit that is a mirror in one of the path's two orders and radiates in the
+// other (mirror_orders.h).
+struct PathEnd {
+  double cover = 1.0;       // share of the Fresnel zone that it covers as a mirror
+  double spread = 1.0;      // of the tube's area behind it, over that behind a flat mirror
+  double to_antenna = 0.0, to_next = 0.0;  // m, unfolded
+  bool is_smooth = false;
+};
+
+// The hits of a ray from its first diffuse one on, which other rays meet in the opposite order (diffuse_chain.h).
+struct DiffuseChain {
+  int first = 0;             // index of its first hit: number of hits of the transmit leg
+  std::optional<Leg> back;   // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
+  double density = 0.0;      // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
+  // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray. 0: none comes.
+  double opposite_ratio = 1.0;
+  // The survival in the opposite order at the hit that was left last, which joins `opposite_ratio` one hit later.
+  double opposite_survival = 1.0;
+  std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
+  FieldPair fields;          // likewise, where polarised: of launches at the receiver that run the ray's way
+};
+
+struct Ray {
+  int64_t index = 0;
+  int stratum = 0;
+  Vec3 direction, launch_direction;
+  RayHits hits;
+  int depth = 0;              // hits so far
+  uint64_t diffuse = 0;       // bit per hit
+  bool coherent = true;       // the ray carries a field, not a power (sbr.h)
+  MirrorSequence sequence = kDirect;  // how the transmitter was left
+  double chain_share = 1.0;           // product of s_m^2 of these mirrors
+  bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
+  double launch_density = 0.0;        // rays per sr of its stratum; in a focus, of the stratum that this is in
+  double stands_for = 1.0;            // so many of these rays (LaunchFoci)
+  // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
+  // probabilities included.
+  double leg_length = 0.0, leg_density = 0.0;
+  std::complex<double> coefficient = 1.0;  // product of Gamma s and of what diffuse hits scatter, without q
+  FieldPair fields;                        // likewise of vectors, where polarised
+  // Of the unflagged bounces so far; tells the sign of what comes back (ScalarWeight).
+  bool has_dielectric_tm = false, has_odd_conductors = false;
+  // What a field has beside its coefficients: 1/q of every bounce, j of every caustic; of coherent rays.
+  std::complex<double> field_factor = 1.0;
+  RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
+  bool is_curved = false;        // some bounce so far was on a curved surface
+  int num_mirrors = 0;            // specular bounces off unflagged surfaces since the last anchor
+  bool last_was_mirror = false;   // and it was the last bounce
+  bool holds_zones = true;        // each of them covers enough of its Fresnel zone (kHeldShare)
+  RayHit mirror;                  // the last of them
+  Vec3 mirror_arrival;            // unit, of the ray there
+  PathEnd first_mirror;           // the first of them
+  double area = 1.0;              // product of the material areas of the diffuse anchors
+  DiffuseChain chain;             // of rays that have left a diffuse hit
+
+  Ray() {}  // does not clear what its members leave as it is
+};
+
+// The hit where a ray is.
+struct SurfaceHit {
+  RayHit point;
+  const SurfaceModel* model = nullptr;
+  const Material* material = nullptr;
+  double cos_incidence = 0.0;
+  PolarizationMode mode = PolarizationMode::kTe;
+  SurfaceResponse response;
+  double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  ShadowState receiver = ShadowState::kUnknown;  // as seen from here
+  HitSamples samples;
+  double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
+
+  SurfaceHit() {}
+};
+
+// How a ray leaves a hit.
+struct ScatterSample {
+  Vec3 from, direction;
+  bool is_specular = false;
+  double lobe_probability = 1.0;      // of leaving that way, where the ray goes on
+  double survival_probability = 1.0;  // of going on
+  bool ends = false;
+
+  double probability() const { return lobe_probability * survival_probability; }
+};
+
+// Of the field that a diffuse hit scatters.
+inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
+
+// What the surface makes of a wave that comes from where `direction` points, a unit vector.
+inline SurfaceResponse response_toward(const SurfaceHit& surface, const Vec3& polarization, const Vec3& direction) {
+  return respond_along(*surface.model, polarization, -direction, surface.point.normal);
+}
+
+}  // namespace echopath

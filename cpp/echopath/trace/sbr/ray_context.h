@@ -1,0 +1,34 @@
+#pragma once
+// What all rays of a trace share. Internal to the module, as everything about single rays.
+#include "echopath/base/constants.h"
+#include "echopath/trace/launch/launch.h"
+#include "echopath/trace/scatter/lobe_probabilities.h"
+#include "echopath/trace/sbr/sbr_settings.h"
+#include "echopath/trace/scatter/surface_table.h"
+
+namespace echopath {
+
+inline constexpr double kGrazing = 1e-3;  // cosine below which a hit is dropped
+
+struct RayContext {
+  const EmbreeScene& geometry;
+  const std::vector<Mirror>& mirrors;
+  const LaunchPlan& plan;
+  SbrSettings settings;
+  SurfaceTable surfaces;
+  double wavelength = kSpeedOfLight / settings.frequency;  // m
+
+  // Whether the rays of a stratum count what first hits on a mesh over these mirrors send.
+  bool is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const {
+    return plan.owners.owner(mesh_id, sequence) == plan.foci.owner(stratum);
+  }
+  // Whether they are on their way to what they aim at when they meet this mesh.
+  bool is_passed(int stratum, uint32_t mesh_id) const {
+    return surfaces.mirror(mesh_id) >= 0 && !plan.is_field_of_view(stratum);
+  }
+  LobeProbabilities probabilities(const SurfaceModel& model, const SurfaceResponse& response) const {
+    return lobe_probabilities(model, response, settings.specular_probability);
+  }
+};
+
+}  // namespace echopath

@@ -1,0 +1,42 @@
+#pragma once
+// Rays from their launch to their end.
+#include "echopath/trace/scatter/arrivals.h"
+#include "echopath/trace/connect/connector.h"
+#include "echopath/trace/sbr/packet_front.h"
+#include "echopath/trace/scatter/scatterer.h"
+
+namespace echopath {
+
+// Joins the parts: a packet of rays to its first hits (PacketFront), from there ray by ray to the next hits (Scatterer,
+// Arrivals), and each hit to the receiver (Connector).
+template <class Weight>
+class RayWalk {
+ public:
+  RayWalk(const RayContext& context, const AntennaLegs& legs, const PacketFront& front)
+      : context_(context), front_(front), arrivals_(context), scatterer_(context, legs), connector_(context, legs),
+        weight_(context), has_straight_legs_(legs.are_straight()) {}
+  // Traces the rays [begin, end) of the plan and appends their paths.
+  void shoot(int64_t begin, int64_t end, PathBlock& block) const;
+
+ private:
+  struct Scratch;
+  void shoot_lane(int lane, Scratch& scratch, PathBlock& block) const;
+  void start(int lane, Scratch& scratch) const;
+  void follow(Scratch& scratch, PathBlock& block) const;
+  void connect(Scratch& scratch, PathBlock& block) const;
+  bool meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
+  bool travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const;
+
+  const RayContext& context_;
+  const PacketFront& front_;
+  Arrivals arrivals_;
+  Scatterer<Weight> scatterer_;
+  Connector<Weight> connector_;
+  Weight weight_;
+  bool has_straight_legs_;
+};
+
+extern template class RayWalk<ScalarWeight>;
+extern template class RayWalk<JonesWeight>;
+
+}  // namespace echopath

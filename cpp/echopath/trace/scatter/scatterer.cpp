@@ -1,0 +1,112 @@
+#include "echopath/trace/scatter/scatterer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/random.h"
+#include "echopath/trace/sbr/ray_tube.h"
+#include "echopath/trace/scatter/scatter_points.h"
+
+namespace echopath {
+namespace {
+
+// Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
+constexpr double kLargestArea = 1e60;
+
+}  // namespace
+
+template <class Weight>
+ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surface, int batch) const {
+  const SurfaceResponse& response = surface.response;
+  const LobeProbabilities lobes = ray.is_owned ? context_.probabilities(*surface.model, response) : kPassingOn;
+  ScatterSample sample;
+  sample.survival_probability = survival_probability(response, ray.coherent ? ray.depth : ray.depth - ray.chain.first);
+  sample.ends = surface.samples.survival_sample >= sample.survival_probability || std::norm(response.gamma) == 0;
+  if (sample.ends) return sample;
+  sample.is_specular = surface.samples.lobe_sample < lobes.specular;
+  sample.lobe_probability = sample.is_specular ? lobes.specular : lobes.diffuse;
+  const Vec3& normal = surface.point.normal;
+  sample.from = context_.geometry.lifted(surface.point.position, normal);
+  sample.direction = packed(sample.is_specular
+                                ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
+                                : over_surface(unpacked(normal), unpacked(lobe_direction(ray, batch))));
+  return sample;
+}
+
+// The direction in which the ray leaves its hit diffusely, the normal along z. Neighbours are neighbours no more deeper in a
+// chain.
+template <class Weight>
+Vec3 Scatterer<Weight>::lobe_direction(const Ray& ray, int batch) const {
+  const uint64_t seed = context_.settings.seed;
+  if (ray.coherent) return cosine_lobe(scatter_point(seed, batch, ray.index, ray.depth - 1));
+  return cosine_lobe(uniform2(seed, Stream::kBounce, static_cast<uint64_t>(ray.index), static_cast<uint32_t>(ray.depth)));
+}
+
+template <class Weight>
+bool Scatterer<Weight>::leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const {
+  if (!sample.is_specular && !ray.holds_zones) return false;
+  if (sample.is_specular) reflect(ray, surface, sample);
+  else scatter(ray, surface, sample, legs);
+  ray.direction = sample.direction;
+  return std::norm(ray.coefficient) > 0 && ray.area < kLargestArea;
+}
+
+template <class Weight>
+void Scatterer<Weight>::reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
+  ray.field_factor /= sample.probability();
+  if (ray.coherent && context_.surfaces.has_smooth()) reflect_tube(ray, surface);
+  weight_.reflect(ray, surface);
+  leave_mirror(ray, surface, sample);
+  if (!ray.coherent) chains_.reflect(ray, surface, sample);
+}
+
+// What the bounce is for the way of the ray: part of a leg over flagged mirrors, or a mirror that nobody flagged.
+template <class Weight>
+void Scatterer<Weight>::leave_mirror(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
+  const SurfaceResponse& response = surface.response;
+  const RayHit& point = surface.point;
+  const int mirror = context_.surfaces.mirror(point.hit.mesh_id);
+  if (mirror >= 0) {
+    ray.coefficient *=
+        mirror_sign(*surface.material, surface.mode, context_.settings.polarization, ray.direction, point.normal);
+  }
+  ray.coefficient *= response.gamma * response.coherent;
+  ray.leg_density *= sample.probability();
+  ray.chain_share *= sample.lobe_probability;
+  const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
+  ray.sequence = is_leg ? extended(ray.sequence, mirror, context_.mirrors.size()) : kOther;
+  if (is_leg) ray.is_owned = false;  // what is met next may have another owner
+  ray.last_was_mirror = mirror < 0;
+  if (mirror >= 0) return;
+  ++ray.num_mirrors;
+  ray.mirror = point;
+  ray.mirror_arrival = ray.direction;
+}
+
+template <class Weight>
+void Scatterer<Weight>::scatter(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const {
+  if (ray.coherent) begin_chain(ray, surface, sample, legs);
+  ray.coefficient *= diffuse_coefficient(surface.response);
+  ray.area *= surface.area;
+  ray.diffuse |= uint64_t{1} << (ray.depth - 1);
+  ray.coherent = false;
+  ray.sequence = kOther;
+  ray.num_mirrors = 0;
+  ray.last_was_mirror = false;
+  chains_.scatter(ray, surface, sample);
+  weight_.scatter(ray, surface, sample.direction);
+  ray.leg_length = 0.0;
+  ray.leg_density = sample.probability() * std::max(surface.point.normal.dot(sample.direction), 1e-9) / kPi;
+}
+
+template <class Weight>
+void Scatterer<Weight>::begin_chain(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const {
+  if (!legs.has_receive && ray.sequence != kOther) legs_.find_receive(surface, ray.depth - 1, legs);
+  chains_.begin(ray, surface, sample, legs.receive);
+  weight_.begin_chain(ray);
+}
+
+template class Scatterer<ScalarWeight>;
+template class Scatterer<JonesWeight>;
+
+}  // namespace echopath

@@ -1,0 +1,35 @@
+#pragma once
+// How rays go on from a hit.
+#include "echopath/trace/connect/diffuse_chain.h"
+#include "echopath/trace/sbr/weight.h"
+
+namespace echopath {
+
+template <class Weight>
+class Scatterer {
+ public:
+  Scatterer(const RayContext& context, const AntennaLegs& legs)
+      : context_(context), legs_(legs), chains_(context), weight_(context) {}
+  // Draws whether and where a ray goes on.
+  ScatterSample sample(const Ray& ray, const SurfaceHit& surface, int batch) const;
+  // Makes of the ray what leaves the hit. What a bounce makes of it is worked out only where it meets something behind: most
+  // rays meet nothing. False: nothing that counts. `legs`: those of the hit.
+  bool leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;
+
+ private:
+  Vec3 lobe_direction(const Ray& ray, int batch) const;
+  void reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const;
+  void leave_mirror(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const;
+  void scatter(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;
+  void begin_chain(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;
+
+  const RayContext& context_;
+  const AntennaLegs& legs_;
+  ChainOrders chains_;
+  Weight weight_;
+};
+
+extern template class Scatterer<ScalarWeight>;
+extern template class Scatterer<JonesWeight>;
+
+}  // namespace echopath

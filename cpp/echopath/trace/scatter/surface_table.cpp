@@ -1,0 +1,49 @@
+#include "echopath/trace/scatter/surface_table.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+
+namespace echopath {
+namespace {
+
+// The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
+double middle_extent(const std::vector<Vec3>& vertices) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
+  Mat3 covariance = Mat3::Zero();
+  for (const Vec3& vertex : vertices) covariance += (vertex - mean) * (vertex - mean).transpose();
+  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : vertices) box.extend(Vec3(axes.transpose() * (vertex - mean)));
+  std::array<double, 3> extents = {box.sizes()[0], box.sizes()[1], box.sizes()[2]};
+  std::sort(extents.begin(), extents.end());
+  return extents[1];
+}
+
+bool is_unflagged_smooth(const Node& node) { return node.smooth && !node.material->mirror; }
+
+double width_of_smooth(const Node& node, const std::vector<Vec3>& vertices) {
+  if (!is_unflagged_smooth(node)) return 0.0;
+  const double width = middle_extent(vertices);
+  if (!node.mesh->whole()) return width;
+  // The whole is posed as its part is.
+  const double at_rest = middle_extent(node.mesh->vertices());
+  return at_rest > 0 ? middle_extent(node.mesh->whole()->vertices()) * (width / at_rest) : width;
+}
+
+}  // namespace
+
+SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                           double frequency)
+    : mirror_of_mesh_(scene.meshes().size(), -1) {
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    const Node& node = scene.node_of(id);
+    models_.emplace_back(*node.material, frequency);
+    smooth_width_.push_back(width_of_smooth(node, geometry.vertices(id)));
+  }
+  for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && is_unflagged_smooth(node));
+  for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
+}
+
+}  // namespace echopath

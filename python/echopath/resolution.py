@@ -33,6 +33,11 @@ class Interval(NamedTuple):
         factor = 10.0 ** (0.1 * RESOLVED_DB)
         return 0.0 < self.power <= factor * self.low and self.high <= factor * self.power
 
+    @property
+    def is_in_doubt(self) -> bool:
+        """There is or may be something, and it is not resolved."""
+        return self.high > 0.0 and not self.resolved
+
     def __str__(self) -> str:
         if not self.high > 0.0:
             return "nothing"
@@ -97,7 +102,8 @@ def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
     progress: callable (stage, fraction) or None
     Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
-    that no ray has met is among them, with what three rays might have brought back from it as its upper end.
+    that no ray has met is among them, with what three rays might have brought back from it as its upper end; so is one whose
+    paths a selection or a file leaves out.
     """
     families = families_of(paths, objects)
     powers = mean_powers(paths, families, {}, progress).of_families
@@ -182,9 +188,15 @@ def _unseen(paths, objects, names, progress) -> list:
     for seen in visibility_in_trace(paths, paths.radar, objects, progress=progress):
         interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
         if interval.high > 0.0:
-            times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
-            found.append(Unresolved(seen.name, (), 0, 1, interval, f"{_rays(paths, times)} to meet it"))
+            found.append(Unresolved(seen.name, (), 0, 1, interval, _advice_to_meet(paths, seen)))
     return found
+
+
+def _advice_to_meet(paths, seen) -> str:
+    if paths.num_paths < paths.frame.statistics.num_paths:
+        return "its paths may be among those that were left out of this record"
+    times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
+    return f"{_rays(paths, times)} to meet it"
 
 
 def unmet_interval(paths, seen) -> Interval:

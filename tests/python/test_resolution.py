@@ -209,6 +209,11 @@ def test_the_label_command_says_what_is_not_resolved(frame, tmp_path, capsys):
         assert [line.split()[0] for line in lines[end + 1:]] == [name]
 
 
+def test_what_a_record_leaves_out_is_not_called_unmet(frame):
+    board = next(one for one in ep.unresolved(frame.paths.select("T 'sign' R")) if one.name == "board")
+    assert "left out" in board.advice and board.interval.power == 0.0
+
+
 def test_ghosts_of_one_mirror_are_told_apart():
     scene = ep.Scene()
     scene.add(ep.actors.wall(30.0, 6.0), name="wall", material=ep.materials["concrete"].replace(mirror=True), position=(10, 4, 0))

@@ -57,10 +57,8 @@ struct PathByPath::Cell {
 };
 
 PathByPath::PathByPath(const Paths& paths, const Radar& radar, double time, SpecularPoints specular)
-    : paths_(paths), localise_(paths, hit_patches(paths)), radio_(radio_constants(paths, radar)),
-      instant_(*paths.scene, radar, localise_.patches(), paths.frame.transmitter, time) {
-  radio_.specular = specular;
-}
+    : paths_(paths), localise_(paths, hit_patches(paths)), radio_(radio_constants(paths, radar)), specular_(specular),
+      instant_(*paths.scene, radar, localise_.patches(), paths.frame.transmitter, time) {}
 
 // The tube of the ray, on the plane of the surface at the time of the trace.
 PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const {
@@ -190,7 +188,7 @@ std::vector<PathValue> PathByPath::operator()(int64_t index) const {
       const PosedAntenna& end = path.is_reversed ? transmitter : receiver;
       std::vector<PosedHit> hits = recorded;
       SpecularSlide slide;
-      if (radio_.specular == SpecularPoints::kFermat && path.last_material >= 0) step_to_fermat(path, start.position, slide, hits.data());
+      if (specular_ == SpecularPoints::kFermat && path.last_material >= 0) step_to_fermat(path, start.position, slide, hits.data());
       const Walk walk(path, hits.data(), start, end, radio_);
       const std::complex<double> bare = std::complex<double>(paths_.weight[p]) * walk.phasor() * walk.factor(cell);
       PathValue value{walk.length(), bare, std::abs(bare)};

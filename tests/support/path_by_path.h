@@ -7,6 +7,7 @@
 #include "echopath/replay/evaluate/launch_cell.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/posed/specular_slide.h"
 
 namespace echopath::testing {
 
@@ -31,6 +32,7 @@ class PathByPath {
   const Paths& paths_;
   Localiser localise_;
   RadioConstants radio_;
+  SpecularPoints specular_;
   Instant instant_;
 };
 

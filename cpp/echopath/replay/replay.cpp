@@ -75,9 +75,7 @@ struct Replayer::Target {
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
       localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_),
-      memory_(ReplayMemory::take()) {
-  radio_.specular = settings.specular;
-}
+      memory_(ReplayMemory::take()) {}
 
 Replayer::~Replayer() { ReplayMemory::leave(std::move(memory_)); }
 

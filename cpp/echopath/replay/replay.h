@@ -31,7 +31,7 @@ class Replayer {
   const NodeLevels& levels() const { return levels_; }
 
   // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
-  // Of paths that are all static: evaluated once.
+  // The paths must not move, nor must the radar: they are evaluated once, at the time of the trace.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
   // By the polynomial of `level`. Paths whose last two coefficients exceed a tolerance, of length or amplitude, are left out and
   // added to `failed`, in their order.

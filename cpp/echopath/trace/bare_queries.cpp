@@ -24,8 +24,7 @@ void measure(BareQueries::Seconds& seconds, const Work& work) {
   seconds.processor.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
 }
 
-QueryLog write_down(Tracer& tracer, Job* job) {
-  QueryLog log;
+void write_down(Tracer& tracer, QueryLog& log, Job* job) {
   PathBlock block;
   tracer.geometry().record_queries(&log);
   for (int64_t i = 0; i < tracer.num_blocks(); ++i) {
@@ -36,7 +35,6 @@ QueryLog write_down(Tracer& tracer, Job* job) {
   }
   log.mark();
   tracer.geometry().record_queries(nullptr);
-  return log;
 }
 
 void ask_all(const EmbreeScene& geometry, const QueryLog& log, bool one_by_one) {
@@ -65,7 +63,8 @@ BareQueries measure_bare_queries(const Scene& scene, const Radar& radar, const T
   BareQueries out;
   std::unique_ptr<Tracer> tracer;
   out.build_seconds = seconds_of([&] { tracer = std::make_unique<Tracer>(scene, radar, settings, job); });
-  const QueryLog log = write_down(*tracer, job);
+  QueryLog log;
+  write_down(*tracer, log, job);
   count_queries(log, out);
   out.num_rays = tracer->num_rays();
   for (int i = 0; i < repetitions; ++i) {

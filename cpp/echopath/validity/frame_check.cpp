@@ -70,8 +70,7 @@ struct FrameCheck::Sweep {
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
       localise_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)) {
-  radio_.specular = specular;
+      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular) {
   is_geometry_still_ = !is_any_mesh_moving(*paths.scene);
   is_still_ = is_geometry_still_ && !radar.motion;
   const Pose pose(*paths.scene, paths.frame.trace_time);
@@ -154,15 +153,17 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
     const double time = times_.times[first + i];
     views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
   }
+  posed_level_ = {};
   if (!views_.empty()) posed_level_ = level_at({times_.times.data() + first, views_.size()});
 }
 
 std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const LevelView& level, Scratch& scratch) const {
   const size_t num_times = level.instants.size();
+  if (num_times == 0) return {};
   std::vector<double> lengths(paths.size() * num_times);
   std::vector<std::complex<double>> amplitudes(lengths.size());
   const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
-  scratch.evaluate.begin(localise_, first_radar_, radio_.specular);
+  scratch.evaluate.begin(localise_, first_radar_, specular_);
   scratch.evaluate.plan(paths);
   scratch.evaluate.evaluate(level, radio_, {0, {&all, 1}});
   std::vector<Echo> echoes(lengths.size());

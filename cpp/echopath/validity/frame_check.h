@@ -60,7 +60,7 @@ class FrameCheck {
 
   // How far the length is off where specular hits stand as chosen.
   const LengthError& error_of(const PathState& state) const {
-    return radio_.specular == SpecularPoints::kFermat ? state.stepped : state.frozen;
+    return specular_ == SpecularPoints::kFermat ? state.stepped : state.frozen;
   }
   const Radar& first_radar() const { return first_radar_; }
   size_t num_antenna_pairs() const { return std::max(probe_radar_.transmitters.size(), probe_radar_.receivers.size()); }
@@ -82,6 +82,7 @@ class FrameCheck {
   Localiser localise_;
   SurfaceWalk walk_;
   RadioConstants radio_;
+  SpecularPoints specular_;
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
   std::shared_ptr<EmbreeScene> traced_;

@@ -117,7 +117,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
         lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                  *report.checks(frame.checks), *report.unresolved(frame.unresolved)]
+                  *report.checks(frame.checks), *report.unresolved(frame.unresolved, missing)]
     return lines + chosen
 
 

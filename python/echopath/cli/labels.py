@@ -37,7 +37,7 @@ def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) 
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
             f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
-            *report.unresolved(_unresolved(frame, keywords.get("objects"), progress))]
+            *report.unresolved(_unresolved(frame, keywords.get("objects"), progress), missing)]
 
 
 def _unresolved(frame, objects, progress) -> list:

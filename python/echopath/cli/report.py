@@ -101,13 +101,14 @@ def mean_powers(frame) -> list[str]:
     return lines
 
 
-def unresolved(found) -> list[str]:
+def unresolved(found, left_out=None) -> list[str]:
     """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them.
 
-    found: list of ep.Unresolved
+    found: list of ep.Unresolved; left_out: of the frame file that was asked, None: a whole record
     """
     if not found:
-        return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise"]
+        whose = ", by the paths that the file keeps" if left_out and left_out.num_paths else ""
+        return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise{whose}"]
     lines = _table([(f"  {one.title}", f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]])
     rest = [f"  and {len(found) - MAX_UNRESOLVED:,} more"] if len(found) > MAX_UNRESOLVED else []
     return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval)", *lines, *rest]
@@ -180,13 +181,16 @@ def _peak(label) -> str:
 def _interval(label) -> str:
     """Of the mean received power, where the rays do not know it; "" where they do or nobody knows."""
     received = label.received
-    if received is None or received.resolved or not received.high > 0.0:
-        return ""
-    return f"{_level(received.low)} to {_level(received.high)}"
+    return f"{_level(received.low)} to {_level(received.high)}" if received and received.is_in_doubt else ""
 
 
 def _table(rows: list, right=()) -> list[str]:
-    """Rows of texts in columns two spaces apart; right: indices of those that end together."""
+    """Rows of texts in columns two spaces apart, without a last column that says nothing below its head.
+
+    right: indices of columns that end together
+    """
+    if len(rows) > 1 and not any(row[-1] for row in rows[1:]):
+        rows = [row[:-1] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows)]
     return ["  ".join(f"{text:>{width}}" if index in right else f"{text:<{width}}"
                       for index, (text, width) in enumerate(zip(row, widths))).rstrip() for row in rows]

@@ -48,9 +48,7 @@ def _ghost(label) -> str:
 
 def _resolution(label) -> str:
     """Of a power that the rays do not know, its interval."""
-    if label.received is None or label.received.resolved or not label.received.high > 0.0:
-        return ""
-    return f", NOT resolved ({label.received})"
+    return f", NOT resolved ({label.received})" if label.received and label.received.is_in_doubt else ""
 
 
 def _cells(label) -> str:

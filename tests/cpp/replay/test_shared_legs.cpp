@@ -1,6 +1,7 @@
 // Paths put together from the legs that they share are those that are evaluated one by one.
 #include <gtest/gtest.h>
 
+#include "echopath/base/constants.h"
 #include "echopath/replay/evaluate/chain_plan.h"
 #include "echopath/replay/evaluate/direct_evaluation.h"
 #include "echopath/replay/evaluate/evaluate_chains.h"
@@ -133,10 +134,55 @@ TEST(SharedLegs, SlidingPathsAreThoseEvaluatedOneByOne) {
   for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
     Radar radar = array();
     radar.receivers[1].polarization = Vec3(0.0, 0.6, 0.8);
-    const Paths paths = record(radar, false, model);
-    for (const double time : {paths.frame.trace_time, paths.frame.trace_time + 0.02}) {
-      expect_equal(differences(paths, radar, time, SpecularPoints::kFermat));
+    for (const bool has_mirrors : {true, false}) {
+      const Paths paths = record(radar, has_mirrors, model);
+      for (const double time : {paths.frame.trace_time, paths.frame.trace_time + 0.02}) {
+        expect_equal(differences(paths, radar, time, SpecularPoints::kFermat));
+      }
     }
+  }
+}
+
+// Every chirp has its nodes, which lanes evaluate side by side; one of them is the middle of the chirp.
+TEST(SharedLegs, PathsAtManyNodesAreThoseEvaluatedOneByOne) {
+  Radar radar = array();
+  radar.waveform.num_chirps = 8;
+  for (const SpecularPoints specular : {SpecularPoints::kMaterial, SpecularPoints::kFermat}) {
+    const Paths paths = record(radar);
+    ReplaySettings settings;
+    settings.specular = specular;
+    const Replayer replayer(paths, radar, settings);
+    const std::vector<int64_t> indices = all_of(paths);
+    const std::vector<Echoes> echoes = replayer.exact(indices, 1);
+    const std::vector<double>& times = replayer.levels().exact(1).nodes.times;
+    const size_t num_receivers = radar.receivers.size(), node = times.size() / 2;
+    const PathByPath slowly(paths, radar, times[node], specular);
+    for (size_t p = 0; p < indices.size(); ++p) {
+      const std::vector<PathValue> values = slowly(indices[p]);
+      for (size_t rx = 0; rx < num_receivers; ++rx) {
+        const PathValue& value = values[num_receivers + rx];
+        const size_t at = node * indices.size() + p;
+        ASSERT_NEAR(echoes[rx].delay[at] * kSpeedOfLight / value.length, 1.0, kRounding);
+        ASSERT_LT(std::abs(echoes[rx].amplitude[at] - value.amplitude), kFilterRounding * std::max(value.largest, kFaintest));
+      }
+    }
+  }
+}
+
+// At both ends, by direction: over mirrors, behind sliding points, of reversed paths.
+TEST(SharedLegs, PhasesOfAntennasTurnThePathsEvaluatedOneByOne) {
+  Radar radar = array();
+  const std::vector<double> angles = {-3.1, -1.5, 0.0, 1.0, 3.1};
+  std::vector<double> gains, phases;
+  for (int i = 0; i < 25; ++i) {
+    gains.push_back(0.4 + 0.05 * (i * 7 % 11));
+    phases.push_back(0.3 * (i * 5 % 7));
+  }
+  const auto table = AntennaPattern::of_table(GainTable(angles, {-1.5, -0.7, 0.0, 0.6, 1.5}, gains, phases));
+  radar.transmitters[1].pattern = radar.receivers[0].pattern = table;
+  for (const SpecularPoints specular : {SpecularPoints::kMaterial, SpecularPoints::kFermat}) {
+    const Paths paths = record(radar);
+    expect_equal(differences(paths, radar, paths.frame.trace_time + 0.01, specular));
   }
 }
 

@@ -60,7 +60,7 @@ double margin_of(const Vec3& antenna, const std::vector<int>& sequence, const Ve
   Vec3 target = point;
   for (size_t i = sequence.size(); i-- > 0;) {
     const auto k = static_cast<size_t>(sequence[i]);
-    const double here = mirrors[k].signed_distance(target), there = mirrors[k].signed_distance(images[i + 1]);
+    const double here = mirrors[k].height(target), there = mirrors[k].height(images[i + 1]);
     if (here * there >= 0) return -1e9;
     target += here / (here - there) * (images[i + 1] - target);
     const double x = (target - rectangles[k].corner).dot(rectangles[k].a.normalized());

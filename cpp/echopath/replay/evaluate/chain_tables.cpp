@@ -364,7 +364,10 @@ void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const L
 
 size_t ChainTables::num_bytes() const {
   return points.rows.num_bytes() + mirrors.num_bytes() + images[0].rows.num_bytes() + images[1].rows.num_bytes() +
-         legs.rows.num_bytes() + inner.rows.num_bytes() + polarizations.axes.num_bytes() + polarizations.rows.num_bytes();
+         images[0].antenna_from_image.capacity() * sizeof(Mat3) + images[1].antenna_from_image.capacity() * sizeof(Mat3) +
+         legs.rows.num_bytes() + legs.phases.num_bytes() + inner.rows.num_bytes() + sliding.points.num_bytes() +
+         sliding.legs.num_bytes() + sliding.phases.num_bytes() + sliding.inner.num_bytes() + polarizations.axes.num_bytes() +
+         polarizations.rows.num_bytes() + polarizations.sliding_rows.num_bytes();
 }
 
 }  // namespace echopath

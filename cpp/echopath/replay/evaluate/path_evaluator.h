@@ -8,7 +8,9 @@ namespace echopath {
 class PathEvaluator {
  public:
   using Wanted = DirectEvaluation::Wanted;
-  // For blocks of this record, played back with `radar`, from now on. All must outlive its use.
+  // For blocks of this record, played back with `radar`, from now on. All must outlive its use. With SpecularPoints::kFermat
+  // lengths, cosines, gains and spreading are those over the moved points, for each antenna at which a path begins; reflection
+  // coefficients and launch cells stay those of the trace.
   void begin(const Localiser& localise, const Radar& radar, SpecularPoints specular);
   // The paths that are evaluated next, which must outlive that.
   void plan(std::span<const int64_t> indices) { plan_ = &planner_(indices); }

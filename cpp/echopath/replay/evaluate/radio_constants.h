@@ -1,7 +1,7 @@
 #pragma once
 // What amplitudes ask of the radar and of the settings of a replay.
 #include "echopath/replay/kernels/cell_formula.h"
-#include "echopath/replay/posed/specular_slide.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
@@ -11,9 +11,6 @@ struct RadioConstants {
   double wavenumber;      // rad/m
   Footprint footprint = Footprint::kSecondOrder;
   double spread = 0.65;  // of a launch cell (trace/launch/sampler.h)
-  // With SpecularPoints::kFermat lengths, cosines, gains and spreading are those over the moved points, for each antenna at which
-  // the path begins; reflection coefficients and launch cells stay those of the trace.
-  SpecularPoints specular = SpecularPoints::kMaterial;
   CellView cells;
 
   CellFilter filter() const { return {wavenumber, spread, footprint, cells}; }

@@ -1,8 +1,7 @@
 #pragma once
-// A block of a record's paths with all that does not depend on time: hits in the frames of their meshes, launch cells.
+// A block of a record's paths with all that does not depend on time: hits in the frames of their meshes.
 #include <array>
 #include <deque>
-#include <memory>
 #include <span>
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/base/geometry.h"
 
 namespace echopath {
 

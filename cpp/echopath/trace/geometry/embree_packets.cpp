@@ -69,10 +69,9 @@ ECHOPATH_INLINE void round_lanes(const RayLanes* rays, RTCRay16* out, ValidLanes
 }
 
 void write_down(const RayLanes& rays, QueryLog::Kind kind, QueryLog& log) {
-  log.calls.push_back({kind, kPacketSize});
-  for (int lane = 0; lane < kPacketSize; ++lane) {
-    log.add(rays.from.at(lane), rays.direction.at(lane), rays.far[lane]);
-  }
+  std::vector<QueryLog::Ray> asked;
+  for (int lane = 0; lane < kPacketSize; ++lane) asked.emplace_back(rays.from.at(lane), rays.direction.at(lane), rays.far[lane]);
+  log.add(kind, asked);
 }
 
 bool is_met(const Hit& hit) { return hit.mesh_id != RTC_INVALID_GEOMETRY_ID; }

@@ -92,8 +92,8 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& start,
   set_ray(query.ray, unpacked(start), unpacked(direction), kInfinity);
   forget_hit(query.hit);
   if (log_) {
-    log_->calls.push_back({QueryLog::Kind::kClosest, 1});
-    log_->add(unpacked(start), unpacked(direction), kInfinity);
+    const QueryLog::Ray asked(unpacked(start), unpacked(direction), kInfinity);
+    log_->add(QueryLog::Kind::kClosest, {&asked, 1});
   }
   embree_intersect(device_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
@@ -152,8 +152,8 @@ bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
   RTCRay ray;
   set_ray(ray, line.from, line.direction, static_cast<float>(line.far));
   if (log_) {
-    log_->calls.push_back({QueryLog::Kind::kShadow, 1});
-    log_->add(line.from, line.direction, line.far);
+    const QueryLog::Ray asked(line.from, line.direction, line.far);
+    log_->add(QueryLog::Kind::kShadow, {&asked, 1});
   }
   embree_occluded(device_->scene, ray);
   return ray.tfar < 0;

@@ -78,7 +78,7 @@ class EmbreeScene {
   // blocked.
   using Lanes = std::array<bool, kPacketSize>;
   void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
-  // From now on every query is written down, too; null: no more. One thread at a time may ask while that lasts.
+  // From now on every query is written down, too, by whatever thread; null: no more. No query may be under way.
   void record_queries(QueryLog* log) { log_ = log; }
   // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
   // nothing else.

@@ -2,6 +2,8 @@
 // The queries of a trace as Embree got them, to be asked again without the tracer around them (bare_queries.h).
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
+#include <span>
 #include <vector>
 
 #include "echopath/base/vector_of.h"
@@ -17,6 +19,14 @@ struct QueryLog {
   struct Ray {
     VectorOf<float> from, direction;
     float far;  // m; negative: a lane that is not in use
+
+    Ray(const VectorOf<double>& start, const VectorOf<double>& toward, double end)
+        : from(rounded(start)), direction(rounded(toward)), far(static_cast<float>(end)) {}
+
+   private:
+    static VectorOf<float> rounded(const VectorOf<double>& v) {
+      return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    }
   };
   // Where a block of launch rays begins.
   struct Mark {
@@ -26,13 +36,16 @@ struct QueryLog {
   std::vector<Ray> rays;  // of each call in turn
   std::vector<Mark> marks;
 
-  void add(const VectorOf<double>& from, const VectorOf<double>& direction, double far) {
-    const auto rounded = [](const VectorOf<double>& v) {
-      return VectorOf<float>{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-    };
-    rays.push_back({rounded(from), rounded(direction), static_cast<float>(far)});
+  // Thread-safe: the rays of a call stay together.
+  void add(Kind kind, std::span<const Ray> of_call) {
+    const std::lock_guard lock(mutex_);
+    calls.push_back({kind, static_cast<uint8_t>(of_call.size())});
+    rays.insert(rays.end(), of_call.begin(), of_call.end());
   }
   void mark() { marks.push_back({calls.size(), rays.size()}); }
+
+ private:
+  std::mutex mutex_;
 };
 
 }  // namespace echopath

@@ -90,7 +90,7 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
     occluder.assign(corners.begin(), corners.end());
   }
   if (source.lit_normal) occluder = clipped(occluder, *source.lit_normal, source.offset + kOffPlane);
-  const double side = target.signed_distance(source.apex) > 0 ? 1.0 : -1.0;
+  const double side = target.height(source.apex) > 0 ? 1.0 : -1.0;
   occluder = clipped(occluder, side * target.normal, side * target.normal.dot(target.point) + kOffPlane);
   if (occluder.empty()) return true;
   const Vec3 normal = (occluder[1] - occluder[0]).cross(occluder[2] - occluder[0]).normalized();

@@ -85,7 +85,7 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
 // Adds the bounce of a wave from a point toward an image behind the mirror; sets where they meet.
 bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  const double before = mirror.signed_distance(from), behind = mirror.signed_distance(image);
+  const double before = mirror.height(from), behind = mirror.height(image);
   if (before * behind >= 0) return false;
   const std::optional<Hit> hit = mirror.mesh.locate(from + before / (before - behind) * (image - from));
   if (!hit) return false;

@@ -46,7 +46,7 @@ FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeSce
 // What a mirror shows of the frustum (null: of the antenna itself) whose source appears at `source`.
 bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  const double side = mirror.signed_distance(source);
+  const double side = mirror.height(source);
   if (std::abs(side) < kOnPlane) return false;
   std::vector<Vec3> window = mirror.outline;
   if (frustum) {

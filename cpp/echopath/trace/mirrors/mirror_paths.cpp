@@ -65,7 +65,7 @@ class ImageMethod {
     points_.assign(n, Vec3::Zero());
     Vec3 target = receiver;
     for (size_t k = n; k-- > 0;) {
-      const double behind = mirror(k).signed_distance(images[k + 1]), before = mirror(k).signed_distance(target);
+      const double behind = mirror(k).height(images[k + 1]), before = mirror(k).height(target);
       if (behind * before >= 0) return false;
       points_[k] = target + before / (before - behind) * (images[k + 1] - target);
       target = points_[k];
@@ -79,7 +79,7 @@ class ImageMethod {
     for (size_t other = 0; other < points_.size(); ++other) {
       if ((points_[other] - points_[k]).norm() > kAtEdge) continue;
       const Mirror& plane = mirror(other);
-      point = geometry_.lifted(point, plane.signed_distance(target) >= 0 ? plane.normal : Vec3(-plane.normal));
+      point = geometry_.lifted(point, plane.height(target) >= 0 ? plane.normal : Vec3(-plane.normal));
     }
     return point;
   }
@@ -113,7 +113,7 @@ class ImageMethod {
       const ModeCoefficients modes = model.modes(cos_incidence);
       const double coherent = model.respond(cos_incidence, PolarizationMode::kTe).coherent;
       for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
-      direction = mirror(k).reflect(direction);
+      direction = mirror(k).mirrored(direction);
     }
     return arriving_components(fields, direction);
   }
@@ -127,7 +127,7 @@ class ImageMethod {
       const SurfaceResponse response = respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)), mode);
       product *= response.gamma * response.coherent *
                  mirror_sign(*mirror(k).material, mode, settings_.polarization, direction, normal);
-      direction = mirror(k).reflect(direction);
+      direction = mirror(k).mirrored(direction);
     }
     return product;
   }

@@ -43,7 +43,7 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
 void require_flat(const Scene& scene, const EmbreeScene& geometry, const Mirror& mirror) {
   double deviation = 0.0, extent = 0.0;
   for (const Vec3& vertex : geometry.vertices(mirror.mesh_id)) {
-    deviation = std::max(deviation, std::abs(mirror.signed_distance(vertex)));
+    deviation = std::max(deviation, std::abs(mirror.height(vertex)));
     extent = std::max(extent, (vertex - mirror.point).norm());
   }
   require(deviation <= kFlatAbsolute + kFlatRelative * extent, "material.mirror",
@@ -105,7 +105,7 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
 double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
                    const Vec3& normal) {
   if (mode == PolarizationMode::kTe || !material.permittivity) return 1.0;
-  const Vec3 te_axis = direction.cross(normal), behind = direction - 2.0 * direction.dot(normal) * normal;
+  const Vec3 te_axis = direction.cross(normal), behind = mirrored(direction, normal);
   return polarization.dot(te_axis.cross(direction)) * polarization.dot(te_axis.cross(behind)) < 0 ? -1.0 : 1.0;
 }
 

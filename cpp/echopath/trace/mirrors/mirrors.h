@@ -2,24 +2,20 @@
 // The planes flagged `mirror`, and which coefficient of a surface holds for a polarisation.
 #include <vector>
 
+#include "echopath/base/plane.h"
 #include "echopath/em/surface_response.h"
 #include "echopath/trace/geometry/embree_scene.h"
 #include "echopath/trace/geometry/plane_mesh.h"
 
 namespace echopath {
 
-struct Mirror {
+// Its point is relative to the trace origin.
+struct Mirror : Plane {
   uint32_t mesh_id = 0;
-  Vec3 point;   // on the plane, relative to the trace origin
-  Vec3 normal;  // unit
   const Material* material = nullptr;
   std::vector<Vec3> outline;  // corners of the convex hull, in order around it
   bool is_solid = false;      // the mesh fills its outline: it has no holes and no notches
   PlaneMesh mesh;
-
-  double signed_distance(const Vec3& p) const { return normal.dot(p - point); }
-  Vec3 image(const Vec3& p) const { return p - 2.0 * signed_distance(p) * normal; }
-  Vec3 reflect(const Vec3& direction) const { return direction - 2.0 * normal.dot(direction) * normal; }
 };
 
 // Corners of the convex hull of points of a mirror's plane, in order around it (Andrew 1979).

@@ -73,7 +73,7 @@ FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
     const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
     const Mirror& mirror = context_.mirrors[static_cast<size_t>(bounce.mirror)];
     reflect_all(fields, direction, bounce.normal, context_.surfaces.model(mirror.mesh_id), bounce.specular_share);
-    direction = mirror.reflect(direction);
+    direction = mirror.mirrored(direction);
   }
   return fields;
 }

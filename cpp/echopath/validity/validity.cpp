@@ -367,7 +367,6 @@ class Certificate {
     return sum;
   }
 
-
   const Paths& paths_;
   const Radar& radar_;
   FrameCheck check_;

@@ -23,7 +23,6 @@ constexpr double kThinShareError = 3e-3;
 constexpr double kRounding = 1e-12;  // m
 constexpr double kSum = 1e-15;       // of some shares
 
-
 // Solid angle of the rectangle 0 <= y <= a, 0 <= z <= b at x = d, signed; seen from the origin.
 double corner_angle(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
 

@@ -19,7 +19,6 @@ constexpr double kOffsetError = 1e-6;   // cells, of the table that turns ratios
 constexpr double kVelocityError = 1e-5;  // m/s: likewise, in cells of some m/s
 constexpr double kPowerError = 1e-5;    // relative: a parabola of the main lobe at that error, and rounding
 
-
 constexpr int kChirps = 32, kSamples = 64;
 
 // One tone in every channel, each with a phase of its own, at places in cells of the map; noise: rms per sample.

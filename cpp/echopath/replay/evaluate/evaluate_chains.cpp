@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace echopath {
 
 void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,

@@ -11,11 +11,10 @@ Radar with_first_antennas(Radar radar) {
   return radar;
 }
 
-bool is_any_mesh_moving(const Scene& scene) {
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    if (scene.is_moving(id)) return true;
-  }
-  return false;
+std::vector<uint8_t> moving_meshes(const Scene& scene) {
+  std::vector<uint8_t> moves;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves.push_back(scene.is_moving(id));
+  return moves;
 }
 
 void merge(const LengthError& at, LengthError& worst) {
@@ -70,8 +69,9 @@ struct FrameCheck::Sweep {
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
       localise_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular) {
-  is_geometry_still_ = !is_any_mesh_moving(*paths.scene);
+      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
+      memory_(ReplayMemory::take()), mesh_moves_(moving_meshes(*paths.scene)) {
+  is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
   const Pose pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
@@ -81,7 +81,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
   find_sweeps();
 }
 
-FrameCheck::~FrameCheck() = default;
+FrameCheck::~FrameCheck() { ReplayMemory::leave(std::move(memory_)); }
 
 void FrameCheck::find_sweeps() {
   std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
@@ -157,15 +157,22 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
   if (!views_.empty()) posed_level_ = level_at({times_.times.data() + first, views_.size()});
 }
 
-std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const LevelView& level, Scratch& scratch) const {
+bool FrameCheck::is_still(const LocalPath& path) const {
+  const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
+  return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
+}
+
+std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const LevelView& level) const {
   const size_t num_times = level.instants.size();
-  if (num_times == 0) return {};
+  if (num_times == 0 || paths.empty()) return {};
   std::vector<double> lengths(paths.size() * num_times);
   std::vector<std::complex<double>> amplitudes(lengths.size());
   const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
-  scratch.evaluate.begin(localise_, first_radar_, specular_);
-  scratch.evaluate.plan(paths);
-  scratch.evaluate.evaluate(level, radio_, {0, {&all, 1}});
+  std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
+  evaluator->begin(localise_, first_radar_, specular_);
+  evaluator->plan(paths);
+  evaluator->evaluate(level, radio_, {0, {&all, 1}});
+  memory_->give(std::move(evaluator));
   std::vector<Echo> echoes(lengths.size());
   for (size_t i = 0; i < lengths.size(); ++i) {
     Echo& echo = echoes[i % paths.size() * num_times + i / paths.size()];
@@ -175,12 +182,27 @@ std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const Le
   return echoes;
 }
 
-std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths, Scratch& scratch) const {
-  return echoes_at(paths, traced_level_.view(), scratch);
-}
+std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths) const { return echoes_at(paths, traced_level_.view()); }
 
-std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, Scratch& scratch) const {
-  return echoes_at(paths, posed_level_.view(), scratch);
+std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, const LocalPaths& local,
+                                             std::span<const Echo> traced) const {
+  std::vector<int64_t> moving;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (!is_still(local.paths[i])) moving.push_back(paths[i]);
+  }
+  const std::vector<Echo> found = echoes_at(moving, posed_level_.view());
+  const auto num_times = static_cast<int64_t>(views_.size());
+  auto next = found.begin();
+  std::vector<Echo> echoes;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (is_still(local.paths[i])) {
+      echoes.insert(echoes.end(), views_.size(), traced[i]);
+    } else {
+      echoes.insert(echoes.end(), next, next + num_times);
+      next += num_times;
+    }
+  }
+  return echoes;
 }
 
 size_t FrameCheck::check(const LocalPath& path, int num_times, const Echo& traced, std::span<Echo> posed, Scratch& scratch,

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/replay/evaluate/path_evaluator.h"
+#include "echopath/replay/replay_memory.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/validity/check_times.h"
 #include "echopath/validity/frame_probe.h"
@@ -30,7 +30,6 @@ class FrameCheck {
  public:
   struct Scratch {
     ProbeScratch probe;
-    PathEvaluator evaluate;
     std::vector<LegMemo> known;  // by time, of the paths that were checked with this scratch
     explicit Scratch(int longest);  // hits of a path
   };
@@ -49,9 +48,10 @@ class FrameCheck {
   // Poses the scene at the times [first, first + count), for `check`. No other call may run meanwhile.
   void pose(size_t first, size_t count, Job* job = nullptr);
   // Echoes at the trace time, [P]. Thread-safe, as all that follows.
-  std::vector<Echo> at_trace(std::span<const int64_t> paths, Scratch& scratch) const;
-  // At the posed times, [P, time].
-  std::vector<Echo> at_posed_times(std::span<const int64_t> paths, Scratch& scratch) const;
+  std::vector<Echo> at_trace(std::span<const int64_t> paths) const;
+  // At the posed times, [P, time]. local: the same paths; traced: their echoes at the trace time, which are those of what stands
+  // still.
+  std::vector<Echo> at_posed_times(std::span<const int64_t> paths, const LocalPaths& local, std::span<const Echo> traced) const;
   size_t num_posed_times() const { return views_.size(); }
   // Adds what becomes of a path at the posed times that it needs; echoes: of the trace time, and of the posed times (`is_lost` is
   // found here). Returns how many times it needed.
@@ -71,7 +71,8 @@ class FrameCheck {
  private:
   struct View;
   struct Sweep;
-  std::vector<Echo> echoes_at(std::span<const int64_t> paths, const LevelView& level, Scratch& scratch) const;
+  bool is_still(const LocalPath& path) const;
+  std::vector<Echo> echoes_at(std::span<const int64_t> paths, const LevelView& level) const;
   void find_sweeps();
   // At one of the posed times, brought there from the time that stood in its place.
   std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
@@ -83,6 +84,8 @@ class FrameCheck {
   SurfaceWalk walk_;
   RadioConstants radio_;
   SpecularPoints specular_;
+  std::unique_ptr<ReplayMemory> memory_;
+  std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
   std::shared_ptr<EmbreeScene> traced_;

@@ -180,8 +180,10 @@ class Certificate {
     for (const size_t member : members) indices.push_back(sample_.paths[member]);
     const LocalPaths local = check_.localise(indices);
     FrameCheck::Scratch scratch(local.longest);
-    std::vector<Echo> traced, posed = check_.at_posed_times(indices, scratch);
-    if (first == 0) traced = check_.at_trace(indices, scratch);
+    std::vector<Echo> traced;
+    if (first == 0) traced = check_.at_trace(indices);
+    else for (const size_t member : members) traced.push_back(findings_[member].at_trace);
+    std::vector<Echo> posed = check_.at_posed_times(indices, local, traced);
     for (size_t i = 0; i < members.size(); ++i) {
       Finding& found = findings_[members[i]];
       const LocalPath& path = local.paths[i];

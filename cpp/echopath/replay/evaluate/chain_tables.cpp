@@ -154,8 +154,7 @@ void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise,
   pad(rows, point, PointToPose::kNumRows);
 }
 
-void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool receivers) {
-  of_receivers = receivers;
+void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers) {
   const std::vector<PosedAntenna>& antennas = antennas_of(level.instants.front(), of_receivers);
   const NodeRows& own = level.poses.antennas[of_receivers];
   num_antennas = antennas.size();
@@ -180,67 +179,12 @@ void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const L
   }
 }
 
-void ChainLegs::find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages* images, bool with_phase) {
-  stride = std::max(images[0].num_antennas, images[1].num_antennas);
-  rows.resize(plan.legs.size() * stride, LegToMeasure::kNumRows, points.rows.num_nodes());
-  if (with_phase) phases.resize(plan.legs.size() * stride, 1, points.rows.num_nodes());
-  for (size_t id = 0; id < plan.legs.size(); ++id) {
-    const ChainPlan::Leg& leg = plan.legs[id];
-    const AntennaImages& of = images[leg.of_receivers];
-    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
-      const size_t to = id * stride + antenna;
-      double* const phase = with_phase ? phases.row(to, 0) : nullptr;
-      of.measure(of.entry(leg.image, antenna), points.rows.row(leg.point, 0), rows.row(to, 0), phase);
-    }
-  }
-}
-
-// Axes of the world for the antennas themselves, and what each mirror makes of them.
-void LegPolarizations::find_axes(const ChainPlan& plan, const NodeRows& mirrors) {
-  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
-  for (size_t image = 0; image < plan.images.size(); ++image) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
-      for (size_t node = 0; node < axes.num_nodes(); ++node) {
-        Vec3 seen = Vec3::Unit(axis);
-        if (image > 0) {
-          const Vec3 normal = load(mirrors, plan.images[image].mirror, 0, node);
-          seen = mirrored(load(axes, plan.images[image].parent, row, node), normal);
-        }
-        store(seen, axes, image, row, node);
-      }
-    }
-    pad(axes, image, ComponentsToFind::kNumAxisRows);
-  }
-}
-
-void LegPolarizations::find(const ChainPlan& plan, const ChainTables& tables, const LevelView& level) {
-  const size_t num_nodes = level.instants.size(), stride = tables.legs.stride;
-  rows.resize(plan.legs.size() * stride, ComponentsToFind::kNumRows, num_nodes);
-  for (size_t id = 0; id < plan.legs.size(); ++id) {
-    const ChainPlan::Leg& leg = plan.legs[id];
-    const AntennaImages& images = tables.images[leg.of_receivers];
-    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      across(images, {leg.image, antenna}, level, tables.points.rows.row(leg.point, 0), rows.row(id * stride + antenna, 0));
-    }
-  }
-  const SlidingParts& slides = tables.sliding;
-  sliding_rows.resize(plan.sliding.size() * stride, ComponentsToFind::kNumRows, num_nodes);
-  for (const ChainPlan::Chain& chain : plan.chains) {
-    if (chain.slide == ChainPlan::kNone) continue;
-    const AntennaImages& images = tables.images[chain.is_reversed];
-    for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      const size_t entry = chain.slide * stride + antenna;
-      across(images, {plan.legs[chain.start].image, antenna}, level, slides.points.row(entry, 0), sliding_rows.row(entry, 0));
-    }
-  }
-}
-
-void LegPolarizations::across(const AntennaImages& images, ImageOfAntenna of, const LevelView& level, const double* point,
-                              double* out) const {
-  const double* own = level.poses.polarizations[images.of_receivers].row(of.antenna, 0);
-  chain_kernels(axes.stride()).find_components({images.rows.row(images.entry(of.image, of.antenna), 0), axes.row(of.image, 0), own,
-                                                point, out}, axes.stride());
+void LegTable::resize(size_t num_legs, size_t num_nodes, bool with_phases, bool with_components) {
+  has_phases = with_phases;
+  has_components = with_components;
+  rows.resize(num_legs, LegToMeasure::kNumRows, num_nodes);
+  if (with_phases) phases.resize(num_legs, 1, num_nodes);
+  if (with_components) components.resize(num_legs, ComponentsToFind::kNumRows, num_nodes);
 }
 
 LocalPath path_of(const ChainPlan::Inner& inner) {
@@ -293,36 +237,24 @@ void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
   }
 }
 
-void SlidingParts::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const AntennaImages* images,
-                        bool with_phase) {
+void SlidingParts::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, size_t stride) {
   if (plan.sliding.empty()) return;
   const LocalPaths local = localise(plan.sliding);
-  stride = std::max(images[0].num_antennas, images[1].num_antennas);
   const size_t num_entries = plan.sliding.size() * stride, num_nodes = level.instants.size();
   points.resize(num_entries, PointToPose::kNumRows, num_nodes);
-  legs.resize(num_entries, LegToMeasure::kNumRows, num_nodes);
-  if (with_phase) phases.resize(num_entries, 1, num_nodes);
   inner.resize(num_entries, InnerRows::kNumRows, num_nodes);
-  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide, level);
-  for (const ChainPlan::Chain& chain : plan.chains) {
-    if (chain.slide == ChainPlan::kNone) continue;
-    const AntennaImages& of = images[chain.is_reversed];
-    for (size_t antenna = 0; antenna < of.num_antennas; ++antenna) {
-      const size_t entry = chain.slide * stride + antenna;
-      double* const phase = with_phase ? phases.row(entry, 0) : nullptr;
-      of.measure(of.entry(plan.legs[chain.start].image, antenna), points.row(entry, 0), legs.row(entry, 0), phase);
-    }
-  }
+  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide * stride, level);
 }
 
-void SlidingParts::move_points(const LocalPath& path, size_t slide, const LevelView& level) {
+void SlidingParts::move_points(const LocalPath& path, size_t first_entry, const LevelView& level) {
+  const size_t num_starts = antennas_of(level.instants.front(), path.is_reversed).size();
   std::array<PosedHit, 64> recorded, moved;  // a path has no more
   SpecularSlide scratch;
   for (size_t node = 0; node < level.instants.size(); ++node) {
     pose_hits(path, level.instants[node], recorded.data());
     const std::vector<PosedAntenna>& starts = antennas_of(level.instants[node], path.is_reversed);
-    for (size_t antenna = 0; antenna < starts.size(); ++antenna) {
-      const size_t entry = slide * stride + antenna;
+    for (size_t antenna = 0; antenna < num_starts; ++antenna) {
+      const size_t entry = first_entry + antenna;
       std::copy_n(recorded.begin(), path.count, moved.begin());
       step_to_fermat(path, starts[antenna].position, scratch, moved.data());
       const PosedHit& first = moved[static_cast<size_t>(path.first_material)];
@@ -332,7 +264,7 @@ void SlidingParts::move_points(const LocalPath& path, size_t slide, const LevelV
       store_inner(path, moved.data(), entry, node, inner);
     }
   }
-  for (size_t entry = slide * stride; entry < (slide + 1) * stride; ++entry) {
+  for (size_t entry = first_entry; entry < first_entry + num_starts; ++entry) {
     pad(points, entry, PointToPose::kNumRows);
     pad(inner, entry, InnerRows::kNumRows);
   }
@@ -346,28 +278,75 @@ bool any_phase(const AntennaImages& images) {
                      [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
 }
 
+// Axes of the world for the antennas themselves, and what each mirror makes of them.
+void find_axes(const ChainPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
+  axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
+  for (size_t image = 0; image < plan.images.size(); ++image) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
+      for (size_t node = 0; node < axes.num_nodes(); ++node) {
+        Vec3 seen = Vec3::Unit(axis);
+        if (image > 0) {
+          const Vec3 normal = load(mirrors, plan.images[image].mirror, 0, node);
+          seen = mirrored(load(axes, plan.images[image].parent, row, node), normal);
+        }
+        store(seen, axes, image, row, node);
+      }
+    }
+    pad(axes, image, ComponentsToFind::kNumAxisRows);
+  }
+}
+
 }  // namespace
 
 void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
   points.find(plan, localise, level);
   find_mirrors(plan, localise, level, mirrors);
   for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
-  has_phase = any_phase(images[0]) || any_phase(images[1]);
+  stride = std::max(images[0].num_antennas, images[1].num_antennas);
+  has_phases = any_phase(images[0]) || any_phase(images[1]);
   has_polarizations = needs_polarizations(localise.paths(), level);
-  legs.find(plan, points, images, has_phase);
-  inner.find(plan, points);
-  sliding.find(plan, localise, level, images, has_phase);
   const bool of_mirrors = !localise.paths().jones.empty() && !plan.mirror_paths.empty();
-  if (has_polarizations || of_mirrors) polarizations.find_axes(plan, mirrors);
-  if (has_polarizations) polarizations.find(plan, *this, level);
+  if (has_polarizations || of_mirrors) find_axes(plan, mirrors, axes);
+  inner.find(plan, points);
+  sliding.find(plan, localise, level, stride);
+  measure_legs(plan, level);
+}
+
+void ChainTables::measure_legs(const ChainPlan& plan, const LevelView& level) {
+  const size_t num_nodes = level.instants.size();
+  legs.resize(plan.legs.size() * stride, num_nodes, has_phases, has_polarizations);
+  for (size_t id = 0; id < plan.legs.size(); ++id) {
+    const auto& [image, point, of_receivers] = plan.legs[id];
+    for (size_t antenna = 0; antenna < images[of_receivers].num_antennas; ++antenna) {
+      measure({of_receivers, image, antenna}, points.rows.row(point, 0), level, id * stride + antenna, legs);
+    }
+  }
+  sliding.legs.resize(plan.sliding.size() * stride, num_nodes, has_phases, has_polarizations);
+  for (const ChainPlan::Chain& chain : plan.chains) {
+    if (chain.slide == ChainPlan::kNone) continue;
+    for (size_t antenna = 0; antenna < images[chain.is_reversed].num_antennas; ++antenna) {
+      const size_t entry = chain.slide * stride + antenna;
+      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), level, entry, sliding.legs);
+    }
+  }
+}
+
+void ChainTables::measure(const ImageOfAntenna& from, const double* point, const LevelView& level, size_t leg, LegTable& to) const {
+  const AntennaImages& seen = images[from.of_receivers];
+  const size_t entry = seen.entry(from.image, from.antenna);
+  seen.measure(entry, point, to.rows.row(leg, 0), to.has_phases ? to.phases.row(leg, 0) : nullptr);
+  if (!to.has_components) return;
+  const double* own = level.poses.polarizations[from.of_receivers].row(from.antenna, 0);
+  chain_kernels(axes.stride())
+      .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)}, axes.stride());
 }
 
 size_t ChainTables::num_bytes() const {
-  return points.rows.num_bytes() + mirrors.num_bytes() + images[0].rows.num_bytes() + images[1].rows.num_bytes() +
-         images[0].antenna_from_image.capacity() * sizeof(Mat3) + images[1].antenna_from_image.capacity() * sizeof(Mat3) +
-         legs.rows.num_bytes() + legs.phases.num_bytes() + inner.rows.num_bytes() + sliding.points.num_bytes() +
-         sliding.legs.num_bytes() + sliding.phases.num_bytes() + sliding.inner.num_bytes() + polarizations.axes.num_bytes() +
-         polarizations.rows.num_bytes() + polarizations.sliding_rows.num_bytes();
+  size_t bytes = points.rows.num_bytes() + mirrors.num_bytes() + axes.num_bytes() + legs.num_bytes() + inner.rows.num_bytes() +
+                 sliding.points.num_bytes() + sliding.legs.num_bytes() + sliding.inner.num_bytes();
+  for (const AntennaImages& of_end : images) bytes += of_end.rows.num_bytes() + of_end.antenna_from_image.capacity() * sizeof(Mat3);
+  return bytes;
 }
 
 }  // namespace echopath

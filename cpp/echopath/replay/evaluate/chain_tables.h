@@ -38,7 +38,6 @@ struct PosedPoints {
 
 // Antennas of one end as they are seen over mirrors: a leg is a straight line from one of them.
 struct AntennaImages {
-  bool of_receivers = false;
   size_t num_antennas = 0;
   std::vector<const AntennaPattern*> pattern;  // [antenna]
   NodeRows rows;                               // of image * num_antennas + antenna, LegToMeasure::ImageRow
@@ -55,29 +54,15 @@ struct AntennaImages {
   void finish(size_t entry, const double* point, double* out, double* phase) const;
 };
 
-// Polarisations across the legs, where polarised paths ask for them.
-struct LegPolarizations {
-  NodeRows axes;  // [image], ComponentsToFind::AxisRow
-  NodeRows rows;          // of leg * stride + antenna as in ChainLegs, ComponentsToFind::Row
-  NodeRows sliding_rows;  // likewise, of the legs in SlidingParts
+// Legs from images of antennas to points.
+struct LegTable {
+  NodeRows rows;        // [leg], LegToMeasure::Row
+  NodeRows phases;      // likewise, one row: of the antenna, rad; empty where none has one
+  NodeRows components;  // likewise, ComponentsToFind::Row; empty where polarisations are not asked for
+  bool has_phases = false, has_components = false;
 
-  void find_axes(const ChainPlan& plan, const NodeRows& mirrors);
-  void find(const ChainPlan& plan, const struct ChainTables& tables, const LevelView& level);  // after the axes
-  // Across the leg from an image of an antenna to a point (PointToPose::Row), as ComponentsToFind::Row.
-  struct ImageOfAntenna {
-    uint32_t image;
-    size_t antenna;
-  };
-  void across(const AntennaImages& images, ImageOfAntenna of, const LevelView& level, const double* point, double* out) const;
-};
-
-// All legs of a block, to each antenna of their end.
-struct ChainLegs {
-  size_t stride = 0;  // antennas of the end that has more of them
-  NodeRows rows;      // of leg * stride + antenna, LegToMeasure::Row
-  NodeRows phases;    // likewise, one row: of the antenna, rad, where any has one
-
-  void find(const ChainPlan& plan, const PosedPoints& points, const AntennaImages* images, bool with_phase);
+  void resize(size_t num_legs, size_t num_nodes, bool with_phases, bool with_components);
+  size_t num_bytes() const { return rows.num_bytes() + phases.num_bytes() + components.num_bytes(); }
 };
 
 // Inner parts (DiffuseInner).
@@ -89,18 +74,17 @@ struct ChainInner {
 };
 
 // What sliding points of reflection (specular_slide.h) make of the paths that have them: for each antenna at which a path begins,
-// these stand elsewhere.
+// these stand elsewhere. Entries: slide * ChainTables::stride + antenna.
 struct SlidingParts {
-  size_t stride = 0;   // antennas of the end that has more of them
-  NodeRows points;     // of slide * stride + antenna: the first material point, PointToPose::Row
-  NodeRows legs;       // likewise, from the antenna to it: LegToMeasure::Row
-  NodeRows phases;     // likewise, one row, as in ChainLegs
-  NodeRows inner;      // likewise, InnerRows::Row
+  NodeRows points;  // the first material point, PointToPose::Row
+  LegTable legs;    // from the antenna to it
+  NodeRows inner;   // InnerRows::Row
 
-  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const AntennaImages* images, bool with_phase);
+  // Without the legs.
+  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, size_t stride);
 
  private:
-  void move_points(const LocalPath& path, size_t slide, const LevelView& level);
+  void move_points(const LocalPath& path, size_t first_entry, const LevelView& level);
 };
 
 // Of a gain, where it is a whole one that kernels can do, else LegToMeasure::kNoExponent.
@@ -113,18 +97,29 @@ struct ChainTables {
   PosedPoints points;
   NodeRows mirrors;
   AntennaImages images[2];  // of transmitters, of receivers
-  ChainLegs legs;
+  NodeRows axes;            // [image], ComponentsToFind::AxisRow, where polarisations are asked for
+  size_t stride = 0;        // antennas of the end that has more of them
+  LegTable legs;            // of leg * stride + antenna
   ChainInner inner;
-  LegPolarizations polarizations;
   SlidingParts sliding;
-  bool has_phase = false, has_polarizations = false;
+  bool has_phases = false, has_polarizations = false;
 
   void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+  // Measures the leg from an image of an antenna to a point (PointToPose::Row).
+  struct ImageOfAntenna {
+    bool of_receivers;
+    uint32_t image;
+    size_t antenna;
+  };
+  void measure(const ImageOfAntenna& from, const double* point, const LevelView& level, size_t leg, LegTable& to) const;
   // Polarisations differ from path to path or from node to node (NodePoses::is_upright).
   static bool needs_polarizations(const Paths& paths, const LevelView& level) {
     return !paths.jones.empty() && !level.poses.is_upright;
   }
   size_t num_bytes() const;  // of what is kept for the next block
+
+ private:
+  void measure_legs(const ChainPlan& plan, const LevelView& level);
 };
 
 }  // namespace echopath

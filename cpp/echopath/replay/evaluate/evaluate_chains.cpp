@@ -4,6 +4,24 @@
 #include <cmath>
 
 namespace echopath {
+namespace {
+
+void set_cell(const PlacedCell& cell, CoherentPath& path) {
+  path.cell = cell.shape;
+  path.root_area = cell.root_area;
+  for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
+}
+
+// A mesh in whose frame the tangents of stretching cells are.
+void set_world(size_t num_nodes, NodeRows& world) {
+  world.resize(1, PointToPose::kNumMeshRows, num_nodes);
+  for (size_t row = 0; row < PointToPose::kNumMeshRows; ++row) {
+    const bool is_diagonal = row < PointToPose::kTranslation && row % 4 == 0;
+    std::fill_n(world.row(0, row), world.stride(), is_diagonal ? 1.0 : 0.0);
+  }
+}
+
+}  // namespace
 
 void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
                                  const ChannelSpan& channels) {
@@ -13,6 +31,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
   tables_.find(plan, localise, level);
   values_.resize(kTogether, PathToCombine::kNumRows, level.instants.size());
   kernels_ = &chain_kernels(values_.stride());
+  set_world(level.instants.size(), world_);
   const TraceCells cells(plan, localise, tables_.points);
   const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
   for (CoherentPath& path : coherent_) path.filter = radio.filter();
@@ -27,8 +46,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
         const Ends ends = ends_of(chain, channels.first + channel);
         if (chain.is_coherent) evaluate_coherent(plan, chain, ends, of_coherent, slot);
         else evaluate_diffuse(chain, ends, of_diffuse, slot);
-        if (tables_.has_polarizations) polarize(chain, ends, slot);
-        if (tables_.has_phase) turn_phase(chain, ends, slot);
+        turn(chain.path, start_of(chain, ends.start), end_of(chain, ends.end), slot);
       }
       put(chains, channels.nodes[channel]);
     }
@@ -50,23 +68,23 @@ ComplexOf<double> ChainEvaluation::scaled_weight(const ChainPlan::Chain& chain, 
   return {weight.real(), weight.imag()};
 }
 
-const double* ChainEvaluation::start_leg_of(const ChainPlan::Chain& chain, size_t antenna) const {
-  if (chain.slide != ChainPlan::kNone) return tables_.sliding.legs.row(chain.slide * tables_.sliding.stride + antenna, 0);
-  return tables_.legs.rows.row(chain.start * tables_.legs.stride + antenna, 0);
+ChainEvaluation::MeasuredLeg ChainEvaluation::start_of(const ChainPlan::Chain& chain, size_t antenna) const {
+  if (chain.slide != ChainPlan::kNone) return {tables_.sliding.legs, chain.slide * tables_.stride + antenna};
+  return {tables_.legs, chain.start * tables_.stride + antenna};
 }
 
-const double* ChainEvaluation::end_leg_of(const ChainPlan::Chain& chain, size_t antenna) const {
-  return tables_.legs.rows.row(chain.end * tables_.legs.stride + antenna, 0);
+ChainEvaluation::MeasuredLeg ChainEvaluation::end_of(const ChainPlan::Chain& chain, size_t antenna) const {
+  return {tables_.legs, chain.end * tables_.stride + antenna};
 }
 
 // antenna: at the start; null where there is one material point.
 const double* ChainEvaluation::inner_of(const ChainPlan::Chain& chain, size_t antenna) const {
-  if (chain.slide != ChainPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.sliding.stride + antenna, 0);
+  if (chain.slide != ChainPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.stride + antenna, 0);
   return chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
 }
 
 PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
-  return {start_leg_of(chain, ends.start), end_leg_of(chain, ends.end), inner_of(chain, ends.start),
+  return {start_of(chain, ends.start).rows(), end_of(chain, ends.end).rows(), inner_of(chain, ends.start),
           scaled_weight(chain, scale), values_.row(slot, 0)};
 }
 
@@ -75,25 +93,6 @@ const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, siz
   return images.rows.row(images.entry(plan.legs[leg].image, antenna), 0);
 }
 
-namespace {
-
-void set_cell(const PlacedCell& cell, CoherentPath& path) {
-  path.cell = cell.shape;
-  path.root_area = cell.root_area;
-  for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
-}
-
-// A mesh in whose frame the tangents of stretching cells are.
-void resize_world(size_t num_nodes, NodeRows& world) {
-  world.resize(1, PointToPose::kNumMeshRows, num_nodes);
-  for (size_t row = 0; row < PointToPose::kNumMeshRows; ++row) {
-    const bool is_diagonal = row < PointToPose::kTranslation && row % 4 == 0;
-    std::fill_n(world.row(0, row), world.stride(), is_diagonal ? 1.0 : 0.0);
-  }
-}
-
-}  // namespace
-
 void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells,
                                  const LevelView& level, size_t slot) {
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
@@ -101,7 +100,6 @@ void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& 
   path.point = tables_.points.rows.row(point, 0);
   stretching_[slot].clear();
   if (cells.may_stretch(mesh_id)) {
-    resize_world(level.instants.size(), world_);
     path.mesh = world_.row(0, 0);
     stretching_[slot] = cells.on_stretching(chain, level.instants);
   } else {
@@ -139,17 +137,14 @@ void ChainEvaluation::evaluate_diffuse(const ChainPlan::Chain& chain, const Ends
   kernels_->combine({path_of(chain, ends, scale, slot), begins_specular, is_single}, values_.stride());
 }
 
-void ChainEvaluation::polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot) {
-  const size_t stride = tables_.legs.stride;
-  const LegPolarizations& across = tables_.polarizations;
-  const double* start = chain.slide == ChainPlan::kNone ? across.rows.row(chain.start * stride + ends.start, 0)
-                                                        : across.sliding_rows.row(chain.slide * stride + ends.start, 0);
-  polarize(chain.path, start, across.rows.row(chain.end * stride + ends.end, 0), slot);
+// What polarisations and phases of the antennas at both ends make of a path, as far as its legs know them.
+void ChainEvaluation::turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+  if (start.table.has_components) polarize(path, start, end, slot);
+  if (start.table.has_phases) turn_phase(start, end, slot);
 }
 
-// start, end: ComponentsToFind::Row
-void ChainEvaluation::polarize(int64_t path, const double* start, const double* end, size_t slot) {
-  PathToPolarize work{start, end, {}, {}, values_.row(slot, 0)};
+void ChainEvaluation::polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+  PathToPolarize work{start.table.components.row(start.leg, 0), end.table.components.row(end.leg, 0), {}, {}, values_.row(slot, 0)};
   const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(path)];
   for (size_t entry = 0; entry < matrix.size(); ++entry) {
     work.re[entry] = matrix[entry].real();
@@ -158,18 +153,11 @@ void ChainEvaluation::polarize(int64_t path, const double* start, const double* 
   kernels_->polarize(work, values_.stride());
 }
 
-void ChainEvaluation::turn_phase(const ChainPlan::Chain& chain, const Ends& ends, size_t slot) {
-  const size_t stride = tables_.legs.stride;
-  const double* start = chain.slide == ChainPlan::kNone ? tables_.legs.phases.row(chain.start * stride + ends.start, 0)
-                                                        : tables_.sliding.phases.row(chain.slide * stride + ends.start, 0);
-  turn_phase(start, tables_.legs.phases.row(chain.end * stride + ends.end, 0), slot);
-}
-
-// By the phases of both antennas at the nodes, rad.
-void ChainEvaluation::turn_phase(const double* start, const double* end, size_t slot) {
+void ChainEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+  const double *first = start.table.phases.row(start.leg, 0), *last = end.table.phases.row(end.leg, 0);
   double *re = values_.row(slot, PathToCombine::kRe), *im = values_.row(slot, PathToCombine::kIm);
   for (size_t node = 0; node < values_.num_nodes(); ++node) {
-    const std::complex<double> turned = std::complex(re[node], im[node]) * std::polar(1.0, start[node] + end[node]);
+    const std::complex<double> turned = std::complex(re[node], im[node]) * std::polar(1.0, first[node] + last[node]);
     re[node] = turned.real();
     im[node] = turned.imag();
   }
@@ -179,35 +167,28 @@ void ChainEvaluation::turn_phase(const double* start, const double* end, size_t 
 void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels,
                                        double scale) {
   constexpr size_t kSlot = 0;
-  mirror_legs_.resize(2, LegToMeasure::kNumRows, level.instants.size());
-  mirror_components_.resize(2, ComponentsToFind::kNumRows, level.instants.size());
-  mirror_phases_.resize(2, 1, level.instants.size());
-  double* const legs[] = {mirror_legs_.row(0, 0), mirror_legs_.row(1, 0)};
-  double* const phases[] = {mirror_phases_.row(0, 0), mirror_phases_.row(1, 0)};
-  double* const components[] = {mirror_components_.row(0, 0), mirror_components_.row(1, 0)};
+  // Between upright antennas the components count, too: straight up or down these send nothing.
+  mirror_legs_.resize(2, level.instants.size(), tables_.has_phases, !paths_->jones.empty());
+  const MeasuredLeg start{mirror_legs_, 0}, back{mirror_legs_, 1};
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
-  const bool is_polarized = !paths_->jones.empty();  // between upright antennas too: straight up or down these send nothing
   for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
-    const size_t of_all = channels.first + channel, antennas[] = {of_all / num_receivers_, of_all % num_receivers_};
-    const uint32_t seen[] = {path.image, 0};  // which image of each end
-    for (const int end : {0, 1}) {
-      const AntennaImages &own = tables_.images[end], &other = tables_.images[1 - end];
+    const size_t of_all = channels.first + channel;
+    const ChainTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_}, {true, 0, of_all % num_receivers_}};
+    for (const size_t end : {0, 1}) {
+      const ChainTables::ImageOfAntenna& other = ends[1 - end];
+      const AntennaImages& images = tables_.images[other.of_receivers];
       // An antenna stands in the rows of an image where a point stands in its own.
-      const double* point = other.rows.row(other.entry(seen[1 - end], antennas[1 - end]), 0);
-      own.measure(own.entry(seen[end], antennas[end]), point, legs[end], phases[end]);
-      if (is_polarized) {
-        tables_.polarizations.across(own, {seen[end], antennas[end]}, level, point, components[end]);
-      }
+      const double* point = images.rows.row(images.entry(other.image, other.antenna), 0);
+      tables_.measure(ends[end], point, level, end, mirror_legs_);
     }
-    kernels_->connect({legs[0], legs[1], nullptr, weight, values_.row(kSlot, 0)}, values_.stride());
-    if (is_polarized) polarize(path.path, components[0], components[1], kSlot);
-    if (tables_.has_phase) turn_phase(phases[0], phases[1], kSlot);
-    put_one(path.place, kSlot, channels.nodes[channel]);
+    kernels_->connect({start.rows(), back.rows(), nullptr, weight, values_.row(kSlot, 0)}, values_.stride());
+    turn(path.path, start, back, kSlot);
+    put(std::span(&path, 1), channels.nodes[channel]);
   }
 }
 
 bool ChainEvaluation::turns(uint32_t leg) const {
-  const double* factor = tables_.legs.rows.row(leg * tables_.legs.stride, LegToMeasure::kFactor);
+  const double* factor = tables_.legs.rows.row(leg * tables_.stride, LegToMeasure::kFactor);
   return std::signbit(factor[0]) != std::signbit(factor[values_.num_nodes() - 1]);
 }
 
@@ -216,23 +197,18 @@ void ChainEvaluation::mark_turned(const ChainPlan& plan, uint8_t* turned) const 
 }
 
 // The values of some paths to their places, node by node: neighbours share the lines of the cache.
-void ChainEvaluation::put(Chains chains, const ChannelNodes& to) const {
+template <class Path>
+void ChainEvaluation::put(std::span<const Path> paths, const ChannelNodes& to) const {
   const double* const values = values_.row(0, 0);
   const size_t stride = values_.stride(), of_slot = PathToCombine::kNumRows * stride;
   for (size_t node = 0; node < values_.num_nodes(); ++node) {
     const double* value = values + node;
-    for (const ChainPlan::Chain& chain : chains) {
-      to.set(node, chain.place, value[PathToCombine::kLength * stride],
+    for (const Path& path : paths) {
+      to.set(node, path.place, value[PathToCombine::kLength * stride],
              {value[PathToCombine::kRe * stride], value[PathToCombine::kIm * stride]});
       value += of_slot;
     }
   }
-}
-
-void ChainEvaluation::put_one(size_t place, size_t slot, const ChannelNodes& to) const {
-  const double *length = values_.row(slot, PathToCombine::kLength), *re = values_.row(slot, PathToCombine::kRe);
-  const double* im = values_.row(slot, PathToCombine::kIm);
-  for (size_t node = 0; node < values_.num_nodes(); ++node) to.set(node, place, length[node], {re[node], im[node]});
 }
 
 }  // namespace echopath

@@ -49,23 +49,27 @@ class ChainEvaluation {
   struct Ends {
     size_t start, end;  // antennas of both
   };
+  struct MeasuredLeg {
+    const LegTable& table;
+    size_t leg;
+    const double* rows() const { return table.rows.row(leg, 0); }
+  };
   Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
   PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
-  const double* start_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
-  const double* end_leg_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  MeasuredLeg start_of(const ChainPlan::Chain& chain, size_t antenna) const;
+  MeasuredLeg end_of(const ChainPlan::Chain& chain, size_t antenna) const;
   const double* inner_of(const ChainPlan::Chain& chain, size_t antenna) const;
   const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
   void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const LevelView& level, size_t slot);
   void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void reflect_from_stretching(size_t slot);
   void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
-  void put(Chains chains, const ChannelNodes& to) const;
-  void put_one(size_t place, size_t slot, const ChannelNodes& to) const;
+  template <class Path>
+  void put(std::span<const Path> paths, const ChannelNodes& to) const;  // from the first slots on
   ComplexOf<double> scaled_weight(const ChainPlan::Chain& chain, double scale) const;
-  void polarize(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
-  void polarize(int64_t path, const double* start, const double* end, size_t slot);
-  void turn_phase(const ChainPlan::Chain& chain, const Ends& ends, size_t slot);
-  void turn_phase(const double* start, const double* end, size_t slot);
+  void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
+  void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
+  void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels, double scale);
   bool turns(uint32_t leg) const;
 
@@ -74,7 +78,7 @@ class ChainEvaluation {
   std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
   NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
-  NodeRows mirror_legs_, mirror_phases_, mirror_components_;  // of one channel: from the transmitter's image, from the receiver
+  LegTable mirror_legs_;                          // of one channel: from the transmitter's image, from the receiver
   size_t num_receivers_ = 0;
   const ChainKernels* kernels_ = nullptr;
   const Paths* paths_ = nullptr;

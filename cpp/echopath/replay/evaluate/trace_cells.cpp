@@ -7,6 +7,18 @@
 #include "echopath/scene/smooth.h"
 
 namespace echopath {
+namespace {
+
+// hit: as posed; curved cells have edges there, of which the root of their area is asked.
+PlacedCell place(const LaunchCell& cell, const CellTangents& tangents, const PosedHit& hit, double density) {
+  PlacedCell out;
+  out.shape = cell_shape(cell, hit, tangents);
+  for (size_t a = 0; a < 2; ++a) out.tangent[a] = tangents[a];
+  if (cell.is_curved) out.root_area = root_area(tangents, hit, density);
+  return out;
+}
+
+}  // namespace
 
 TraceCells::TraceCells(const ChainPlan& plan, const Localiser& localise, const PosedPoints& points)
     : plan_(plan), localise_(localise), points_(points), origin_{Vec3::Zero()} {
@@ -59,8 +71,7 @@ CellTangents TraceCells::flat_tangents(const ChainPlan::Chain& chain, const Pose
 }
 
 PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
-  PlacedCell out;
-  if (!has_cell(chain)) return out;
+  if (!has_cell(chain)) return {};
   const double density = density_of(chain);
   PosedHit hit = points_.at_trace(plan_.legs[chain.end].point);
   CellTangents tangents;
@@ -72,15 +83,14 @@ PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
     hit.edge_u = with_edges.edge_u;
     hit.edge_v = with_edges.edge_v;
     tangents = cell_tangents(cell, hit);
-    out.root_area = root_area(tangents, hit, density);
   } else {
     tangents = flat_tangents(chain, hit, density);
     cell.is_known = tangents[0].allFinite() && tangents[1].allFinite();
   }
   const uint32_t mesh_id = hit_of(chain).mesh_id;
   cell.facet_area = localise_.facet_area(mesh_id);
-  out.shape = cell_shape(cell, hit, tangents);
-  for (size_t a = 0; a < 2; ++a) out.tangent[a] = localise_.mesh_from_trace(mesh_id) * tangents[a];
+  PlacedCell out = place(cell, tangents, hit, density);
+  for (Vec3& tangent : out.tangent) tangent = localise_.mesh_from_trace(mesh_id) * tangent;
   return out;
 }
 
@@ -104,10 +114,7 @@ std::vector<PlacedCell> TraceCells::on_stretching(const ChainPlan::Chain& chain,
   cell.facet_area = localise_.facet_area(local.mesh_id);
   for (size_t node = 0; node < instants.size(); ++node) {
     pose_hit(local, instants[node], true, hit);
-    const CellTangents tangents = cell_tangents(cell, hit);
-    out[node].shape = cell_shape(cell, hit, tangents);
-    for (size_t a = 0; a < 2; ++a) out[node].tangent[a] = tangents[a];
-    if (cell.is_curved) out[node].root_area = root_area(tangents, hit, density);
+    out[node] = place(cell, cell_tangents(cell, hit), hit, density);
   }
   return out;
 }

@@ -202,9 +202,9 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
     const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter);
     const Real inverse_tube = coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(waves.cos_in)) : inverse_in;
     const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
-    const auto is_lit = (cos_in * cos_out > 0.0) & (first >= kNearAntenna) & (out >= kNearAntenna);
+    const ComplexOf<Real> factor = coherent_factor(waves, gains, inverse_tube, filter, is_lit(cos_in, cos_out, first, out));
     const Real length = in + out;
-    set_path(path, at, length, amplitude_of<Math>(path.weight, coherent_factor(waves, gains, inverse_tube, filter, is_lit), length));
+    set_path(path, at, length, amplitude_of<Math>(path.weight, factor, length));
   }
 }
 

@@ -204,9 +204,8 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const 
     waves.along_departure[a] = -out(D::kAlong + a);
   }
   const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter, paths.facet_area);
-  const Mask is_far = (in(D::kLegLength) >= kNearAntenna) & (out(D::kLegLength) >= kNearAntenna);
-  const Mask is_lit = (cos_in * cos_out > 0.0) & is_far;
-  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, is_lit);
+  const Mask lit = is_lit(cos_in, cos_out, in(D::kLegLength), out(D::kLegLength));
+  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, lit);
 }
 
 // Weights of both kinds, with what the polarisations of both ends make of them.

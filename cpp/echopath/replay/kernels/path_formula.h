@@ -79,7 +79,13 @@ ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real 
   waves.inverse_out = inverse_out;
 }
 
-// root_gains: sqrt(Gt Gr); inverse_tube: 1/sqrt(D), 1/m; is_lit: seen from one side, by antennas that are not near.
+// Whether the surface is seen from one side, by antennas that are not near; lengths: m, of the legs to both.
+template <class Real>
+ECHOPATH_INLINE auto is_lit(Real cos_in, Real cos_out, Real first_length, Real last_length) {
+  return (cos_in * cos_out > 0.0) & (first_length >= kNearAntenna) & (last_length >= kNearAntenna);
+}
+
+// root_gains: sqrt(Gt Gr); inverse_tube: 1/sqrt(D), 1/m; is_lit: the above.
 template <class Real, class Truth>
 ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Real root_gains, Real inverse_tube,
                                                 const ComplexOf<Real>& filter, Truth is_lit) {

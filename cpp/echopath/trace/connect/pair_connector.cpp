@@ -12,7 +12,7 @@ void PairConnector<Weight>::connect(Connection& at) const {
   if (!at.legs.transmit.empty() || receive.size() > 1 || receive[0].num_bounces > 0) return write_fan(at, weight);
   const std::complex<double> own =
       weight * weight_.held(diffuse_coefficient(at.surface.response)) * weight_.held(at.ray.coefficient);
-  writer_.write_direct(at, receive[0], last_bit(at.ray), own);
+  writer_.write(at, receive[0], last_bit(at.ray), own, OrderShares{});
 }
 
 // The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here, the ray's own

@@ -15,8 +15,6 @@ class PathWriter {
   // Writes the path over the ray's own hits and a receive leg, and its reversal, as far as each has a share and not too many
   // hits. `diffuse`: a bit for each hit, none for coherent paths.
   void write(Connection& at, const Leg& leg, uint64_t diffuse, std::complex<double> weight, const OrderShares& shares) const;
-  // Writes the path over the ray's own hits alone.
-  void write_direct(Connection& at, const Leg& leg, uint64_t diffuse, std::complex<double> weight) const;
   // Writes the path from the transmitter over `leg` to the hit where the ray is, and back along its chain to the receiver.
   void write_reversed(Connection& at, const Leg& leg, uint64_t diffuse, std::complex<double> weight) const;
 

@@ -20,32 +20,45 @@ if(ECHOPATH_SANITIZE)
   endif()
 endif()
 
-# Parsed once for each target instead of once for each file: about a third of the time of compiling.
+# Parsed once for all modules, and once more for all tests, instead of once for each file: about half of the time of compiling.
 set(echopath_common_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <complex> <functional> <memory> <string> <vector>)
+
+# Takes the parsed headers of `owner`, which is compiled with the same options; the owner, and what has OWN_OPTIONS, parses them
+# for itself.
+function(echopath_parse_headers_once target owner)
+  cmake_parse_arguments(ARG "OWN_OPTIONS" "" "" ${ARGN})
+  if(target STREQUAL owner OR ARG_OWN_OPTIONS)
+    target_precompile_headers(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()
 
 # Files that are compiled with options of their own cannot use what was compiled without.
 function(echopath_kernels file option)
   set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS ${option} SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...])
+# echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...] [OPTIONS compile options...])
 function(echopath_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
   list(TRANSFORM ARG_DEPENDS PREPEND echopath_)
   add_library(echopath_${name} STATIC ${sources})
   add_library(echopath::${name} ALIAS echopath_${name})
   target_include_directories(echopath_${name} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
   target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options)
-  target_precompile_headers(echopath_${name} PRIVATE ${echopath_common_headers})
+  if(ARG_OPTIONS)
+    target_compile_options(echopath_${name} PRIVATE ${ARG_OPTIONS})
+    set(own OWN_OPTIONS)
+  endif()
+  echopath_parse_headers_once(echopath_${name} echopath_base ${own} ${echopath_common_headers})
 endfunction()
 
 # Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for
 # infinities, and square roots without errno. Nothing that reorders sums, and nothing that a program notices by linking with
 # it.
-function(echopath_finite_numbers name)
-  target_compile_options(echopath_${name} PRIVATE -fcx-limited-range -fno-math-errno)
-endfunction()
+set(echopath_finite_numbers -fcx-limited-range -fno-math-errno)
 
 # echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one
 # GoogleTest program, test_NAME.
@@ -58,7 +71,7 @@ function(echopath_test name)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_options)
-  target_precompile_headers(test_${name} PRIVATE <gtest/gtest.h> ${echopath_common_headers})
+  echopath_parse_headers_once(test_${name} test_base <gtest/gtest.h> ${echopath_common_headers})
   list(JOIN ARG_HARD ":" hard)
   if(hard)
     add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-${hard})

@@ -122,7 +122,7 @@ void bind_cfar(py::module_& m) {
         return py::make_tuple(self.design.cells.training_velocity, self.design.cells.training_range);
       }, "cells beyond the guard cells on each side, along (velocity, range)")
       .def("__len__", [](const CfarResult& self) { return self.cells.size(); })
-      .def("__repr__", &text_of);
+      .def("__repr__", [](const CfarResult& self) { return text_of(self); });
 
   const CfarOptions standard;
   m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",

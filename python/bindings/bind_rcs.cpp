@@ -16,7 +16,7 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {
+const std::vector<std::string> kCrossSectionKeywords = {
     "frequency", "incidence", "observation", "polarization",    "num_rays", "max_bounces", "seed",         "model",
     "footprint", "sampler",   "batches",     "target_error_db", "max_rays", "components",  "return_error", "progress"};
 
@@ -125,7 +125,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
                   std::optional<double> target_error_db, int64_t max_rays, bool components, bool return_error,
                   const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "rcs", kKeywords);
+  refuse_unknown(unknown, "rcs", kCrossSectionKeywords);
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const Channels channels = channels_of(polarization);

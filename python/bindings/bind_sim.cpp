@@ -18,7 +18,7 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kKeywords = {"tolerance", "method", "replay", "evaluate", "phase_tolerance",
+const std::vector<std::string> kSynthesisKeywords = {"tolerance", "method", "replay", "evaluate", "phase_tolerance",
                                             "retrace", "keyframes", "progress", "probe"};
 
 enum class Evaluation { kInterpolated, kChirps, kSamples };
@@ -54,7 +54,7 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
                           const std::string& replay, const std::string& evaluate, double phase_tolerance,
                           const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe,
                           const py::kwargs& unknown) {
-  refuse_unknown(unknown, "synthesize", kKeywords);
+  refuse_unknown(unknown, "synthesize", kSynthesisKeywords);
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   return cube_array(run_job("synthesize", progress, [&](Job& job) {
@@ -66,7 +66,7 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
                          const std::string& method, const std::string& replay, const std::string& evaluate,
                          double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
                          SignalProbe* probe, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "decompose", kKeywords);
+  refuse_unknown(unknown, "decompose", kSynthesisKeywords);
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   std::vector<Grouping> rules;

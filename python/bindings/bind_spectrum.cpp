@@ -52,7 +52,7 @@ void bind_spectrum(py::module_& m) {
                              "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
-      .def("__repr__", &text_of);
+      .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
         py::arg("zero_pad") = 1,

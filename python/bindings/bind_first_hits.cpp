@@ -33,7 +33,7 @@ void for_each_ray(size_t count, Job& job, const Query& query) {
 
 FirstHits find_first_hits(const Scene& scene, double time, const Vec3& near, const std::vector<Vec3>& origins,
                           const std::vector<Vec3>& directions, Job& job) {
-  const Pose pose(scene, time);
+  const PosedScene pose(scene, time);
   const Vec3 origin = EmbreeScene::origin_near(scene, pose, near);
   const EmbreeScene geometry(scene, pose, origin, &job);
   FirstHits found(origins.size());
@@ -64,7 +64,7 @@ py::array blocked(Scene scene, const py::object& starts, const py::object& ends,
   require(from.size() == to.size(), "ends", "must be as many as starts, rows", to.size());
   const Vec3 near = from.empty() ? Vec3(Vec3::Zero()) : from.front();
   return numpy_take(run_job("blocked", py::none(), [&](Job& job) {
-    const Pose pose(scene, time);
+    const PosedScene pose(scene, time);
     const Vec3 origin = EmbreeScene::origin_near(scene, pose, near);
     const EmbreeScene geometry(scene, pose, origin, &job);
     std::vector<uint8_t> out(from.size());

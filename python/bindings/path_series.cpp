@@ -102,7 +102,7 @@ py::array lengths_of(const Paths& paths, const py::object& times, const py::obje
 
 py::array points_of(const Paths& paths, double time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
-    const Pose pose(*paths.scene, time);
+    const PosedScene pose(*paths.scene, time);
     std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
     parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
       const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());

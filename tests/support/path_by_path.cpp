@@ -57,8 +57,8 @@ struct PathByPath::Cell {
 };
 
 PathByPath::PathByPath(const Paths& paths, const Radar& radar, double time, SpecularPoints specular)
-    : paths_(paths), localise_(paths, hit_patches(paths)), radio_(radio_constants(paths, radar)), specular_(specular),
-      instant_(*paths.scene, radar, localise_.patches(), paths.frame.transmitter, time) {}
+    : paths_(paths), preparer_(paths, hit_patches(paths)), radio_(radio_constants(paths, radar)), specular_(specular),
+      scene_(*paths.scene, radar, preparer_.patches(), paths.frame.transmitter, time) {}
 
 // The tube of the ray, on the plane of the surface at the time of the trace.
 PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const {
@@ -70,7 +70,7 @@ PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const 
     out.cell = recorded_cell(paths_.curved_cell[index]);
   } else if (paths_.frame.footprint != Footprint::kNone) {
     std::vector<PosedHit> hits(static_cast<size_t>(path.count));
-    for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], localise_.trace_instant(), k == path.last_material, hits[static_cast<size_t>(k)]);
+    for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], preparer_.at_trace(), k == path.last_material, hits[static_cast<size_t>(k)]);
     Line line = line_over(hits.data(), Vec3::Zero(), 0, path.first_material, hits[static_cast<size_t>(path.first_material)].point);
     double length = line.length;
     for (int before = path.first_material, k = before + 1; k <= path.last_material; ++k) {
@@ -87,7 +87,7 @@ PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const 
     for (size_t a = 0; a < 2; ++a) out.cell.tangent[a] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, tangents[a]);
     out.cell.is_known = out.cell.tangent[0].allFinite() && out.cell.tangent[1].allFinite();
   }
-  out.cell.facet_area = localise_.facet_area(path.hits[path.last_material].mesh_id);
+  out.cell.facet_area = preparer_.facet_area(path.hits[path.last_material].mesh_id);
   return out;
 }
 
@@ -176,14 +176,14 @@ class PathByPath::Walk {
 
 std::vector<PathValue> PathByPath::operator()(int64_t index) const {
   const auto p = static_cast<size_t>(index);
-  const LocalPaths block = localise_({&index, 1});
+  const LocalPaths block = preparer_({&index, 1});
   const LocalPath& path = block.paths.front();
   std::vector<PosedHit> recorded(static_cast<size_t>(path.count));
-  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], instant_, k == path.last_material, recorded[static_cast<size_t>(k)]);
+  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], scene_, k == path.last_material, recorded[static_cast<size_t>(k)]);
   const Cell cell = path.last_material < 0 ? Cell{} : cell_of(path, p);
   std::vector<PathValue> values;
-  for (const PosedAntenna& transmitter : instant_.transmitters) {
-    for (const PosedAntenna& receiver : instant_.receivers) {
+  for (const PosedAntenna& transmitter : scene_.transmitters) {
+    for (const PosedAntenna& receiver : scene_.receivers) {
       const PosedAntenna& start = path.is_reversed ? receiver : transmitter;
       const PosedAntenna& end = path.is_reversed ? transmitter : receiver;
       std::vector<PosedHit> hits = recorded;

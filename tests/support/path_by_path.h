@@ -30,10 +30,10 @@ class PathByPath {
   Cell cell_of(const LocalPath& path, size_t index) const;
 
   const Paths& paths_;
-  Localiser localise_;
+  PathPreparer preparer_;
   RadioConstants radio_;
   SpecularPoints specular_;
-  Instant instant_;
+  PosedScene scene_;
 };
 
 }  // namespace echopath::testing

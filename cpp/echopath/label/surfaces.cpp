@@ -5,6 +5,7 @@
 #include <set>
 
 #include "echopath/base/errors.h"
+#include "echopath/posed/posed_scene.h"
 #include "echopath/trace/launch/scene_objects.h"
 
 namespace echopath {
@@ -113,7 +114,7 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   SurfaceMap map;
   map.of_mesh.assign(scene.meshes().size(), kNone);
-  const Pose pose(scene, time);
+  const PosedScene pose(scene, time);
   for (const SceneObject& object : objects_of(scene)) {
     std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
     for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);

@@ -194,7 +194,7 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   const Mat3 radar_from_world = world_from_radar.linear().transpose();
   const Vec3 transmitter = mean_position(radar.transmitters, world_from_radar);
   const Vec3 receiver = mean_position(radar.receivers, world_from_radar);
-  const Pose pose(scene, settings.time);
+  const PosedScene pose(scene, settings.time);
   const Vec3 origin = EmbreeScene::origin_near(scene, pose, transmitter);
   const EmbreeScene whole(scene, pose, origin, job);
   const End sending{transmitter - origin, radar.transmitters, radar_from_world};
@@ -204,7 +204,7 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   if (job) job->start(surfaces.num_objects);
   for (uint32_t object = 0; object < surfaces.num_objects; ++object) {
     const Scene part = only(scene, surfaces, object);
-    const EmbreeScene alone(part, Pose(part, settings.time), origin, job);
+    const EmbreeScene alone(part, PosedScene(part, settings.time), origin, job);
     const Onlooker onlooker(scene, whole, alone, surfaces, object);
     seen.push_back({surfaces.names[object], onlooker.look(sending, settings.num_directions, job),
                     onlooker.look(receiving, settings.num_directions, job)});

@@ -8,9 +8,9 @@
 
 namespace echopath {
 
-JoinRule::JoinRule(const Paths& paths, const Localiser& localise, SpecularPoints specular,
+JoinRule::JoinRule(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular,
                    std::vector<const std::vector<uint32_t>*> labels)
-    : paths_(paths), localise_(localise), slides_(specular != SpecularPoints::kMaterial), labels_(std::move(labels)) {}
+    : paths_(paths), preparer_(preparer), slides_(specular != SpecularPoints::kMaterial), labels_(std::move(labels)) {}
 
 std::vector<uint8_t> JoinRule::operator()(std::span<const int64_t> paths) const {
   std::vector<uint8_t> joined(paths.size());
@@ -32,7 +32,7 @@ bool JoinRule::has_same_images(size_t before, size_t path) const {
   const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
   uint64_t differ = paths_.diffuse[before] ^ paths_.diffuse[path];
   for (; differ != 0; differ &= differ - 1) {
-    if (localise_.is_mirror(hits[std::countr_zero(differ)].mesh_id)) return false;
+    if (preparer_.is_mirror(hits[std::countr_zero(differ)].mesh_id)) return false;
   }
   return true;
 }

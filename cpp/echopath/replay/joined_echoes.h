@@ -13,7 +13,7 @@ namespace echopath {
 class JoinRule {
  public:
   // labels: [P] each; paths that differ in one of them stay apart. All must outlive the rule.
-  JoinRule(const Paths& paths, const Localiser& localise, SpecularPoints specular,
+  JoinRule(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular,
            std::vector<const std::vector<uint32_t>*> labels);
 
   // For each path but the first whether it makes one echo with the one before: same hits, of which the same ones are images in
@@ -26,7 +26,7 @@ class JoinRule {
   bool has_same_images(size_t before, size_t path) const;
 
   const Paths& paths_;
-  const Localiser& localise_;
+  const PathPreparer& preparer_;
   bool slides_;
   std::vector<const std::vector<uint32_t>*> labels_;
 };

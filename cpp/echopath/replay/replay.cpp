@@ -15,8 +15,6 @@ namespace {
 
 // Paths whose legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
-// Amplitudes in this many chirps cost as much as one more node, with what a level costs that is tried in vain.
-constexpr int64_t kWorthOfANode = 5;
 
 // Coefficients fall about geometrically from these: orders above what that makes of a tail are the next to try.
 constexpr double kFirstPhase = 100.0;     // rad
@@ -24,7 +22,7 @@ constexpr double kFirstAmplitude = 1.0;   // relative to the largest
 
 // The order at which a tail found at `order` would be within its tolerance.
 double order_for(double tolerance, double tail, double first, int order) {
-  if (tail >= first) return NodeLevels::kHighestOrder;
+  if (tail >= first) return TimeGrids::kHighestOrder;
   return order * std::log(tolerance / first) / std::log(tail / first);
 }
 
@@ -62,8 +60,8 @@ void keep(std::span<const size_t> places, Echoes& echoes) {
 }  // namespace
 
 struct Replayer::Target {
-  const NodeLevel& level;
-  size_t first_channel;  // of the level's
+  const PosedNodes& posed;
+  size_t first_channel;  // of those that are posed
   std::vector<ChannelNodes> nodes;
   uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
   bool with_amplitudes = true;  // else only lengths are of interest
@@ -74,10 +72,14 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      localise_(paths, hit_patches(paths)), levels_(paths, radar, settings, localise_),
+      preparer_(paths, hit_patches(paths)), grids_(paths, radar, settings), posed_(grids_, paths, radar, preparer_),
       memory_(ReplayMemory::take()) {}
 
 Replayer::~Replayer() { ReplayMemory::leave(std::move(memory_)); }
+
+PathGrids Replayer::path_grids() const {
+  return PathGrids(paths_, radar_, grids_, posed_, radio_.wavenumber, settings_.phase_tolerance);
+}
 
 int Replayer::num_channels() const { return static_cast<int>(radar_.transmitters.size() * num_receivers()); }
 
@@ -93,7 +95,7 @@ std::vector<Echoes> Replayer::take_echoes(size_t num_echoes, size_t num_channels
 void Replayer::recycle(std::span<Echoes> echoes) const { memory_->echoes.give(echoes); }
 
 JoinRule Replayer::join_rule(std::vector<const std::vector<uint32_t>*> labels) const {
-  return {paths_, localise_, settings_.specular, std::move(labels)};
+  return {paths_, preparer_, settings_.specular, std::move(labels)};
 }
 
 std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<const uint8_t> joined) const {
@@ -110,14 +112,14 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   return echoes;
 }
 
-// Of all channels of the level.
-std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned) const {
-  const size_t num_channels = level.instants.front().transmitters.size() * num_receivers();
-  std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, level.instants.size());
+// Of all channels that are posed.
+std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, uint8_t* turned) const {
+  const size_t num_channels = grid.posed.at(0).transmitters.size() * num_receivers();
+  std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, grid.posed.size());
   for (size_t channel = 0; channel < num_channels; ++channel) {
-    echoes[channel].sampling = level.nodes.sampling[channel / num_receivers()];
+    echoes[channel].sampling = grid.nodes.sampling[channel / num_receivers()];
   }
-  Target target{level, 0, rows_of(echoes), turned};
+  Target target{grid.posed, 0, rows_of(echoes), turned};
   evaluate_at(paths, {&target, 1});
   return echoes;
 }
@@ -130,36 +132,37 @@ RadioConstants Replayer::radio_of(const Target& target) const {
 
 void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
   std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
-  evaluator->begin(localise_, radar_, settings_.specular);
+  evaluator->begin(preparer_, radar_, settings_.specular);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
     for (Target& target : targets) {
       for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
       uint8_t* const turned = target.turned ? target.turned + begin : nullptr;
-      evaluator->evaluate(target.level.view(), radio_of(target), target.channels(), {turned, target.with_amplitudes});
+      evaluator->evaluate(target.posed, radio_of(target), target.channels(), {turned, target.with_amplitudes});
     }
   }
   memory_->give(std::move(evaluator));
 }
 
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
-  return at_nodes(indices, levels_.at_trace());
+  return at_nodes(indices, posed_.at_trace());
 }
 
-std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, int transmitter) const {
-  return at_nodes(indices, levels_.exact(transmitter));
+std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
+  return at_nodes(indices, samples);
 }
 
-std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, int transmitter,
+std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, const PosedGrid& chirps,
                                        std::span<const uint8_t> joined) const {
-  const NodeLevel &polynomial = levels_.polynomial(index), &centres = levels_.centres(transmitter);
-  const TimeSampling sampling = derivative_sampling(radar_.waveform.num_chirps, levels_.derivatives());
+  const PosedGrid& polynomial = posed_.polynomial(index);
+  const auto transmitter = static_cast<size_t>(chirps.transmitter);
+  const TimeSampling sampling = derivative_sampling(radar_.waveform.num_chirps, grids_.derivatives());
   const std::vector<uint32_t> echo_of = echoes_of(joined);
   const size_t num_echoes = joined.empty() ? indices.size() : echo_of.back() + 1;
-  std::vector<Echoes> lengths = take_echoes(num_echoes, num_receivers(), polynomial.instants.size());
+  std::vector<Echoes> lengths = take_echoes(num_echoes, num_receivers(), polynomial.posed.size());
   std::vector<Echoes> echoes = take_echoes(num_echoes, num_receivers(), static_cast<size_t>(sampling.num_nodes));
-  Target targets[] = {{polynomial, static_cast<size_t>(transmitter) * num_receivers(), rows_of(lengths)},
-                      {centres, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
+  Target targets[] = {{polynomial.posed, transmitter * num_receivers(), rows_of(lengths)},
+                      {chirps.posed, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
   targets[0].with_amplitudes = false;
   for (Echoes& channel : echoes) std::fill(channel.amplitude.begin(), channel.amplitude.end(), 0.0);
   for (Target& target : targets) {
@@ -168,29 +171,30 @@ std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int ind
   evaluate_at(indices, targets);
   for (size_t channel = 0; channel < echoes.size(); ++channel) {
     echoes[channel].sampling = sampling;
-    fill_derivatives(polynomial.nodes.sampling[static_cast<size_t>(transmitter)], lengths[channel].delay.data(), echoes[channel]);
+    fill_derivatives(polynomial.nodes.sampling[transmitter], lengths[channel].delay.data(), echoes[channel]);
   }
   recycle(lengths);
   return echoes;
 }
 
-int64_t Replayer::num_nodes_by_chirp() const { return int64_t{radar_.waveform.num_chirps} * (settings_.per_sample ? 4 : 2); }
+int64_t Replayer::num_rows_by_chirp() const { return int64_t{radar_.waveform.num_chirps} * (settings_.per_sample ? 4 : 2); }
 
-// Order at which a path's polynomials would follow it, 0 where they do.
-struct Replayer::NeededOrder {
-  double length = 0.0, amplitude = 0.0;
-};
-
-std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index, std::vector<FailedPath>& failed) const {
-  const NodeLevel& polynomial = levels_.polynomial(index);
+std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index,
+                                           std::vector<UnfollowedPath>& unfollowed) const {
+  const PosedGrid& polynomial = posed_.polynomial(index);
   std::vector<uint8_t> turned(indices.size());
   std::vector<Echoes> echoes = at_nodes(indices, polynomial, turned.data());
-  std::vector<NeededOrder> needed(indices.size());
+  std::vector<UnfollowedPath> needed(indices.size());
   for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, needed);
   std::vector<size_t> followed;
   for (size_t p = 0; p < indices.size(); ++p) {
-    if (needed[p].length == 0.0 && needed[p].amplitude == 0.0) followed.push_back(p);
-    else failed.push_back(this->failed(indices[p], index, needed[p], turned[p] != 0));
+    if (needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
+      followed.push_back(p);
+      continue;
+    }
+    needed[p].path = indices[p];
+    needed[p].is_turned = turned[p] != 0;
+    unfollowed.push_back(needed[p]);
   }
   if (followed.size() == indices.size()) return echoes;
   for (Echoes& channel : echoes) keep(followed, channel);
@@ -198,26 +202,15 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
 }
 
 // Orders that paths of one channel would need which the polynomials do not follow.
-void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<NeededOrder>& needed) const {
+void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<UnfollowedPath>& needed) const {
   const NodeTails tails = node_tails(nodes, echoes);
   const auto raise = [&](double tolerance, double tail, double first, double& order) {
     if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
   };
   for (size_t p = 0; p < needed.size(); ++p) {
-    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase, needed[p].length);
-    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].amplitude);
+    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase, needed[p].order_for_length);
+    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }
-}
-
-// Amplitudes that a polynomial follows late or never are left to the chirps: those of surfaces that turn, and those that an order
-// named by their own tail did not follow.
-FailedPath Replayer::failed(int64_t path, int index, const NeededOrder& needed, bool turned) const {
-  const int next = levels_.next_polynomial(index, std::max(needed.length, turned ? 0.0 : needed.amplitude));
-  const bool was_tried_before = levels_.first_level(path) < index;
-  const bool is_costly = next > levels_.num_polynomials() || levels_.num_nodes(next) * kWorthOfANode >= radar_.waveform.num_chirps;
-  const bool is_late = turned || was_tried_before || is_costly;
-  if (needed.length == 0.0 && is_late) return {path, index, true};
-  return {path, next, false};
 }
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
@@ -229,7 +222,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span<const CellView> cells,
                         std::vector<double>& lengths, std::vector<std::complex<double>>& amplitudes, Job* job) const {
   constexpr size_t kBlock = 8192;
-  const NodeLevel single = levels_.single(time);
+  const PosedNodes single = posed_.pose(time);
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
   amplitudes.resize(cells.size() * lengths.size());

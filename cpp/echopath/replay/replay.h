@@ -8,17 +8,10 @@
 #include <span>
 
 #include "echopath/replay/joined_echoes.h"
-#include "echopath/replay/time/node_levels.h"
 #include "echopath/replay/replay_memory.h"
+#include "echopath/replay/time/path_grids.h"
 
 namespace echopath {
-
-// A path that a polynomial did not follow, and the level to go on with.
-struct FailedPath {
-  int64_t path;
-  int next_level;
-  bool by_chirp;  // Replayer::by_chirp goes on at that level: lengths do follow its polynomial
-};
 
 class Replayer {
  public:
@@ -28,22 +21,27 @@ class Replayer {
   ~Replayer();
 
   int num_channels() const;
-  const NodeLevels& levels() const { return levels_; }
+  const TimeGrids& grids() const { return grids_; }
+  // Which grid is to follow which path. The replayer must outlive it.
+  PathGrids path_grids() const;
 
   // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
   // The paths must not move, nor must the radar: they are evaluated once, at the time of the trace.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
-  // By the polynomial of `level`. Paths whose last two coefficients exceed a tolerance, of length or amplitude, are left out and
-  // added to `failed`, in their order.
-  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int level, std::vector<FailedPath>& failed) const;
-  // Of the channels of one transmitter [rx], at levels().num_exact_nodes() nodes: some in each of its chirps.
-  std::vector<Echoes> exact(std::span<const int64_t> paths, int transmitter) const;
-  // Likewise, at num_nodes_by_chirp() nodes: as they are in the middle of each chirp, with the derivatives of lengths by the
-  // polynomial of `level`, which must follow them. What fades behind an edge of its surface has a root in its amplitude, which no
-  // polynomial follows. Paths that are `joined` go into the echo of the one before (JoinRule); none where it is empty.
-  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int level, int transmitter,
+  // Interpolates them by a polynomial (grids()). Paths whose last two coefficients exceed a tolerance, of length or amplitude, are
+  // left out and added to `unfollowed`, in their order.
+  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
+  // Poses the scene at all nodes of a grid of chirps or samples, which both functions below take.
+  PosedGrid pose(const TimeGrid& grid) const { return posed_.pose(grid); }
+  // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, of which each of its chirps has some.
+  std::vector<Echoes> exact(std::span<const int64_t> paths, const PosedGrid& samples) const;
+  // Evaluates the channels of one transmitter [rx] at the nodes of a ChirpGrid, in the middle of each chirp, and takes derivatives
+  // of the lengths from a polynomial, which must follow them: num_rows_by_chirp() rows. What fades behind an edge of its surface
+  // has a root in its amplitude, which no polynomial follows. Paths that are `joined` go into the echo of the one before
+  // (JoinRule); none where it is empty.
+  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int polynomial, const PosedGrid& chirps,
                                std::span<const uint8_t> joined = {}) const;
-  int64_t num_nodes_by_chirp() const;
+  int64_t num_rows_by_chirp() const;
 
   // Which paths are to make one echo with others, unless they differ in `labels` ([P] each, which must outlive the rule).
   JoinRule join_rule(std::vector<const std::vector<uint32_t>*> labels) const;
@@ -62,23 +60,22 @@ class Replayer {
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
-  // A level, and where what it says of some channels goes.
+  // Posed nodes, and where the values of some channels there go.
   struct Target;
-  struct NeededOrder;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
-  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const NodeLevel& level, uint8_t* turned = nullptr) const;
+  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, uint8_t* turned = nullptr) const;
   RadioConstants radio_of(const Target& target) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
-  void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<NeededOrder>& needed) const;
-  FailedPath failed(int64_t path, int index, const NeededOrder& needed, bool turned) const;
+  void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<UnfollowedPath>& needed) const;
 
   const Paths& paths_;
   const Radar& radar_;
   ReplaySettings settings_;
   RadioConstants radio_;
-  Localiser localise_;
-  NodeLevels levels_;
+  PathPreparer preparer_;
+  TimeGrids grids_;
+  PosedGrids posed_;
   std::unique_ptr<ReplayMemory> memory_;
 };
 

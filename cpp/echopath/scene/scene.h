@@ -75,26 +75,4 @@ std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double ti
 // Of each mesh, by mesh ID.
 std::vector<Transform> world_from_meshes(const Scene& scene, double time);
 
-// World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh. The scene must outlive it.
-// Motions move nodes by the rule of `moved` (motion/motion.h).
-class Pose {
- public:
-  Pose(const Scene& scene, double time);
-  double time() const { return time_; }
-  const Transform& world_from_mesh(uint32_t mesh_id) const { return world_from_mesh_[mesh_id]; }
-  // In the mesh's own frame.
-  const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
-  std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
-  // Unit normals [V] in world axes of the curved surface that the mesh stands for, and its part is of (scene/smooth.h).
-  std::vector<Vec3> world_normals(uint32_t mesh_id) const;
-  // Corners of a triangle in world coordinates.
-  std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
-
- private:
-  const Scene* scene_;
-  double time_;
-  std::vector<Transform> world_from_mesh_;
-  std::vector<std::vector<Vec3>> deformed_;  // by mesh ID, empty where rigid
-};
-
 }  // namespace echopath

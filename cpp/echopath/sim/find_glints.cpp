@@ -199,7 +199,7 @@ class GlintSearch {
   }
 
   const Paths& paths_;
-  const Pose pose_;
+  const PosedScene pose_;
   Kinds kinds_;
   std::vector<std::vector<ReflectingTriangle>> triangles_;  // by mesh, of those that are met
 };

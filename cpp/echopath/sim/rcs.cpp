@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/posed/posed_scene.h"
 #include "echopath/power/received_power.h"
 
 namespace echopath {
@@ -21,7 +22,7 @@ struct Target {
 // Bounding sphere about the middle of the bounding box, in world coordinates.
 Target target_of(const Scene& scene) {
   require(!scene.meshes().empty(), "scene", "must have a mesh, meshes", scene.meshes().size());
-  const Pose pose(scene, 0.0);
+  const PosedScene pose(scene, 0.0);
   Eigen::AlignedBox3d box;
   std::vector<Vec3> points;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {

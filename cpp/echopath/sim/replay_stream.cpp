@@ -32,18 +32,18 @@ int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   return std::min(most, std::max(kLeastBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_nodes)));
 }
 
-constexpr int64_t kPathsOfTask = 1 << 13;  // whose levels are found
+constexpr int64_t kPathsOfTask = 1 << 13;  // whose grids are found
 
-// Indices of the paths by level, in their order; at level 0 those on which nothing moves.
-class PathsByLevel {
+// Indices of the paths by the grid that they begin with (PathGrids), in their order.
+class PathsByGrid {
  public:
-  PathsByLevel(const NodeLevels& levels, int64_t num_paths, Job* job)
-      : num_levels_(static_cast<size_t>(levels.num_polynomials()) + 2), level_(static_cast<size_t>(num_paths)) {
+  PathsByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
+      : num_grids_(static_cast<size_t>(grids.num_grids())), grid_(static_cast<size_t>(num_paths)) {
     const int64_t num_tasks = (num_paths + kPathsOfTask - 1) / kPathsOfTask;
-    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(num_levels_));
+    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(num_grids_));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();
-      find_levels(levels, task);
+      find_grids(grids, task);
     });
     std::vector<std::vector<int64_t>> lists = lists_of_counts();
     parallel_for(num_tasks, [&](int64_t task) { fill(task, lists); });
@@ -54,24 +54,24 @@ class PathsByLevel {
 
  private:
   std::pair<int64_t, int64_t> range_of(int64_t task) const {
-    return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(level_.size()))};
+    return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(grid_.size()))};
   }
 
-  void find_levels(const NodeLevels& levels, int64_t task) {
+  void find_grids(const PathGrids& grids, int64_t task) {
     const auto [begin, end] = range_of(task);
-    const std::span<uint8_t> here(level_.data() + begin, static_cast<size_t>(end - begin));
-    levels.first_levels(begin, here);
-    for (const uint8_t level : here) ++place_[static_cast<size_t>(task)][level];
+    const std::span<uint8_t> here(grid_.data() + begin, static_cast<size_t>(end - begin));
+    grids.first(begin, here);
+    for (const uint8_t grid : here) ++place_[static_cast<size_t>(task)][grid];
   }
 
   // Makes counts of the tasks the places where each begins to write.
   std::vector<std::vector<int64_t>> lists_of_counts() {
-    std::vector<size_t> sizes(num_levels_);
+    std::vector<size_t> sizes(num_grids_);
     for (std::vector<size_t>& places : place_) {
-      for (size_t level = 0; level < num_levels_; ++level) sizes[level] += std::exchange(places[level], sizes[level]);
+      for (size_t grid = 0; grid < num_grids_; ++grid) sizes[grid] += std::exchange(places[grid], sizes[grid]);
     }
-    std::vector<std::vector<int64_t>> lists(num_levels_);
-    for (size_t level = 0; level < num_levels_; ++level) resize_large(lists[level], sizes[level]);
+    std::vector<std::vector<int64_t>> lists(num_grids_);
+    for (size_t grid = 0; grid < num_grids_; ++grid) resize_large(lists[grid], sizes[grid]);
     return lists;
   }
 
@@ -79,23 +79,23 @@ class PathsByLevel {
     const auto [begin, end] = range_of(task);
     std::vector<size_t>& places = place_[static_cast<size_t>(task)];
     for (int64_t path = begin; path < end; ++path) {
-      const size_t level = level_[static_cast<size_t>(path)];
-      lists[level][places[level]++] = path;
+      const size_t grid = grid_[static_cast<size_t>(path)];
+      lists[grid][places[grid]++] = path;
     }
   }
 
-  size_t num_levels_;
-  std::vector<uint8_t> level_;               // by path
-  std::vector<std::vector<size_t>> place_;   // [task][level]
+  size_t num_grids_;
+  std::vector<uint8_t> grid_;                // by path
+  std::vector<std::vector<size_t>> place_;   // [task][grid]
   std::vector<std::vector<int64_t>> lists_;
 };
 
 // Paths less those that were left, in their order.
-std::vector<int64_t> without(const std::vector<FailedPath>& left, std::span<const int64_t> paths) {
+std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
   rest.reserve(paths.size());
   auto next = paths.begin();
-  for (const FailedPath& failed : left) {
+  for (const UnfollowedPath& failed : left) {
     const auto end = std::find(next, paths.end(), failed.path);
     rest.insert(rest.end(), next, end);
     next = end + 1;
@@ -110,7 +110,7 @@ struct ReplayStream::Block {
   std::vector<Echoes> channels;
   std::vector<int64_t> paths;    // of each echo, the first
   int64_t num_paths = 0;         // of all echoes
-  std::vector<FailedPath> left;
+  std::vector<UnfollowedPath> left;
 };
 
 // Blocks that are replayed together.
@@ -157,10 +157,11 @@ class ReplayStream::HandOver {
 
 void ReplayStream::run(const Sink& sink) const {
   HandOver out(*this, sink);
-  std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_.levels(), num_paths_, job_).take();
-  add_still(by_level.front(), out);
-  by_level.front() = {};
-  add_moving(std::move(by_level), out);
+  const PathGrids grids = replayer_.path_grids();
+  std::vector<std::vector<int64_t>> by_grid = PathsByGrid(grids, num_paths_, job_).take();
+  add_still(by_grid.front(), out);
+  by_grid.front() = {};
+  add_moving(grids, std::move(by_grid), out);
   out.finish();
 }
 
@@ -168,44 +169,55 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, HandOver& out) c
   run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
 }
 
-// Each path at the order that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
-void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const {
-  const NodeLevels& levels = replayer_.levels();
-  std::vector<std::vector<int64_t>> by_chirp(by_level.size());
-  for (int level = 1; level <= levels.num_polynomials(); ++level) {
-    const Extent extent{0, num_channels(), levels.num_nodes(level)};
-    const Replay replay = [&](auto part, auto, std::vector<FailedPath>& left) { return replayer_.interpolated(part, level, left); };
-    for (const FailedPath& failed : run_blocks(by_level[static_cast<size_t>(level)], extent, replay, out)) {
-      (failed.by_chirp ? by_chirp : by_level)[static_cast<size_t>(failed.next_level)].push_back(failed.path);
+// Each path goes on at the polynomial that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
+void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, HandOver& out) const {
+  std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
+  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
+    const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+    const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
+    for (const UnfollowedPath& path : run_blocks(by_grid[static_cast<size_t>(polynomial)], extent, replay, out)) {
+      const NextGrid next = grids.next(path, polynomial);
+      (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
     }
   }
-  by_chirp.back() = std::move(by_level.back());
-  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) add_chirps(by_chirp, transmitter, out);
+  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
+    add_chirps(by_chirp, transmitter, out);
+    add_samples(by_grid.back(), transmitter, out);
+  }
 }
 
-// The scene as posed at the chirps of one transmitter is all that is held. At the last level stand paths that no polynomial follows.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const {
-  const NodeLevels& levels = replayer_.levels();
-  const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
-  for (int level = 1; level <= levels.num_polynomials(); ++level) {
-    run_blocks(by_level[static_cast<size_t>(level)], {first, num_receivers, replayer_.num_nodes_by_chirp(), true},
-               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, level, transmitter, joined); }, out);
+// The scene as posed at the chirps of one transmitter is all that is held.
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, HandOver& out) const {
+  const auto is_empty = [](const std::vector<int64_t>& paths) { return paths.empty(); };
+  if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
+  const int num_receivers = num_channels() / num_transmitters_;
+  const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
+  const PosedGrid chirps = replayer_.pose(replayer_.grids().chirps(transmitter));
+  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
+    run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
+               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
   }
-  run_blocks(by_level.back(), {first, num_receivers, levels.num_exact_nodes()},
-             [&](auto part, auto, auto&) { return replayer_.exact(part, transmitter); }, out);
-  levels.forget_chirps(transmitter);
+}
+
+// Paths that no polynomial follows.
+void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, HandOver& out) const {
+  if (paths.empty()) return;
+  const int num_receivers = num_channels() / num_transmitters_;
+  const PosedGrid samples = replayer_.pose(replayer_.grids().samples(transmitter));
+  run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
+             [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
 }
 
 // Blocks are replayed in parallel, a fixed number at a time. Returns the paths that `replay` left.
-std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
+std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
                                                  HandOver& out) const {
-  const int64_t size = block_size(extent.num_channels, extent.num_nodes), num_paths = static_cast<int64_t>(paths.size());
-  std::vector<FailedPath> all_left;
+  const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = static_cast<int64_t>(paths.size());
+  std::vector<UnfollowedPath> all_left;
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
     const int64_t count = std::min(size * kBlocksInFlight, num_paths - begin);
     const std::span<const int64_t> some(paths.data() + begin, static_cast<size_t>(count));
     out.beside([&](Window& window) {
-      const std::vector<FailedPath> left = replay_window(some, size, extent, replay, window);
+      const std::vector<UnfollowedPath> left = replay_window(some, size, extent, replay, window);
       all_left.insert(all_left.end(), left.begin(), left.end());
     });
   }
@@ -213,7 +225,7 @@ std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& pat
 }
 
 // Returns what is left of these paths.
-std::vector<FailedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
+std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
                                                     const Extent& extent, const Replay& replay, Window& window) const {
   const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
@@ -226,7 +238,7 @@ std::vector<FailedPath> ReplayStream::replay_window(std::span<const int64_t> pat
     window.blocks[static_cast<size_t>(i)] = run_block(part, static_cast<size_t>(i), extent, replay);
   });
   if (watcher_) watcher_->end_blocks();
-  std::vector<FailedPath> all_left;
+  std::vector<UnfollowedPath> all_left;
   for (const Block& block : window.blocks) all_left.insert(all_left.end(), block.left.begin(), block.left.end());
   return all_left;
 }

@@ -54,22 +54,23 @@ class ReplayStream {
 
  private:
   using Replay = std::function<std::vector<Echoes>(std::span<const int64_t> paths, std::span<const uint8_t> joined,
-                                                   std::vector<FailedPath>& left)>;
+                                                   std::vector<UnfollowedPath>& left)>;
   struct Block;
   struct Window;
   class HandOver;
   void add_still(const std::vector<int64_t>& paths, HandOver& out) const;
-  void add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const;
-  // Channels that `replay` makes echoes of, at how many nodes, and whether it joins paths itself where it is told which.
+  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, HandOver& out) const;
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, HandOver& out) const;
+  void add_samples(const std::vector<int64_t>& paths, int transmitter, HandOver& out) const;
+  // Channels that `replay` makes echoes of, in how many rows, and whether it joins paths itself where it is told which.
   struct Extent {
     int first_channel, num_channels;
-    int64_t num_nodes;
+    int64_t num_rows;
     bool joins = false;
   };
-  std::vector<FailedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
+  std::vector<UnfollowedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
                                      HandOver& out) const;
-  std::vector<FailedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
+  std::vector<UnfollowedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
                                         const Replay& replay, Window& window) const;
   bool is_watched(const Extent& extent) const;
   Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;

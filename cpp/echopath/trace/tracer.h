@@ -28,7 +28,7 @@ class Tracer {
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
 
   Paths empty_;  // scene, radar and frame of the record
-  Pose pose_;
+  PosedScene pose_;
   Transform world_from_radar_;
   Vec3 origin_;
   GeometryLoan loan_;

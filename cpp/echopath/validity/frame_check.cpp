@@ -36,7 +36,7 @@ void merge(const PathState& at, PathState& worst) {
 bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
 
 // Of a mesh at one time, in the world.
-std::pair<Vec3, double> ball_of(const Pose& pose, uint32_t mesh_id) {
+std::pair<Vec3, double> ball_of(const PosedScene& pose, uint32_t mesh_id) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
   return {box.center(), 0.5 * box.diagonal().norm()};
@@ -49,14 +49,14 @@ FrameCheck::Scratch::Scratch(int longest) : probe(longest) {}
 // One time of the frame.
 struct FrameCheck::View {
   std::shared_ptr<const EmbreeScene> geometry;
-  Pose pose;
-  Instant rim;
+  PosedScene pose;
+  PosedScene rim;
   FrameProbe probe;
 
   View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> posed, double time)
       : geometry(std::move(posed)), pose(*check.paths_.scene, time),
-        rim(*check.paths_.scene, check.probe_radar_, check.localise_.patches(), check.origin_, time),
-        probe(check.localise_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
+        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.patches(), check.origin_, time),
+        probe(check.preparer_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
 // A ball that a mesh does not leave within the frame, relative to the mean transmitter of the trace.
@@ -68,16 +68,16 @@ struct FrameCheck::Sweep {
 
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
-      localise_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, localise_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
+      preparer_(paths, whole_patches(*paths.scene)),
+      walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
       memory_(ReplayMemory::take()), mesh_moves_(moving_meshes(*paths.scene)) {
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
-  const Pose pose(*paths.scene, paths.frame.trace_time);
+  const PosedScene pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
   traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
   trace_view_ = std::make_unique<const View>(*this, traced_, paths.frame.trace_time);
-  traced_level_ = level_at({&paths.frame.trace_time, 1});
+  traced_nodes_ = posed_nodes({&paths.frame.trace_time, 1});
   find_sweeps();
 }
 
@@ -87,7 +87,7 @@ void FrameCheck::find_sweeps() {
   std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
   std::vector<double> radii(times_.of_mesh.size());
   for (int k = times_.num_base; k < std::ssize(times_.times); ++k) {
-    const Pose pose(*paths_.scene, times_.times[static_cast<size_t>(k)]);
+    const PosedScene pose(*paths_.scene, times_.times[static_cast<size_t>(k)]);
     for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
       if (times_.of_mesh[id] <= k) continue;
       const auto [centre, radius] = ball_of(pose, id);
@@ -105,7 +105,7 @@ int FrameCheck::times_of(const LocalPath& path) const {
   int needed = times_.num_base;
   if (sweeps_.empty()) return needed;
   for (int k = 0; k < path.count; ++k) needed = std::max(needed, times_.of_mesh[path.hits[k].mesh_id]);
-  const Instant& traced = traced_level_.instants.front();
+  const PosedScene& traced = traced_nodes_.at(0);
   const PosedAntenna &from = traced.transmitters.front(), &to = traced.receivers.front();
   for (const Sweep& sweep : sweeps_) {
     if (sweep.num_times <= needed) continue;
@@ -130,20 +130,19 @@ int FrameCheck::times_of(const LocalPath& path) const {
 std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, double time, Job* job) {
   const Scene& scene = *paths_.scene;
   if (index == geometries_.size()) {
-    geometries_.push_back(std::make_shared<EmbreeScene>(scene, Pose(scene, time), origin_, job));
+    geometries_.push_back(std::make_shared<EmbreeScene>(scene, PosedScene(scene, time), origin_, job));
   } else {
-    geometries_[index]->update(scene, Pose(scene, time), origin_, job);
+    geometries_[index]->update(scene, PosedScene(scene, time), origin_, job);
   }
   return geometries_[index];
 }
 
-FrameCheck::Level FrameCheck::level_at(std::span<const double> times) const {
-  Level level;
+PosedNodes FrameCheck::posed_nodes(std::span<const double> times) const {
+  auto scenes = std::make_shared<PosedScenes>();
   for (const double time : times) {
-    level.instants.emplace_back(*paths_.scene, first_radar_, localise_.patches(), paths_.frame.transmitter, time);
+    scenes->emplace_back(*paths_.scene, first_radar_, preparer_.patches(), paths_.frame.transmitter, time);
   }
-  level.poses = node_poses(level.instants, static_cast<uint32_t>(paths_.scene->meshes().size()));
-  return level;
+  return PosedNodes(std::move(scenes));
 }
 
 void FrameCheck::pose(size_t first, size_t count, Job* job) {
@@ -153,8 +152,8 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
     const double time = times_.times[first + i];
     views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
   }
-  posed_level_ = {};
-  if (!views_.empty()) posed_level_ = level_at({times_.times.data() + first, views_.size()});
+  posed_nodes_ = {};
+  if (!views_.empty()) posed_nodes_ = posed_nodes({times_.times.data() + first, views_.size()});
 }
 
 bool FrameCheck::is_still(const LocalPath& path) const {
@@ -162,16 +161,16 @@ bool FrameCheck::is_still(const LocalPath& path) const {
   return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
 }
 
-std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const LevelView& level) const {
-  const size_t num_times = level.instants.size();
+std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const {
+  const size_t num_times = nodes.size();
   if (num_times == 0 || paths.empty()) return {};
   std::vector<double> lengths(paths.size() * num_times);
   std::vector<std::complex<double>> amplitudes(lengths.size());
   const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
   std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
-  evaluator->begin(localise_, first_radar_, specular_);
+  evaluator->begin(preparer_, first_radar_, specular_);
   evaluator->plan(paths);
-  evaluator->evaluate(level, radio_, {0, {&all, 1}});
+  evaluator->evaluate(nodes, radio_, {0, {&all, 1}});
   memory_->give(std::move(evaluator));
   std::vector<Echo> echoes(lengths.size());
   for (size_t i = 0; i < lengths.size(); ++i) {
@@ -182,7 +181,7 @@ std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const Le
   return echoes;
 }
 
-std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths) const { return echoes_at(paths, traced_level_.view()); }
+std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths) const { return echoes_at(paths, traced_nodes_); }
 
 std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, const LocalPaths& local,
                                              std::span<const Echo> traced) const {
@@ -190,7 +189,7 @@ std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, con
   for (size_t i = 0; i < paths.size(); ++i) {
     if (!is_still(local.paths[i])) moving.push_back(paths[i]);
   }
-  const std::vector<Echo> found = echoes_at(moving, posed_level_.view());
+  const std::vector<Echo> found = echoes_at(moving, posed_nodes_);
   const auto num_times = static_cast<int64_t>(views_.size());
   auto next = found.begin();
   std::vector<Echo> echoes;

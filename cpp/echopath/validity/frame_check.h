@@ -41,7 +41,7 @@ class FrameCheck {
   ~FrameCheck();
 
   const CheckTimes& times() const { return times_; }
-  LocalPaths localise(std::span<const int64_t> indices) const { return localise_(indices); }
+  LocalPaths preparer(std::span<const int64_t> indices) const { return preparer_(indices); }
   // How many of the times a path needs, from the first: what it touches, or what may come in its way, tells.
   int times_of(const LocalPath& path) const;
 
@@ -72,7 +72,7 @@ class FrameCheck {
   struct View;
   struct Sweep;
   bool is_still(const LocalPath& path) const;
-  std::vector<Echo> echoes_at(std::span<const int64_t> paths, const LevelView& level) const;
+  std::vector<Echo> echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const;
   void find_sweeps();
   // At one of the posed times, brought there from the time that stood in its place.
   std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
@@ -80,7 +80,7 @@ class FrameCheck {
   const Paths& paths_;
   CheckTimes times_;
   Radar probe_radar_, first_radar_;
-  Localiser localise_;
+  PathPreparer preparer_;
   SurfaceWalk walk_;
   RadioConstants radio_;
   SpecularPoints specular_;
@@ -93,13 +93,8 @@ class FrameCheck {
   std::unique_ptr<const View> trace_view_;
   std::vector<std::unique_ptr<const View>> views_;  // posed
   // The first antennas and all meshes at the time of the trace, and at the posed times.
-  struct Level {
-    std::vector<Instant> instants;
-    NodePoses poses;
-    LevelView view() const { return {instants, poses}; }
-  };
-  Level level_at(std::span<const double> times) const;
-  Level traced_level_, posed_level_;
+  PosedNodes posed_nodes(std::span<const double> times) const;
+  PosedNodes traced_nodes_, posed_nodes_;
   size_t first_posed_ = 0;
   std::vector<Sweep> sweeps_;  // of the meshes that need more times than others
 };

@@ -99,7 +99,7 @@ Radar probe_radar(const Paths& paths, const Radar& radar) {
 
 PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch, LegMemo& known) const {
   PathState state;
-  pose_hits(path, instant_, scratch.hits.data());
+  pose_hits(path, rim_, scratch.hits.data());
   if (path.sliding != 0) check_slides(path, scratch, state);
   const PosedHit* hits = scratch.hits.data();
   store_shadows(path, path.first_material < 0 ? shadows_of_images(path, hits) : shadows_of(path, hits, known), state);
@@ -150,14 +150,14 @@ uint64_t FrameProbe::find_stepped(const LocalPath& path, ProbeScratch& scratch, 
 
 // Poses the point of the hit's mesh over which `point` lies; false where the way there leaves the surface.
 bool FrameProbe::move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const {
-  const Vec3 in_mesh = instant_.rotation(hit.mesh_id).inverse() * (point - instant_.translation(hit.mesh_id));
+  const Vec3 in_mesh = rim_.linear(hit.mesh_id).inverse() * (point - rim_.translation(hit.mesh_id));
   const auto spot = walk_.find(hit.mesh_id, hit.triangle_id, pose_.local_vertices(hit.mesh_id), in_mesh);
   if (!spot) return false;
   is_near = spot->is_near;
-  LocalHit moved = localise_.hit(spot->hit);
+  LocalHit moved = preparer_.hit(spot->hit);
   std::array<Vec3, 3> normals;
-  if (hit.normals && localise_.find_smooth_normals(moved, normals)) moved.normals = &normals;
-  pose_hit(moved, instant_, false, out);
+  if (hit.normals && preparer_.find_smooth_normals(moved, normals)) moved.normals = &normals;
+  pose_hit(moved, rim_, false, out);
   return true;
 }
 
@@ -210,7 +210,7 @@ LegShadows FrameProbe::shadows_of(const LocalPath& path, const PosedHit* hits, L
 void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const {
   out.assign(static_cast<size_t>(2 * path.count), 0.0);
   if (path.first_material < 0) return;
-  pose_hits(path, instant_, scratch.hits.data());
+  pose_hits(path, rim_, scratch.hits.data());
   fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
 }
 

@@ -42,11 +42,11 @@ struct ProbeScratch {
 
 class FrameProbe {
  public:
-  // localise: of whole meshes (hit_patches.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
+  // preparer: of whole meshes (hit_patches.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
   // origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
-  FrameProbe(const Localiser& localise, const Pose& pose, const Instant& rim, const EmbreeScene& geometry,
+  FrameProbe(const PathPreparer& preparer, const PosedScene& pose, const PosedScene& rim, const EmbreeScene& geometry,
              const SurfaceWalk& walk, double wavenumber)
-      : localise_(localise), pose_(pose), instant_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
+      : preparer_(preparer), pose_(pose), rim_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
 
   // Signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
   void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
@@ -63,15 +63,15 @@ class FrameProbe {
   LegShadows shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const;
   void check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
   const std::vector<PosedAntenna>& starts(const LocalPath& path) const {
-    return path.is_reversed ? instant_.receivers : instant_.transmitters;
+    return path.is_reversed ? rim_.receivers : rim_.transmitters;
   }
   const std::vector<PosedAntenna>& ends(const LocalPath& path) const {
-    return path.is_reversed ? instant_.transmitters : instant_.receivers;
+    return path.is_reversed ? rim_.transmitters : rim_.receivers;
   }
 
-  const Localiser& localise_;
-  const Pose& pose_;
-  const Instant& instant_;
+  const PathPreparer& preparer_;
+  const PosedScene& pose_;
+  const PosedScene& rim_;
   const EmbreeScene& geometry_;
   const SurfaceWalk& walk_;
   double wavenumber_;

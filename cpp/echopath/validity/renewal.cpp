@@ -35,15 +35,15 @@ Radar carried_radar(const Paths& paths, const Radar& radar) {
 class Renewer {
  public:
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
-      : paths_(paths), radar_(carried_radar(paths, radar)), localise_(paths, whole_patches(*paths.scene)),
-        walk_(*paths.scene, localise_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
+      : paths_(paths), radar_(carried_radar(paths, radar)), preparer_(paths, whole_patches(*paths.scene)),
+        walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
         origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
         loan_(kept, *paths.scene, pose_, origin_, job), geometry_(*loan_),
-        instant_(*paths.scene, radar_, localise_.patches(), origin_, time) {}
+        scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
 
   BlockOutcome renew_block(std::span<const int64_t> indices) const {
     BlockOutcome block;
-    const LocalPaths local = localise_(indices);
+    const LocalPaths local = preparer_(indices);
     Scratch scratch(local.longest);
     for (const LocalPath& path : local.paths) block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
     return block;
@@ -63,7 +63,7 @@ class Renewer {
     LocalPath path = recorded;
     std::copy_n(recorded.hits, recorded.count, scratch.hits.begin());
     path.hits = scratch.hits.data();
-    pose_hits(path, instant_, scratch.posed.data());
+    pose_hits(path, scene_at_, scratch.posed.data());
     Outcome outcome = Outcome::kKept;
     if (path.sliding != 0) outcome = find_reflections(path, scratch);
     if (outcome == Outcome::kLost) return outcome;
@@ -73,10 +73,10 @@ class Renewer {
   }
 
   const Vec3& start_of(const LocalPath& path) const {
-    return (path.is_reversed ? instant_.receivers : instant_.transmitters).front().position;
+    return (path.is_reversed ? scene_at_.receivers : scene_at_.transmitters).front().position;
   }
   const Vec3& end_of(const LocalPath& path) const {
-    return (path.is_reversed ? instant_.transmitters : instant_.receivers).front().position;
+    return (path.is_reversed ? scene_at_.transmitters : scene_at_.receivers).front().position;
   }
 
   // Newton steps from the recorded points of reflection to Fermat's.
@@ -97,12 +97,12 @@ class Renewer {
     LocalHit& hit = scratch.hits[at];
     const uint32_t mesh_id = hit.mesh_id;
     const Vec3 point = surface_point(scratch.posed[at], step);
-    const Vec3 in_mesh = instant_.rotation(mesh_id).inverse() * (point - instant_.translation(mesh_id));
+    const Vec3 in_mesh = scene_at_.linear(mesh_id).inverse() * (point - scene_at_.translation(mesh_id));
     const auto spot = walk_.find(mesh_id, hit.triangle_id, pose_.local_vertices(mesh_id), in_mesh);
     if (!spot) return false;
-    hit = localise_.hit(spot->hit);
-    if (localise_.find_smooth_normals(hit, scratch.normals[at])) hit.normals = &scratch.normals[at];
-    pose_hit(hit, instant_, false, scratch.posed[at]);
+    hit = preparer_.hit(spot->hit);
+    if (preparer_.find_smooth_normals(hit, scratch.normals[at])) hit.normals = &scratch.normals[at];
+    pose_hit(hit, scene_at_, false, scratch.posed[at]);
     return true;
   }
 
@@ -128,14 +128,14 @@ class Renewer {
 
   const Paths& paths_;
   Radar radar_;
-  Localiser localise_;
+  PathPreparer preparer_;
   SurfaceWalk walk_;
   double wavenumber_;
-  Pose pose_;
+  PosedScene pose_;
   Vec3 origin_;
   GeometryLoan loan_;
   const EmbreeScene& geometry_;
-  Instant instant_;
+  PosedScene scene_at_;
 };
 
 // The paths that are still there, those that moved with hits of their own behind those of the record.

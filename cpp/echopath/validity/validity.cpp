@@ -178,7 +178,7 @@ class Certificate {
   void check_block(std::span<const size_t> members, size_t first, ObjectsAtTimes& sums) {
     std::vector<int64_t> indices;
     for (const size_t member : members) indices.push_back(sample_.paths[member]);
-    const LocalPaths local = check_.localise(indices);
+    const LocalPaths local = check_.preparer(indices);
     FrameCheck::Scratch scratch(local.longest);
     std::vector<Echo> traced;
     if (first == 0) traced = check_.at_trace(indices);

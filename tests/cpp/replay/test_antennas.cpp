@@ -51,7 +51,7 @@ Paths paths_around(const Radar& radar) {
 
 Vec3 point_of(const Paths& paths, int64_t path) {
   const Hit& hit = paths.hits_of(path)[0];
-  const auto [a, b, c] = Pose(*paths.scene, 0.0).world_triangle(hit.mesh_id, hit.triangle_id);
+  const auto [a, b, c] = PosedScene(*paths.scene, 0.0).world_triangle(hit.mesh_id, hit.triangle_id);
   return a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
 }
 

@@ -100,7 +100,7 @@ TEST(CurvedBounce, SphereThenPlateHasItsLevel) {
                                                           {{7, 0, 0}, 2.0, {4, 1.5, 0}, -115.42}};
   for (const auto& [centre, radius, plate, expected] : table) {
     const Scenery made = scenery(centre, radius, plate);
-    const EmbreeScene geometry(made.scene, Pose(made.scene, 0.0), Vec3::Zero());
+    const EmbreeScene geometry(made.scene, PosedScene(made.scene, 0.0), Vec3::Zero());
     EXPECT_NEAR(decibel(std::norm(field_of(double_bounces(made, geometry, false)))), expected, kLevelTolerance);
 
     // Metal turns the polarisation at both bounces; all of the power arrives in two crossed ones together.

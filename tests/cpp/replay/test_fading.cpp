@@ -44,14 +44,15 @@ Radar two_by_two() {
   return radar;
 }
 
-// Paths of whatever level whose lengths follow its polynomial and whose amplitudes do not.
-std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int level) {
+// Paths whose lengths follow a polynomial and whose amplitudes do not.
+std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int polynomial) {
   std::vector<int64_t> indices, found;
   for (int64_t path = 0; path < paths.num_paths(); ++path) indices.push_back(path);
-  std::vector<FailedPath> failed;
-  replayer.interpolated(indices, level, failed);
-  for (const FailedPath& one : failed) {
-    if (one.by_chirp) found.push_back(one.path);
+  std::vector<UnfollowedPath> unfollowed;
+  replayer.interpolated(indices, polynomial, unfollowed);
+  const PathGrids path_grids = replayer.path_grids();
+  for (const UnfollowedPath& one : unfollowed) {
+    if (path_grids.next(one, polynomial).by_chirp) found.push_back(one.path);
   }
   return found;
 }
@@ -60,15 +61,16 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
-  const int level = replayer.levels().first_level(0);
-  const std::vector<int64_t> indices = fading(paths, replayer, level);
+  const int polynomial = replayer.path_grids().first(0);
+  const std::vector<int64_t> indices = fading(paths, replayer, polynomial);
   ASSERT_GT(indices.size(), 20u);
   std::vector<double> lengths, before, after;
   std::vector<std::complex<double>> amplitudes, ignored;
   EchoStates state;
   double darkest = 1.0, brightest = 0.0;
   for (const int transmitter : {0, 1}) {
-    const std::vector<Echoes> echoes = replayer.by_chirp(indices, level, transmitter);
+    const PosedGrid chirps = replayer.pose(ChirpGrid{transmitter});
+    const std::vector<Echoes> echoes = replayer.by_chirp(indices, polynomial, chirps);
     for (const int chirp : {0, 20, 63}) {
       const double time = paths.frame.start_time + radar.chirp_time(transmitter, chirp), step = 1e-6;
       replayer.evaluate(indices, time, lengths, amplitudes);
@@ -92,35 +94,36 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
 }
 
 // Cosine between the normal of a hit's triangle and the first transmitter, at one time: below 0 it shows its back.
-double facing(const Paths& paths, const Localiser& localise, const Radar& radar, int64_t path, double time) {
-  const Instant instant(*paths.scene, radar, localise.patches(), paths.frame.transmitter, time);
+double facing(const Paths& paths, const PathPreparer& preparer, const Radar& radar, int64_t path, double time) {
+  const PosedScene scene(*paths.scene, radar, preparer.patches(), paths.frame.transmitter, time);
   PosedHit posed;
-  pose_hit(localise.hit(*paths.hits_of(path)), instant, false, posed);
-  return posed.normal.dot((instant.transmitters.front().position - posed.point).normalized());
+  pose_hit(preparer.hit(*paths.hits_of(path)), scene, false, posed);
+  return posed.normal.dot((scene.transmitters.front().position - posed.point).normalized());
 }
 
 TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
-  const Localiser localise(paths, hit_patches(paths));
-  const int level = replayer.levels().first_level(0);
+  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathGrids path_grids = replayer.path_grids();
+  const int polynomial = path_grids.first(0);
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   std::iota(indices.begin(), indices.end(), 0);
-  std::vector<FailedPath> failed;
-  const std::vector<Echoes> echoes = replayer.interpolated(indices, level, failed);
+  std::vector<UnfollowedPath> failed;
+  const std::vector<Echoes> echoes = replayer.interpolated(indices, polynomial, failed);
   EXPECT_EQ(echoes.front().num_echoes, paths.num_paths() - static_cast<int64_t>(failed.size()));
   const double start = paths.frame.start_time, end = start + radar.frame_duration();
   int num_turned = 0, num_facing = 0;
   for (const int64_t path : indices) {
-    const double first = facing(paths, localise, radar, path, start), last = facing(paths, localise, radar, path, end);
+    const double first = facing(paths, preparer, radar, path, start), last = facing(paths, preparer, radar, path, end);
     const auto one = std::find_if(failed.begin(), failed.end(),
-                                  [path](const FailedPath& other) { return other.path == path; });
+                                  [path](const UnfollowedPath& other) { return other.path == path; });
     if ((first > 0) != (last > 0)) {
       ++num_turned;
       ASSERT_NE(one, failed.end());
-      EXPECT_TRUE(one->by_chirp);
-      EXPECT_EQ(one->next_level, level);
+      EXPECT_TRUE(path_grids.next(*one, polynomial).by_chirp);
+      EXPECT_EQ(path_grids.next(*one, polynomial).polynomial, polynomial);
     } else if (std::min(first, last) > kGrazing) {  // turned by less than half a turn: seen all along
       ++num_facing;
       EXPECT_EQ(one, failed.end());
@@ -136,14 +139,15 @@ TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
-  const int level = replayer.levels().first_level(0);
+  const PathGrids path_grids = replayer.path_grids();
+  const int polynomial = path_grids.first(0);
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   std::iota(indices.begin(), indices.end(), 0);
-  std::vector<FailedPath> failed, none;
-  const std::vector<Echoes> all = replayer.interpolated(indices, level, failed);
+  std::vector<UnfollowedPath> failed, none;
+  const std::vector<Echoes> all = replayer.interpolated(indices, polynomial, failed);
   ASSERT_GT(failed.size(), 20u);
-  for (const FailedPath& one : failed) std::erase(indices, one.path);
-  const std::vector<Echoes> alone = replayer.interpolated(indices, level, none);
+  for (const UnfollowedPath& one : failed) std::erase(indices, one.path);
+  const std::vector<Echoes> alone = replayer.interpolated(indices, polynomial, none);
   EXPECT_TRUE(none.empty());
   for (size_t channel = 0; channel < all.size(); ++channel) {
     EXPECT_EQ(all[channel].delay, alone[channel].delay);

@@ -41,10 +41,10 @@ std::vector<int64_t> all_of(const Paths& paths) {
 std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices,
                             const std::vector<uint32_t>* label = nullptr,
                             SpecularPoints specular = SpecularPoints::kMaterial) {
-  const Localiser localise(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, hit_patches(paths));
   std::vector<const std::vector<uint32_t>*> labels;
   if (label) labels.push_back(label);
-  return JoinRule(paths, localise, specular, labels)(indices);
+  return JoinRule(paths, preparer, specular, labels)(indices);
 }
 
 int64_t num_joined(const std::vector<uint8_t>& joined) { return std::accumulate(joined.begin(), joined.end(), int64_t{0}); }
@@ -158,8 +158,9 @@ TEST(JoinedEchoes, OfTheChirpsAreThoseOfTheirPaths) {
   const std::vector<uint8_t> found = joined(paths, indices);
   const Replayer replayer(paths, paths.radar);
   EXPECT_GT(num_joined(found), 0);
-  const std::vector<Echoes> at_once = replayer.by_chirp(indices, 1, 0, found);
-  const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, 1, 0), found);
+  const PosedGrid chirps = replayer.pose(ChirpGrid{0});
+  const std::vector<Echoes> at_once = replayer.by_chirp(indices, 1, chirps, found);
+  const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, 1, chirps), found);
   ASSERT_EQ(at_once.front().num_echoes, paths.num_paths() - num_joined(found));
   ASSERT_EQ(at_once.front().num_echoes, after.front().num_echoes);
   EXPECT_EQ(at_once.front().sampling.num_nodes, after.front().sampling.num_nodes);

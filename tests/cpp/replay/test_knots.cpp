@@ -72,17 +72,18 @@ TEST(MotionKnots, PolynomialsBetweenThemFollowLongFrames) {
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  int level = 1;
+  const PathGrids path_grids = replayer.path_grids();
+  int polynomial = 1;
   for (size_t i = 0; i < indices.size(); ++i) {
     indices[i] = static_cast<int64_t>(i);
-    level = std::max(level, replayer.levels().first_level(indices[i]));
+    polynomial = std::max(polynomial, path_grids.first(indices[i]));
   }
-  ASSERT_LE(level, replayer.levels().num_polynomials());
-  EXPECT_LT(replayer.levels().num_nodes(level), replayer.levels().num_exact_nodes() / 2);
-  std::vector<FailedPath> failed;
-  const Echoes echoes = replayer.interpolated(indices, level, failed).front();
+  ASSERT_LE(polynomial, replayer.grids().num_polynomials());
+  EXPECT_LT(replayer.grids().polynomial(polynomial).num_nodes, replayer.grids().num_sample_nodes() / 2);
+  std::vector<UnfollowedPath> failed;
+  const Echoes echoes = replayer.interpolated(indices, polynomial, failed).front();
   EXPECT_LT(failed.size(), indices.size() / 20);  // grazing ones, whose amplitudes have a kink
-  for (const FailedPath& one : failed) std::erase(indices, one.path);
+  for (const UnfollowedPath& one : failed) std::erase(indices, one.path);
   ASSERT_EQ(echoes.num_echoes, static_cast<int64_t>(indices.size()));
   EchoStates state;
   std::vector<double> lengths;
@@ -111,16 +112,15 @@ class ForgetfulMotion : public LinearMotion {
   mutable int num_asked_ = 0;
 };
 
-TEST(NodeLevels, AreThoseOfTheirMeshesAfterAnErrorToo) {
+TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
   const Radar radar = long_frame();
-  Scene scene = swaying_limb();  // needs more levels than what goes straight on
+  Scene scene = swaying_limb();  // needs a higher polynomial than what goes straight on
   add_body(scene, "ball", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 2), {12, -2, 0}, std::make_shared<ForgetfulMotion>());
   const Paths paths = record(radar, scene);
   const Replayer asked_twice(paths, radar), asked_once(paths, radar);
-  EXPECT_THROW(asked_twice.levels().first_level(0), std::runtime_error);
-  for (int64_t path = 0; path < paths.num_paths(); ++path) {
-    EXPECT_EQ(asked_twice.levels().first_level(path), asked_once.levels().first_level(path)) << path;
-  }
+  EXPECT_THROW(asked_twice.path_grids(), std::runtime_error);
+  const PathGrids second = asked_twice.path_grids(), first = asked_once.path_grids();
+  for (int64_t path = 0; path < paths.num_paths(); ++path) EXPECT_EQ(second.first(path), first.first(path)) << path;
 }
 
 }  // namespace

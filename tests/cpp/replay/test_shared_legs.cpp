@@ -153,8 +153,9 @@ TEST(SharedLegs, PathsAtManyNodesAreThoseEvaluatedOneByOne) {
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
     const std::vector<int64_t> indices = all_of(paths);
-    const std::vector<Echoes> echoes = replayer.exact(indices, 1);
-    const std::vector<double>& times = replayer.levels().exact(1).nodes.times;
+    const PosedGrid samples = replayer.pose(replayer.grids().samples(1));
+    const std::vector<Echoes> echoes = replayer.exact(indices, samples);
+    const std::vector<double>& times = samples.nodes.times;
     const size_t num_receivers = radar.receivers.size(), node = times.size() / 2;
     const PathByPath slowly(paths, radar, times[node], specular);
     for (size_t p = 0; p < indices.size(); ++p) {
@@ -251,9 +252,9 @@ struct DirectCounts {
 };
 
 DirectCounts direct_counts(const Paths& paths) {
-  const Localiser localise(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, hit_patches(paths));
   ChainPlanner planner;
-  planner.begin(paths, localise, SpecularPoints::kMaterial, true);
+  planner.begin(paths, preparer, SpecularPoints::kMaterial, true);
   const ChainPlan& plan = planner(all_of(paths));
   DirectCounts counts;
   counts.others = plan.chains.size() + plan.mirror_paths.size();
@@ -294,9 +295,9 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Radar radar = array();
   const Paths paths = record(radar);
   const std::vector<int64_t> indices = all_of(paths);
-  const Localiser localise(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, hit_patches(paths));
   ChainPlanner planner;
-  planner.begin(paths, localise, SpecularPoints::kMaterial, false);
+  planner.begin(paths, preparer, SpecularPoints::kMaterial, false);
   const ChainPlan& plan = planner(indices);
   EXPECT_EQ(plan.chains.size() + plan.mirror_paths.size(), indices.size());
   EXPECT_GT(plan.mirror_paths.size(), 2u);

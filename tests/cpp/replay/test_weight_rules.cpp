@@ -98,7 +98,7 @@ Paths trace_with_odds(const Scene& scene, double specular_probability, uint64_t 
   paths.radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   paths.frame.seed = seed;
   paths.frame.max_bounces = 2;
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   LaunchSettings launch;
   launch.num_rays = 1 << 14;
   launch.seed = seed;

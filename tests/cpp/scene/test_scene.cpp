@@ -136,7 +136,7 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
                                                          std::vector<std::vector<Vec3>>{vertices, moved});
   Scene scene;
   scene.add(node);
-  const std::vector<Vec3> half_way = Pose(scene, 0.5).world_vertices(0);
+  const std::vector<Vec3> half_way = world_vertices(scene, 0, 0.5);
   ASSERT_EQ(half_way.size(), 6u);
   for (size_t i = 0; i < 6; ++i) EXPECT_EQ(half_way[i], vertices[mesh->original_vertex()[i]] + Vec3(0, 0, 1));
 

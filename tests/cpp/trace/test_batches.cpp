@@ -69,7 +69,7 @@ Scene rough_ball_and_wall() {
 // Each batch alone stands for all directions of its stratum: its rays, over their density, are the solid angle.
 TEST(Batches, EachCoversItsStratum) {
   const Scene scene = rough_ball_and_wall();
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   LaunchSettings settings;
   settings.num_rays = 100000;
   settings.batches = kBatches;

@@ -115,14 +115,14 @@ void expect_same(const Answers& a, const Answers& b) {
 }
 
 void expect_as_fresh(EmbreeScene& kept, const Scene& scene, double time, const Vec3& origin = Vec3::Zero()) {
-  const Pose pose(scene, time);
+  const PosedScene pose(scene, time);
   kept.update(scene, pose, origin);
   expect_same(answers_of(EmbreeScene(scene, pose, origin)), answers_of(kept));
 }
 
 TEST(KeptGeometry, AnswersAsAFreshOneForWhateverMoved) {
   const Scene scene = street();
-  EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
+  EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
   for (const double time : {0.0, 0.1, 0.7, 2.9, 0.1, 0.1}) expect_as_fresh(kept, scene, time);
   expect_as_fresh(kept, scene, 0.1, {0.5, 0.25, 0.0});
 }
@@ -130,19 +130,19 @@ TEST(KeptGeometry, AnswersAsAFreshOneForWhateverMoved) {
 TEST(KeptGeometry, AnswersAsAFreshOneWhereMeshesInterpenetrate) {
   for (const int num_layers : {2, 6}) {  // with a tree per mesh, and one tree of all
     const Scene scene = soup(num_layers);
-    EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
+    EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
     for (const double time : {0.5, 1.0, 30.0}) expect_as_fresh(kept, scene, time);
   }
 }
 
 TEST(KeptGeometry, ServesOtherScenes) {
   Scene scene = street();
-  EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
+  EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
   add_rectangle(scene, "new", {5, -1, -1}, {0, 2, 0}, {0, 0, 1}, share(Material::metal()));
   expect_as_fresh(kept, scene, 0.0);
   expect_as_fresh(kept, soup(3), 0.0);
   expect_as_fresh(kept, soup(3), 0.0);  // other meshes of the same shapes
-  kept.update(Scene(), Pose(Scene(), 0.0), Vec3::Zero());
+  kept.update(Scene(), PosedScene(Scene(), 0.0), Vec3::Zero());
   RayHit hit;
   EXPECT_EQ(kept.intersect(Vec3::Zero(), Vec3::UnitX(), hit), EmbreeScene::Verdict::kMiss);
 }
@@ -151,9 +151,9 @@ TEST(KeptGeometry, ServesOtherScenes) {
 TEST(KeptGeometry, FollowsWhatMoves) {
   Scene scene;
   add_rectangle(scene, "plate", {5, -1, -1}, {0, 2, 0}, {0, 0, 2}, share(Material::metal()), moving_at({2, 0, 0}));
-  EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
+  EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
   for (const double time : {0.0, 1.0, 3.5}) {
-    kept.update(scene, Pose(scene, time), Vec3::Zero());
+    kept.update(scene, PosedScene(scene, time), Vec3::Zero());
     RayHit hit;
     ASSERT_EQ(kept.intersect(Vec3::Zero(), Vec3::UnitX(), hit), EmbreeScene::Verdict::kHit);
     EXPECT_NEAR(hit.distance, 5.0 + 2.0 * time, kRounding);
@@ -168,8 +168,8 @@ TEST(KeptGeometry, EdgesOfWhatMovesAreClosed) {
   const Surface ball = ellipsoid(Vec3::Zero(), {1, 1, 1}, 3);
   add_mesh(scene, "ball", ball.vertices, ball.triangles, lambert(0.5), moving_at({0.3, 0.1, 0}));
   add_rectangle(scene, "ground", {-30, -30, -3}, {60, 0, 0}, {0, 60, 0}, lambert(0.3));
-  EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
-  const Pose pose(scene, 0.7);
+  EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
+  const PosedScene pose(scene, 0.7);
   kept.update(scene, pose, Vec3::Zero());
   const Vec3 inside(0.21, 0.07, 0.0);
   const std::vector<Vec3> vertices = pose.world_vertices(0);
@@ -214,7 +214,7 @@ TEST(KeptGeometry, RecordsAreThoseOfFreshTraces) {
 TEST(KeptGeometry, OneLoanAtATime) {
   const Scene scene = street();
   KeptGeometry kept;
-  const Pose early(scene, 0.0), late(scene, 2.0);
+  const PosedScene early(scene, 0.0), late(scene, 2.0);
   const GeometryLoan first(&kept, scene, early, Vec3::Zero(), nullptr);
   const Answers before = answers_of(*first);
   const GeometryLoan second(&kept, scene, late, Vec3::Zero(), nullptr);
@@ -225,12 +225,12 @@ TEST(KeptGeometry, OneLoanAtATime) {
 TEST(KeptGeometry, ACancelledBuildIsForgotten) {
   const Scene scene = street();
   KeptGeometry kept;
-  { const GeometryLoan loan(&kept, scene, Pose(scene, 0.0), Vec3::Zero(), nullptr); }
+  { const GeometryLoan loan(&kept, scene, PosedScene(scene, 0.0), Vec3::Zero(), nullptr); }
   Job job;
   job.cancel();
-  EXPECT_THROW(GeometryLoan(&kept, scene, Pose(scene, 1.0), Vec3::Zero(), &job), Cancelled);
-  const GeometryLoan loan(&kept, scene, Pose(scene, 1.0), Vec3::Zero(), nullptr);
-  expect_same(answers_of(EmbreeScene(scene, Pose(scene, 1.0), Vec3::Zero())), answers_of(*loan));
+  EXPECT_THROW(GeometryLoan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), &job), Cancelled);
+  const GeometryLoan loan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), nullptr);
+  expect_same(answers_of(EmbreeScene(scene, PosedScene(scene, 1.0), Vec3::Zero())), answers_of(*loan));
 }
 
 int64_t resident_bytes() {
@@ -243,8 +243,8 @@ int64_t resident_bytes() {
 TEST(KeptGeometry, AThousandMovesTakeNoMemory) {
   if (test::kIsSanitized) GTEST_SKIP() << "sanitizers hold back what was freed";
   const Scene scene = street();
-  EmbreeScene kept(scene, Pose(scene, 0.0), Vec3::Zero());
-  const auto move = [&](int k) { kept.update(scene, Pose(scene, 0.0025 * k), Vec3::Zero()); };
+  EmbreeScene kept(scene, PosedScene(scene, 0.0), Vec3::Zero());
+  const auto move = [&](int k) { kept.update(scene, PosedScene(scene, 0.0025 * k), Vec3::Zero()); };
   for (int k = 0; k < 100; ++k) move(k);
   const int64_t before = resident_bytes();
   for (int k = 100; k < 1100; ++k) move(k);
@@ -255,7 +255,7 @@ TEST(KeptGeometry, AThousandMovesTakeNoMemory) {
 TEST(QueryLog, TakesTheQueriesOfAllThreads) {
   constexpr int64_t kNumQueries = 20000;
   const Scene scene = soup(2);
-  EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   QueryLog log;
   geometry.record_queries(&log);
   parallel_for(kNumQueries, [&](int64_t i) {

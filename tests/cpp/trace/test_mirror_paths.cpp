@@ -230,7 +230,7 @@ TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
 TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
   const auto rectangles = city_block(20);
   const Scene scene = scene_of(rectangles);
-  const Pose pose(scene, 0.0);
+  const PosedScene pose(scene, 0.0);
   const EmbreeScene geometry(scene, pose, Vec3::Zero());
   const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
   const Vec3 antenna(9.3, 8.7, 3.1);

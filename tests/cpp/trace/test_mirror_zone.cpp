@@ -24,7 +24,7 @@ class Plates {
     testing::add_rectangle(scene_, name, corner, a, b, testing::share(Material::metal()));
   }
   void look_at(double x, double y) {
-    geometry_ = std::make_unique<EmbreeScene>(scene_, Pose(scene_, 0.0), Vec3::Zero());
+    geometry_ = std::make_unique<EmbreeScene>(scene_, PosedScene(scene_, 0.0), Vec3::Zero());
     ASSERT_EQ(geometry_->intersect(Vec3(x, y, 5), -Vec3::UnitZ(), hit_), EmbreeScene::Verdict::kHit);
   }
   SurfaceEnd end(const Vec3& along) { return find_surface_end(*geometry_, hit_, along, kReach, kGap, num_queries_); }

@@ -110,7 +110,7 @@ TEST(Trace, WorldOffsetDoesNoHarm) {
 
 TEST(Trace, HitsLieOnTheirTriangles) {
   const Scene scene = mixed_scene(Vec3::Zero());
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   int num_hits = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 direction = Vec3(1.0, std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized();
@@ -146,7 +146,7 @@ TEST(Trace, SliversAreMetInDoublePrecision) {
   constexpr double kPosition = 1e-6;
   Scene scene;
   add_slivers(scene, kDistance, 1e-4, 10.0, 10000);
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   const int num_rays = 5000;
   std::vector<double> errors;
   for (int i = 0; i < num_rays; ++i) {
@@ -165,7 +165,7 @@ TEST(Trace, SliversAreMetInDoublePrecision) {
 // Packets answer what single rays answer, whatever stands beside them.
 TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
   const Scene scene = mixed_scene(Vec3::Zero());
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   std::vector<Vec3> directions;
   for (int i = 0; i < 5000; ++i) {
     directions.push_back(Vec3(std::cos(0.01 * i), std::sin(0.7 * i), 0.5 * std::cos(1.3 * i)).normalized());
@@ -204,7 +204,7 @@ TEST(EmbreeScene, PacketsAnswerAsSingleRays) {
 // Rays that own what they meet, each over its density, add up to the solid angle of what there is to see.
 TEST(Launch, OwnersCoverEachSurfaceOnce) {
   const Scene scene = mixed_scene(Vec3::Zero());
-  const EmbreeScene geometry(scene, Pose(scene, 0.0), Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   LaunchSettings settings;
   settings.num_rays = 200000;
   const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);

@@ -50,9 +50,9 @@ bool ChainPlanner::is_same(const Known& known, const Known& run) {
          std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-void ChainPlanner::begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct) {
+void ChainPlanner::begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_direct) {
   paths_ = &paths;
-  localise_ = &localise;
+  preparer_ = &preparer;
   slides_ = specular != SpecularPoints::kMaterial;
   with_direct_ = with_direct;
 }
@@ -77,7 +77,7 @@ void ChainPlanner::clear() {
 }
 
 bool ChainPlanner::is_image(const TracedHits& hits, int k) const {
-  return localise_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
+  return preparer_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
 }
 
 ChainPlanner::Ends ChainPlanner::ends_of(const TracedHits& hits) const {
@@ -94,9 +94,9 @@ ChainPlanner::Ends ChainPlanner::ends_of(const TracedHits& hits) const {
 bool ChainPlanner::is_direct(size_t path) const {
   if (!with_direct_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
   const uint32_t mesh = paths_->hits_of(static_cast<int64_t>(path))->mesh_id;
-  if (!localise_->is_plane(mesh) || localise_->may_stretch(mesh)) return false;
+  if (!preparer_->is_plane(mesh) || preparer_->may_stretch(mesh)) return false;
   if (paths_->diffuse[path] != 0) return true;
-  if (localise_->is_mirror(mesh) || paths_->stratum[path] >= paths_->frame.strata.size()) return false;
+  if (preparer_->is_mirror(mesh) || paths_->stratum[path] >= paths_->frame.strata.size()) return false;
   return paths_->curved_cell.empty() || paths_->curved_cell[path] == std::array<float, 7>{};
 }
 
@@ -167,7 +167,7 @@ uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
 
 uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
   Hit plane = hit;
-  if (localise_->is_plane(hit.mesh_id)) plane.u = plane.v = 0.0f;
+  if (preparer_->is_plane(hit.mesh_id)) plane.u = plane.v = 0.0f;
   const uint32_t mirror = mirror_ids_(pair_key(plane.mesh_id, plane.triangle_id), place_key(plane));
   if (mirror == plan_.mirrors.size()) plan_.mirrors.push_back(plane);
   const uint32_t image = image_ids_(pair_key(parent, mirror)) + 1;
@@ -206,7 +206,7 @@ uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
 
 // One diffuse hit has an inner part where its triangle may stretch, which changes its area.
 uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
-  if (ends.first == ends.last && (is_coherent || !localise_->may_stretch(hits.hit(ends.first).mesh_id))) return ChainPlan::kNone;
+  if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id))) return ChainPlan::kNone;
   const int count = ends.last - ends.first + 1;
   ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
   for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);

@@ -74,7 +74,7 @@ class ChainPlanner {
  public:
   // For blocks of this record from now on. All must outlive its use.
   // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
-  void begin(const Paths& paths, const Localiser& localise, SpecularPoints specular, bool with_direct);
+  void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_direct);
   // For the paths of these indices; valid until the next call.
   const ChainPlan& operator()(std::span<const int64_t> indices);
 
@@ -107,7 +107,7 @@ class ChainPlanner {
   uint32_t inner(const TracedHits& hits, const Ends& ends, bool is_coherent);
 
   const Paths* paths_ = nullptr;
-  const Localiser* localise_ = nullptr;
+  const PathPreparer* preparer_ = nullptr;
   bool slides_ = false, with_direct_ = false;
   ChainPlan plan_;
   Known last_start_, last_end_;

@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kMostExponent = 16;  // of gains that are products of cosines
 
-void find_mirrors(const ChainPlan& plan, const Localiser& localise, const LevelView& level, NodeRows& planes) {
-  planes.resize(plan.mirrors.size(), 4, level.instants.size());
+void find_mirrors(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, NodeRows& planes) {
+  planes.resize(plan.mirrors.size(), 4, nodes.size());
   std::deque<std::array<Vec3, 3>> normals;
   for (size_t mirror = 0; mirror < plan.mirrors.size(); ++mirror) {
-    const LocalHit local = localise.hit(plan.mirrors[mirror], normals);
-    for (size_t node = 0; node < level.instants.size(); ++node) {
+    const LocalHit local = preparer.hit(plan.mirrors[mirror], normals);
+    for (size_t node = 0; node < nodes.size(); ++node) {
       PosedHit posed;
-      pose_hit(local, level.instants[node], false, posed);
+      pose_hit(local, nodes.at(node), false, posed);
       store(posed.normal, planes, mirror, 0, node);
       planes.row(mirror, 3)[node] = posed.normal.dot(posed.point);
     }
@@ -27,10 +27,10 @@ void find_mirrors(const ChainPlan& plan, const Localiser& localise, const LevelV
 }
 
 // Of the antennas themselves, as axes that tables of gains need.
-void store_axes(std::span<const Instant> instants, bool of_receivers, AntennaImages& images) {
-  for (size_t node = 0; node < instants.size(); ++node) {
+void store_axes(const PosedNodes& nodes, bool of_receivers, AntennaImages& images) {
+  for (size_t node = 0; node < nodes.size(); ++node) {
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      images.antenna_from_image[antenna * instants.size() + node] = antennas_of(instants[node], of_receivers)[antenna].antenna_from_world;
+      images.antenna_from_image[antenna * nodes.size() + node] = nodes.at(node).antennas(of_receivers)[antenna].antenna_from_world;
     }
   }
 }
@@ -108,22 +108,22 @@ PosedHit PosedPoints::at_trace(size_t point) const {
   return hit;
 }
 
-void PosedPoints::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
-  rows.resize(plan.points.size(), PointToPose::kNumRows, level.instants.size());
+void PosedPoints::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
+  rows.resize(plan.points.size(), PointToPose::kNumRows, nodes.size());
   traced.resize(plan.points.size());
   normals.clear();
   curvatures.clear();
   for (size_t point = 0; point < plan.points.size(); ++point) {
-    const LocalHit hit = localise.hit(plan.points[point], normals);
-    if (localise.may_stretch(hit.mesh_id)) pose_stretched(hit, localise, level, point);
-    else pose_rigid(hit, localise, level, point);
+    const LocalHit hit = preparer.hit(plan.points[point], normals);
+    if (preparer.may_stretch(hit.mesh_id)) pose_stretched(hit, preparer, nodes, point);
+    else pose_rigid(hit, preparer, nodes, point);
   }
 }
 
 // What is smooth is so in the frame of its mesh: the point off its facet and the normal there move as any other.
-void PosedPoints::pose_rigid(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
-  const Instant& trace = localise.trace_instant();
-  const Mat3& mesh_from_trace = localise.mesh_from_trace(hit.mesh_id);
+void PosedPoints::pose_rigid(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point) {
+  const PosedScene& trace = preparer.at_trace();
+  const Mat3& mesh_from_trace = preparer.mesh_from_trace(hit.mesh_id);
   PosedHit posed;
   pose_hit(hit, trace, false, posed);
   Vec3 position = hit.point;
@@ -134,19 +134,19 @@ void PosedPoints::pose_rigid(const LocalHit& hit, const Localiser& localise, con
   }
   const Vec3 normal = mesh_from_trace * posed.normal;
   PointToPose to;
-  to.mesh = level.poses.meshes.row(hit.mesh_id, 0);
+  to.mesh = nodes.meshes.row(hit.mesh_id, 0);
   std::copy_n(position.data(), 3, to.position);
   std::copy_n(normal.data(), 3, to.normal);
   to.out = rows.row(point, 0);
   chain_kernels(rows.stride()).pose(to, rows.stride());
 }
 
-void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point) {
+void PosedPoints::pose_stretched(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point) {
   PosedHit posed;
-  pose_hit(hit, localise.trace_instant(), false, posed);
+  pose_hit(hit, preparer.at_trace(), false, posed);
   traced[point] = {posed.point, posed.normal, nullptr};
-  for (size_t node = 0; node < level.instants.size(); ++node) {
-    pose_hit(hit, level.instants[node], false, posed);
+  for (size_t node = 0; node < nodes.size(); ++node) {
+    pose_hit(hit, nodes.at(node), false, posed);
     store(posed.point, rows, point, PointToPose::kPosition, node);
     store(posed.normal, rows, point, PointToPose::kNormal, node);
     rows.row(point, PointToPose::kAreaRatio)[node] = posed.area_ratio;
@@ -154,9 +154,9 @@ void PosedPoints::pose_stretched(const LocalHit& hit, const Localiser& localise,
   pad(rows, point, PointToPose::kNumRows);
 }
 
-void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers) {
-  const std::vector<PosedAntenna>& antennas = antennas_of(level.instants.front(), of_receivers);
-  const NodeRows& own = level.poses.antennas[of_receivers];
+void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers) {
+  const std::vector<PosedAntenna>& antennas = nodes.at(0).antennas(of_receivers);
+  const NodeRows& own = nodes.antennas[of_receivers];
   num_antennas = antennas.size();
   pattern.clear();
   bool has_table = false;
@@ -165,9 +165,9 @@ void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const L
     has_table = has_table || antenna.pattern->kind == AntennaPattern::Kind::kTable;
   }
   const size_t num_entries = plan.images.size() * num_antennas;
-  rows.resize(num_entries, LegToMeasure::kNumImageRows, level.instants.size());
-  antenna_from_image.resize(has_table ? num_entries * level.instants.size() : 0);
-  if (has_table) store_axes(level.instants, of_receivers, *this);
+  rows.resize(num_entries, LegToMeasure::kNumImageRows, nodes.size());
+  antenna_from_image.resize(has_table ? num_entries * nodes.size() : 0);
+  if (has_table) store_axes(nodes, of_receivers, *this);
   for (size_t antenna = 0; antenna < num_antennas; ++antenna) {
     std::copy_n(own.row(antenna, 0), LegToMeasure::kNumImageRows * rows.stride(), rows.row(antenna, 0));
   }
@@ -237,22 +237,22 @@ void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
   }
 }
 
-void SlidingParts::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, size_t stride) {
+void SlidingParts::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride) {
   if (plan.sliding.empty()) return;
-  const LocalPaths local = localise(plan.sliding);
-  const size_t num_entries = plan.sliding.size() * stride, num_nodes = level.instants.size();
+  const LocalPaths local = preparer(plan.sliding);
+  const size_t num_entries = plan.sliding.size() * stride, num_nodes = nodes.size();
   points.resize(num_entries, PointToPose::kNumRows, num_nodes);
   inner.resize(num_entries, InnerRows::kNumRows, num_nodes);
-  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide * stride, level);
+  for (size_t slide = 0; slide < local.paths.size(); ++slide) move_points(local.paths[slide], slide * stride, nodes);
 }
 
-void SlidingParts::move_points(const LocalPath& path, size_t first_entry, const LevelView& level) {
-  const size_t num_starts = antennas_of(level.instants.front(), path.is_reversed).size();
+void SlidingParts::move_points(const LocalPath& path, size_t first_entry, const PosedNodes& nodes) {
+  const size_t num_starts = nodes.at(0).antennas(path.is_reversed).size();
   std::array<PosedHit, 64> recorded, moved;  // a path has no more
   SpecularSlide scratch;
-  for (size_t node = 0; node < level.instants.size(); ++node) {
-    pose_hits(path, level.instants[node], recorded.data());
-    const std::vector<PosedAntenna>& starts = antennas_of(level.instants[node], path.is_reversed);
+  for (size_t node = 0; node < nodes.size(); ++node) {
+    pose_hits(path, nodes.at(node), recorded.data());
+    const std::vector<PosedAntenna>& starts = nodes.at(node).antennas(path.is_reversed);
     for (size_t antenna = 0; antenna < num_starts; ++antenna) {
       const size_t entry = first_entry + antenna;
       std::copy_n(recorded.begin(), path.count, moved.begin());
@@ -299,27 +299,27 @@ void find_axes(const ChainPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
 
 }  // namespace
 
-void ChainTables::find(const ChainPlan& plan, const Localiser& localise, const LevelView& level) {
-  points.find(plan, localise, level);
-  find_mirrors(plan, localise, level, mirrors);
-  for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, level, of_receivers);
+void ChainTables::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
+  points.find(plan, preparer, nodes);
+  find_mirrors(plan, preparer, nodes, mirrors);
+  for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, nodes, of_receivers);
   stride = std::max(images[0].num_antennas, images[1].num_antennas);
   has_phases = any_phase(images[0]) || any_phase(images[1]);
-  has_polarizations = needs_polarizations(localise.paths(), level);
-  const bool of_mirrors = !localise.paths().jones.empty() && !plan.mirror_paths.empty();
+  has_polarizations = needs_polarizations(preparer.paths(), nodes);
+  const bool of_mirrors = !preparer.paths().jones.empty() && !plan.mirror_paths.empty();
   if (has_polarizations || of_mirrors) find_axes(plan, mirrors, axes);
   inner.find(plan, points);
-  sliding.find(plan, localise, level, stride);
-  measure_legs(plan, level);
+  sliding.find(plan, preparer, nodes, stride);
+  measure_legs(plan, nodes);
 }
 
-void ChainTables::measure_legs(const ChainPlan& plan, const LevelView& level) {
-  const size_t num_nodes = level.instants.size();
+void ChainTables::measure_legs(const ChainPlan& plan, const PosedNodes& nodes) {
+  const size_t num_nodes = nodes.size();
   legs.resize(plan.legs.size() * stride, num_nodes, has_phases, has_polarizations);
   for (size_t id = 0; id < plan.legs.size(); ++id) {
     const auto& [image, point, of_receivers] = plan.legs[id];
     for (size_t antenna = 0; antenna < images[of_receivers].num_antennas; ++antenna) {
-      measure({of_receivers, image, antenna}, points.rows.row(point, 0), level, id * stride + antenna, legs);
+      measure({of_receivers, image, antenna}, points.rows.row(point, 0), nodes, id * stride + antenna, legs);
     }
   }
   sliding.legs.resize(plan.sliding.size() * stride, num_nodes, has_phases, has_polarizations);
@@ -327,17 +327,17 @@ void ChainTables::measure_legs(const ChainPlan& plan, const LevelView& level) {
     if (chain.slide == ChainPlan::kNone) continue;
     for (size_t antenna = 0; antenna < images[chain.is_reversed].num_antennas; ++antenna) {
       const size_t entry = chain.slide * stride + antenna;
-      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), level, entry, sliding.legs);
+      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), nodes, entry, sliding.legs);
     }
   }
 }
 
-void ChainTables::measure(const ImageOfAntenna& from, const double* point, const LevelView& level, size_t leg, LegTable& to) const {
+void ChainTables::measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const {
   const AntennaImages& seen = images[from.of_receivers];
   const size_t entry = seen.entry(from.image, from.antenna);
   seen.measure(entry, point, to.rows.row(leg, 0), to.has_phases ? to.phases.row(leg, 0) : nullptr);
   if (!to.has_components) return;
-  const double* own = level.poses.polarizations[from.of_receivers].row(from.antenna, 0);
+  const double* own = nodes.polarizations[from.of_receivers].row(from.antenna, 0);
   chain_kernels(axes.stride())
       .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)}, axes.stride());
 }

@@ -5,15 +5,10 @@
 #include <span>
 
 #include "echopath/replay/evaluate/chain_plan.h"
-#include "echopath/replay/posed/node_poses.h"
+#include "echopath/replay/posed/posed_nodes.h"
 
 namespace echopath {
 
-// A level as the tables see it.
-struct LevelView {
-  std::span<const Instant> instants;
-  const NodePoses& poses;
-};
 
 // Distinct points of a block.
 struct PosedPoints {
@@ -29,11 +24,11 @@ struct PosedPoints {
 
   PosedHit at(size_t point, size_t node) const;
   PosedHit at_trace(size_t point) const;
-  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
 
  private:
-  void pose_rigid(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point);
-  void pose_stretched(const LocalHit& hit, const Localiser& localise, const LevelView& level, size_t point);
+  void pose_rigid(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point);
+  void pose_stretched(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point);
 };
 
 // Antennas of one end as they are seen over mirrors: a leg is a straight line from one of them.
@@ -45,7 +40,7 @@ struct AntennaImages {
   std::vector<Mat3> antenna_from_image;
 
   // mirrors: rows [normal x, y, z, offset] of the planes normal.x = offset, m.
-  void find(const ChainPlan& plan, const NodeRows& mirrors, const LevelView& level, bool of_receivers);
+  void find(const ChainPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers);
   size_t entry(uint32_t image, size_t antenna) const { return image * num_antennas + antenna; }
   // From an entry to a point (PointToPose::Row), as LegToMeasure::Row; phase: a row for that of the antenna, rad, or null.
   void measure(size_t entry, const double* point, double* out, double* phase) const;
@@ -81,10 +76,10 @@ struct SlidingParts {
   NodeRows inner;   // InnerRows::Row
 
   // Without the legs.
-  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level, size_t stride);
+  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride);
 
  private:
-  void move_points(const LocalPath& path, size_t first_entry, const LevelView& level);
+  void move_points(const LocalPath& path, size_t first_entry, const PosedNodes& nodes);
 };
 
 // Of a gain, where it is a whole one that kernels can do, else LegToMeasure::kNoExponent.
@@ -104,22 +99,22 @@ struct ChainTables {
   SlidingParts sliding;
   bool has_phases = false, has_polarizations = false;
 
-  void find(const ChainPlan& plan, const Localiser& localise, const LevelView& level);
+  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
   // Measures the leg from an image of an antenna to a point (PointToPose::Row).
   struct ImageOfAntenna {
     bool of_receivers;
     uint32_t image;
     size_t antenna;
   };
-  void measure(const ImageOfAntenna& from, const double* point, const LevelView& level, size_t leg, LegTable& to) const;
-  // Polarisations differ from path to path or from node to node (NodePoses::is_upright).
-  static bool needs_polarizations(const Paths& paths, const LevelView& level) {
-    return !paths.jones.empty() && !level.poses.is_upright;
+  void measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const;
+  // Polarisations differ from path to path or from node to node (PosedNodes::is_upright).
+  static bool needs_polarizations(const Paths& paths, const PosedNodes& nodes) {
+    return !paths.jones.empty() && !nodes.is_upright;
   }
   size_t num_bytes() const;  // of what is kept for the next block
 
  private:
-  void measure_legs(const ChainPlan& plan, const LevelView& level);
+  void measure_legs(const ChainPlan& plan, const PosedNodes& nodes);
 };
 
 }  // namespace echopath

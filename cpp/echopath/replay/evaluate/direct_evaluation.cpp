@@ -39,19 +39,19 @@ bool can_evaluate_directly(const Radar& radar) {
          std::all_of(radar.receivers.begin(), radar.receivers.end(), is_power);
 }
 
-void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level,
+void DirectEvaluation::operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                                   const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
   if (plan.direct.empty()) return;
   sort_by_mesh(plan);
-  set_antennas(level);
-  const size_t num_nodes = level.instants.size();
+  set_antennas(nodes);
+  const size_t num_nodes = nodes.size();
   out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
   const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
   legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
-  const bool is_polarized = ChainTables::needs_polarizations(localise.paths(), level);
+  const bool is_polarized = ChainTables::needs_polarizations(preparer.paths(), nodes);
   if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
-           is_monostatic(level), channels.first, channels.nodes.size(), num_nodes, level.poses.meshes.stride(),
+           is_monostatic(nodes), channels.first, channels.nodes.size(), num_nodes, nodes.meshes.stride(),
             radio.filter(), kNoFacets, is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
   const DirectKernels& kernels = direct_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
@@ -60,12 +60,12 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const Localiser& locali
     while (count < kSlots && first + count < sorted_.size() && sorted_[first + count]->hit->mesh_id == mesh_id) ++count;
     const Points points(sorted_.data() + first, count);
     if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
-      set_mesh(mesh_id, localise);
-      work_.facet_area = localise.facet_area(mesh_id);
-      see_antennas(mesh_id, localise, level);
-      if (is_polarized) see_axes(mesh_id, localise, level);
+      set_mesh(mesh_id, preparer);
+      work_.facet_area = preparer.facet_area(mesh_id);
+      see_antennas(mesh_id, preparer, nodes);
+      if (is_polarized) see_axes(mesh_id, preparer, nodes);
     }
-    set_slots(points, localise, radio);
+    set_slots(points, preparer, radio);
     kernels.prepare(trace_, slots_);
     work_.has_coherent &= wanted.with_amplitudes;
     kernels.evaluate(work_);
@@ -90,27 +90,27 @@ void DirectEvaluation::sort_by_mesh(const ChainPlan& plan) {
   for (const ChainPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
 }
 
-void DirectEvaluation::set_antennas(const LevelView& level) {
+void DirectEvaluation::set_antennas(const PosedNodes& nodes) {
   for (const bool of_receivers : {false, true}) {
-    const std::vector<PosedAntenna>& posed = antennas_of(level.instants.front(), of_receivers);
-    seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, level.instants.size());
+    const std::vector<PosedAntenna>& posed = nodes.at(0).antennas(of_receivers);
+    seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, nodes.size());
     antennas_[of_receivers].clear();
     for (const PosedAntenna& one : posed) {
       const size_t antenna = antennas_[of_receivers].size();
-      const double *rows = seen_[of_receivers].row(antenna, 0), *own = level.poses.polarizations[of_receivers].row(antenna, 0);
+      const double *rows = seen_[of_receivers].row(antenna, 0), *own = nodes.polarizations[of_receivers].row(antenna, 0);
       antennas_[of_receivers].push_back({rows, own, exponent_of(*one.pattern), std::sqrt(one.pattern->peak_gain)});
     }
   }
 }
 
-bool DirectEvaluation::is_monostatic(const LevelView& level) const {
+bool DirectEvaluation::is_monostatic(const PosedNodes& nodes) const {
   if (antennas_[0].size() != antennas_[1].size()) return false;
-  const NodeRows &transmitters = level.poses.antennas[0], &receivers = level.poses.antennas[1];
+  const NodeRows &transmitters = nodes.antennas[0], &receivers = nodes.antennas[1];
   for (size_t i = 0; i < antennas_[0].size(); ++i) {
     if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak) return false;
     const double* rows = transmitters.row(i, 0);
     if (!std::equal(rows, rows + LegToMeasure::kNumImageRows * transmitters.stride(), receivers.row(i, 0))) return false;
-    const NodeRows* own = level.poses.polarizations;
+    const NodeRows* own = nodes.polarizations;
     const size_t count = ComponentsToFind::kNumPolarizationRows * own[0].stride();
     if (!std::equal(own[0].row(i, 0), own[0].row(i, 0) + count, own[1].row(i, 0))) return false;
   }
@@ -118,25 +118,25 @@ bool DirectEvaluation::is_monostatic(const LevelView& level) const {
 }
 
 // From what stands still they look as they are, whatever its scale does to the digits of its matrix.
-void DirectEvaluation::see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
-  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
+void DirectEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
+  const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (const bool of_receivers : {false, true}) {
     NodeRows& seen = seen_[of_receivers];
     for (size_t antenna = 0; antenna < antennas_[of_receivers].size(); ++antenna) {
-      const double* const in_world = level.poses.antennas[of_receivers].row(antenna, 0);
+      const double* const in_world = nodes.antennas[of_receivers].row(antenna, 0);
       double* const out = seen.row(antenna, 0);
       if (is_still) std::copy_n(in_world, LegToMeasure::kNumImageRows * seen.stride(), out);
-      else direct_kernels(seen.stride()).see(trace_, {level.poses.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
+      else direct_kernels(seen.stride()).see(trace_, {nodes.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
     }
   }
 }
 
 // The rotation of the mesh since the trace undone, as in `see_antennas`.
-void DirectEvaluation::see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level) {
-  const bool is_still = !localise.paths().scene->is_moving(mesh_id);
+void DirectEvaluation::see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
+  const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (size_t node = 0; node < axes_.num_nodes(); ++node) {
     Mat3 world_from_seen = Mat3::Identity();
-    if (!is_still) world_from_seen = level.instants[node].rotation(mesh_id) * localise.mesh_from_trace(mesh_id);
+    if (!is_still) world_from_seen = nodes.at(node).linear(mesh_id) * preparer.mesh_from_trace(mesh_id);
     for (int axis = 0; axis < 3; ++axis) {
       const size_t row = ComponentsToFind::kAxes + 3 * static_cast<size_t>(axis);
       store(world_from_seen.row(axis), axes_, 0, row, node);
@@ -145,17 +145,17 @@ void DirectEvaluation::see_axes(uint32_t mesh_id, const Localiser& localise, con
   pad(axes_, 0, ComponentsToFind::kNumAxisRows);
 }
 
-void DirectEvaluation::set_mesh(uint32_t mesh_id, const Localiser& localise) {
-  const Instant& trace = localise.trace_instant();
-  copy_matrix(trace.rotation(mesh_id), trace_.linear);
+void DirectEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& preparer) {
+  const PosedScene& trace = preparer.at_trace();
+  copy_matrix(trace.linear(mesh_id), trace_.linear);
   copy_matrix(trace.normal_matrix(mesh_id), trace_.normal);
-  copy_matrix(localise.mesh_from_trace(mesh_id), trace_.mesh_from_trace);
+  copy_matrix(preparer.mesh_from_trace(mesh_id), trace_.mesh_from_trace);
   std::copy_n(trace.translation(mesh_id).data(), 3, trace_.translation);
 }
 
 // Slots behind the last are filled with the last.
-void DirectEvaluation::set_slots(Points points, const Localiser& localise, const RadioConstants& radio) {
-  const Paths& paths = localise.paths();
+void DirectEvaluation::set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio) {
+  const Paths& paths = preparer.paths();
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
   work_.has_coherent = false;
   for (size_t slot = 0; slot < kSlots; ++slot) {

@@ -15,19 +15,19 @@ class DirectEvaluation {
     bool with_amplitudes = true;  // else they are of no interest
   };
   // Writes the direct paths of the plan, for antennas that can_evaluate_directly.
-  void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+  void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                   const ChannelSpan& channels, const Wanted& wanted);
   size_t num_bytes() const { return (out_.capacity() + legs_.capacity()) * sizeof(double); }  // of its memory, nearly all
 
  private:
   using Points = std::span<const ChainPlan::Direct* const>;
   void sort_by_mesh(const ChainPlan& plan);
-  void set_antennas(const LevelView& level);
-  bool is_monostatic(const LevelView& level) const;
-  void see_antennas(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
-  void see_axes(uint32_t mesh_id, const Localiser& localise, const LevelView& level);
-  void set_mesh(uint32_t mesh_id, const Localiser& localise);
-  void set_slots(Points points, const Localiser& localise, const RadioConstants& radio);
+  void set_antennas(const PosedNodes& nodes);
+  bool is_monostatic(const PosedNodes& nodes) const;
+  void see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
+  void see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
+  void set_mesh(uint32_t mesh_id, const PathPreparer& preparer);
+  void set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio);
   void set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;

@@ -23,22 +23,22 @@ void set_world(size_t num_nodes, NodeRows& world) {
 
 }  // namespace
 
-void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+void ChainEvaluation::operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                                  const ChannelSpan& channels) {
   if (plan.chains.empty() && plan.mirror_paths.empty()) return;
-  num_receivers_ = level.instants.front().receivers.size();
-  paths_ = &localise.paths();
-  tables_.find(plan, localise, level);
-  values_.resize(kTogether, PathToCombine::kNumRows, level.instants.size());
+  num_receivers_ = nodes.at(0).receivers.size();
+  paths_ = &preparer.paths();
+  tables_.find(plan, preparer, nodes);
+  values_.resize(kTogether, PathToCombine::kNumRows, nodes.size());
   kernels_ = &chain_kernels(values_.stride());
-  set_world(level.instants.size(), world_);
-  const TraceCells cells(plan, localise, tables_.points);
+  set_world(nodes.size(), world_);
+  const TraceCells cells(plan, preparer, tables_.points);
   const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
   for (CoherentPath& path : coherent_) path.filter = radio.filter();
   for (size_t first = 0; first < plan.chains.size(); first += kTogether) {
     const Chains chains(plan.chains.data() + first, std::min(kTogether, plan.chains.size() - first));
     for (size_t slot = 0; slot < chains.size(); ++slot) {
-      if (chains[slot].is_coherent) place_cell(plan, chains[slot], cells, level, slot);
+      if (chains[slot].is_coherent) place_cell(plan, chains[slot], cells, nodes, slot);
     }
     for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
       for (size_t slot = 0; slot < chains.size(); ++slot) {
@@ -51,7 +51,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const Localiser& localis
       put(chains, channels.nodes[channel]);
     }
   }
-  for (const ChainPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, level, channels, radio.mirror_scale());
+  for (const ChainPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
 }
 
 ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, size_t channel) const {
@@ -94,16 +94,16 @@ const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, siz
 }
 
 void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells,
-                                 const LevelView& level, size_t slot) {
+                                 const PosedNodes& nodes, size_t slot) {
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
   CoherentPath& path = coherent_[slot];
   path.point = tables_.points.rows.row(point, 0);
   stretching_[slot].clear();
   if (cells.may_stretch(mesh_id)) {
     path.mesh = world_.row(0, 0);
-    stretching_[slot] = cells.on_stretching(chain, level.instants);
+    stretching_[slot] = cells.on_stretching(chain, nodes);
   } else {
-    path.mesh = level.poses.meshes.row(mesh_id, 0);
+    path.mesh = nodes.meshes.row(mesh_id, 0);
     set_cell(cells.on_rigid(chain), path);
   }
 }
@@ -164,11 +164,11 @@ void ChainEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& en
 }
 
 // Each end sees the other over the mirrors: a leg from the transmitter's image to the receiver, and one back.
-void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels,
+void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                                        double scale) {
   constexpr size_t kSlot = 0;
   // Between upright antennas the components count, too: straight up or down these send nothing.
-  mirror_legs_.resize(2, level.instants.size(), tables_.has_phases, !paths_->jones.empty());
+  mirror_legs_.resize(2, nodes.size(), tables_.has_phases, !paths_->jones.empty());
   const MeasuredLeg start{mirror_legs_, 0}, back{mirror_legs_, 1};
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
   for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
@@ -179,7 +179,7 @@ void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const 
       const AntennaImages& images = tables_.images[other.of_receivers];
       // An antenna stands in the rows of an image where a point stands in its own.
       const double* point = images.rows.row(images.entry(other.image, other.antenna), 0);
-      tables_.measure(ends[end], point, level, end, mirror_legs_);
+      tables_.measure(ends[end], point, nodes, end, mirror_legs_);
     }
     kernels_->connect({start.rows(), back.rows(), nullptr, weight, values_.row(kSlot, 0)}, values_.stride());
     turn(path.path, start, back, kSlot);

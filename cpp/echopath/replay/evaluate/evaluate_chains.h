@@ -26,7 +26,7 @@ struct ChannelNodes {
   }
 };
 
-// Some channels [tx * num_rx + rx] for the antennas of the instants: one after the other from `first` on.
+// Some channels [tx * num_rx + rx] for the antennas of the nodes: one after the other from `first` on.
 struct ChannelSpan {
   size_t first;
   std::span<const ChannelNodes> nodes;
@@ -36,9 +36,9 @@ struct ChannelSpan {
 class ChainEvaluation {
  public:
   // Writes the chains and mirror paths of the plan.
-  void operator()(const ChainPlan& plan, const Localiser& localise, const LevelView& level, const RadioConstants& radio,
+  void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                   const ChannelSpan& channels);
-  // Of the plan and level of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
+  // Of the plan and the nodes of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
   // the first antenna there between the first and the last node. Its amplitude has a root on the way.
   void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
   size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
@@ -60,7 +60,7 @@ class ChainEvaluation {
   MeasuredLeg end_of(const ChainPlan::Chain& chain, size_t antenna) const;
   const double* inner_of(const ChainPlan::Chain& chain, size_t antenna) const;
   const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
-  void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const LevelView& level, size_t slot);
+  void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
   void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void reflect_from_stretching(size_t slot);
   void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
@@ -70,7 +70,7 @@ class ChainEvaluation {
   void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
-  void evaluate_mirrors(const ChainPlan::MirrorPath& path, const LevelView& level, const ChannelSpan& channels, double scale);
+  void evaluate_mirrors(const ChainPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels, double scale);
   bool turns(uint32_t leg) const;
 
   ChainTables tables_;

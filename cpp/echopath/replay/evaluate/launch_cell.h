@@ -17,7 +17,7 @@ struct LaunchCell {
   // it follows from the length.
   bool is_curved = false;
   double turn[3] = {0.0, 0.0, 0.0};
-  double facet_area = 0.0;          // m^2, Localiser::facet_area of its mesh
+  double facet_area = 0.0;          // m^2, PathPreparer::facet_area of its mesh
 };
 
 // The cell behind a curved specular bounce, from Paths::curved_cell.

@@ -2,14 +2,14 @@
 
 namespace echopath {
 
-void PathEvaluator::begin(const Localiser& localise, const Radar& radar, SpecularPoints specular) {
-  localise_ = &localise;
-  planner_.begin(localise.paths(), localise, specular, can_evaluate_directly(radar));
+void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular) {
+  preparer_ = &preparer;
+  planner_.begin(preparer.paths(), preparer, specular, can_evaluate_directly(radar));
 }
 
-void PathEvaluator::evaluate(const LevelView& level, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
-  chains_(*plan_, *localise_, level, radio, channels);
-  direct_(*plan_, *localise_, level, radio, channels, wanted);
+void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
+  chains_(*plan_, *preparer_, nodes, radio, channels);
+  direct_(*plan_, *preparer_, nodes, radio, channels, wanted);
   if (wanted.turned) chains_.mark_turned(*plan_, wanted.turned);
 }
 

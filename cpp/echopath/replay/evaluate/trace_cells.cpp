@@ -20,30 +20,30 @@ PlacedCell place(const LaunchCell& cell, const CellTangents& tangents, const Pos
 
 }  // namespace
 
-TraceCells::TraceCells(const ChainPlan& plan, const Localiser& localise, const PosedPoints& points)
-    : plan_(plan), localise_(localise), points_(points), origin_{Vec3::Zero()} {
+TraceCells::TraceCells(const ChainPlan& plan, const PathPreparer& preparer, const PosedPoints& points)
+    : plan_(plan), preparer_(preparer), points_(points), origin_{Vec3::Zero()} {
   std::deque<std::array<Vec3, 3>> normals;
   for (size_t image = 1; image < plan.images.size(); ++image) {
     PosedHit mirror;
-    pose_hit(localise.hit(plan.mirrors[plan.images[image].mirror], normals), localise.trace_instant(), false, mirror);
+    pose_hit(preparer.hit(plan.mirrors[plan.images[image].mirror], normals), preparer.at_trace(), false, mirror);
     origin_.push_back(Plane{mirror.point, mirror.normal}.image(origin_[plan.images[image].parent]));
   }
 }
 
 double TraceCells::density_of(const ChainPlan::Chain& chain) const {
-  const Paths& paths = localise_.paths();
+  const Paths& paths = preparer_.paths();
   return paths.frame.lattice_density(paths.stratum[static_cast<size_t>(chain.path)]);
 }
 
 const std::array<float, 7>* TraceCells::curved_cell_of(const ChainPlan::Chain& chain) const {
-  const Paths& paths = localise_.paths();
+  const Paths& paths = preparer_.paths();
   const auto p = static_cast<size_t>(chain.path);
   const bool is_flat = paths.curved_cell.empty() || paths.curved_cell[p] == std::array<float, 7>{};
   return is_flat ? nullptr : &paths.curved_cell[p];
 }
 
 bool TraceCells::has_cell(const ChainPlan::Chain& chain) const {
-  const Paths& paths = localise_.paths();
+  const Paths& paths = preparer_.paths();
   if (paths.stratum[static_cast<size_t>(chain.path)] >= paths.frame.strata.size()) return false;
   return curved_cell_of(chain) || paths.frame.footprint != Footprint::kNone;
 }
@@ -79,7 +79,7 @@ PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
   if (const std::array<float, 7>* curved = curved_cell_of(chain)) {
     cell = recorded_cell(*curved);
     PosedHit with_edges;
-    pose_facet(localise_.hit(hit_of(chain)), localise_.trace_instant(), with_edges);
+    pose_facet(preparer_.hit(hit_of(chain)), preparer_.at_trace(), with_edges);
     hit.edge_u = with_edges.edge_u;
     hit.edge_v = with_edges.edge_v;
     tangents = cell_tangents(cell, hit);
@@ -88,32 +88,32 @@ PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
     cell.is_known = tangents[0].allFinite() && tangents[1].allFinite();
   }
   const uint32_t mesh_id = hit_of(chain).mesh_id;
-  cell.facet_area = localise_.facet_area(mesh_id);
+  cell.facet_area = preparer_.facet_area(mesh_id);
   PlacedCell out = place(cell, tangents, hit, density);
-  for (Vec3& tangent : out.tangent) tangent = localise_.mesh_from_trace(mesh_id) * tangent;
+  for (Vec3& tangent : out.tangent) tangent = preparer_.mesh_from_trace(mesh_id) * tangent;
   return out;
 }
 
 // Tangents stretch with their triangle.
-std::vector<PlacedCell> TraceCells::on_stretching(const ChainPlan::Chain& chain, std::span<const Instant> instants) const {
-  std::vector<PlacedCell> out(instants.size());
+std::vector<PlacedCell> TraceCells::on_stretching(const ChainPlan::Chain& chain, const PosedNodes& nodes) const {
+  std::vector<PlacedCell> out(nodes.size());
   if (!has_cell(chain)) return out;
   const double density = density_of(chain);
   std::deque<std::array<Vec3, 3>> normals;
-  const LocalHit local = localise_.hit(hit_of(chain), normals);
+  const LocalHit local = preparer_.hit(hit_of(chain), normals);
   PosedHit hit;
   LaunchCell cell;
   if (const std::array<float, 7>* curved = curved_cell_of(chain)) {
     cell = recorded_cell(*curved);
   } else {
-    pose_hit(local, localise_.trace_instant(), true, hit);
+    pose_hit(local, preparer_.at_trace(), true, hit);
     const CellTangents tangents = flat_tangents(chain, hit, density);
     for (size_t a = 0; a < 2; ++a) cell.tangent[a] = edge_coordinates(hit.edge_u, hit.edge_v, hit.normal, tangents[a]);
     cell.is_known = cell.tangent[0].allFinite() && cell.tangent[1].allFinite();
   }
-  cell.facet_area = localise_.facet_area(local.mesh_id);
-  for (size_t node = 0; node < instants.size(); ++node) {
-    pose_hit(local, instants[node], true, hit);
+  cell.facet_area = preparer_.facet_area(local.mesh_id);
+  for (size_t node = 0; node < nodes.size(); ++node) {
+    pose_hit(local, nodes.at(node), true, hit);
     out[node] = place(cell, cell_tangents(cell, hit), hit, density);
   }
   return out;

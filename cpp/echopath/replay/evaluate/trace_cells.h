@@ -15,12 +15,12 @@ struct PlacedCell {
 class TraceCells {
  public:
   // All must outlive it.
-  TraceCells(const ChainPlan& plan, const Localiser& localise, const PosedPoints& points);
-  bool may_stretch(uint32_t mesh_id) const { return localise_.may_stretch(mesh_id); }
+  TraceCells(const ChainPlan& plan, const PathPreparer& preparer, const PosedPoints& points);
+  bool may_stretch(uint32_t mesh_id) const { return preparer_.may_stretch(mesh_id); }
   // On a mesh that moves rigidly: the same at all times.
   PlacedCell on_rigid(const ChainPlan::Chain& chain) const;
-  // On a mesh that may stretch, at each of the instants.
-  std::vector<PlacedCell> on_stretching(const ChainPlan::Chain& chain, std::span<const Instant> instants) const;
+  // On a mesh that may stretch, at each of the nodes.
+  std::vector<PlacedCell> on_stretching(const ChainPlan::Chain& chain, const PosedNodes& nodes) const;
 
  private:
   struct Arrival {
@@ -36,7 +36,7 @@ class TraceCells {
   const std::array<float, 7>* curved_cell_of(const ChainPlan::Chain& chain) const;
 
   const ChainPlan& plan_;
-  const Localiser& localise_;
+  const PathPreparer& preparer_;
   const PosedPoints& points_;
   std::vector<Vec3> origin_;  // [image] of the mean transmitter at the trace, m
 };

@@ -65,7 +65,7 @@ struct DirectToEvaluate {
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
   size_t num_nodes, stride;
   CellFilter filter;
-  double facet_area;          // m^2, of the mesh in hand (Localiser::facet_area)
+  double facet_area;          // m^2, of the mesh in hand (PathPreparer::facet_area)
   const double* axes;         // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
   double* legs;               // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
   double* out;                // [channel, node, kNumRows, slot]

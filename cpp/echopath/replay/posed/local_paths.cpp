@@ -21,39 +21,39 @@ uint64_t sliding_hits(const LocalPath& path) {
 
 }  // namespace
 
-Localiser::Localiser(const Paths& paths, std::vector<SurfacePatch> patches)
+PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches)
     : paths_(paths), patches_(std::move(patches)),
-      trace_instant_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
+      at_trace_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
     mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
     mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
     mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
-    mesh_from_trace_.push_back(trace_instant_.rotation(id).inverse());
+    mesh_from_trace_.push_back(at_trace_.linear(id).inverse());
     smooth_normals_.push_back(normals_at_trace(id));
     facet_area_.push_back(facet_area_at_trace(id));
   }
 }
 
-double Localiser::facet_area_at_trace(uint32_t mesh_id) const {
+double PathPreparer::facet_area_at_trace(uint32_t mesh_id) const {
   const Node& node = paths_.scene->node_of(mesh_id);
   if (node.smooth || (node.mesh->is_flat() && !node.deformation)) return kNoFacets;
   const double at_rest = node.mesh->area() / static_cast<double>(node.mesh->triangles().size());
-  return at_rest * std::pow(std::abs(trace_instant_.rotation(mesh_id).determinant()), 2.0 / 3.0);
+  return at_rest * std::pow(std::abs(at_trace_.linear(mesh_id).determinant()), 2.0 / 3.0);
 }
 
-std::vector<Vec3> Localiser::normals_at_trace(uint32_t mesh_id) const {
+std::vector<Vec3> PathPreparer::normals_at_trace(uint32_t mesh_id) const {
   const Node& node = paths_.scene->node_of(mesh_id);
   if (!node.smooth) return {};
   if (!node.deformation) return vertex_normals(*node.mesh);
   std::vector<Vec3> normals;
   for (const uint32_t place : patches_[mesh_id].place) {
     const bool is_posed = place != SurfacePatch::kAbsent;
-    normals.push_back(is_posed ? trace_instant_.deformed_normals(mesh_id)[place] : Vec3(Vec3::Zero()));
+    normals.push_back(is_posed ? at_trace_.deformed_normals(mesh_id)[place] : Vec3(Vec3::Zero()));
   }
   return normals;
 }
 
-LocalHit Localiser::hit(const Hit& hit) const {
+LocalHit PathPreparer::hit(const Hit& hit) const {
   const Node& node = paths_.scene->node_of(hit.mesh_id);
   const Triangle& triangle = node.mesh->triangles()[hit.triangle_id];
   LocalHit local;
@@ -64,7 +64,7 @@ LocalHit Localiser::hit(const Hit& hit) const {
   local.u = hit.u;
   local.v = hit.v;
   const std::vector<Vec3>& vertices =
-      local.deformed ? trace_instant_.deformed_vertices(hit.mesh_id) : node.mesh->vertices();
+      local.deformed ? at_trace_.local_vertices(hit.mesh_id) : node.mesh->vertices();
   local.corner = vertices[local.triangle[0]];
   local.edge_u = vertices[local.triangle[1]] - local.corner;
   local.edge_v = vertices[local.triangle[2]] - local.corner;
@@ -72,20 +72,20 @@ LocalHit Localiser::hit(const Hit& hit) const {
   local.normal = local.edge_u.cross(local.edge_v).normalized();
   if (mesh_may_stretch_[hit.mesh_id]) {
     PosedHit posed;
-    pose_facet(local, trace_instant_, posed);
+    pose_facet(local, at_trace_, posed);
     local.trace_area = posed.edge_u.cross(posed.edge_v).norm();
   }
   return local;
 }
 
-LocalHit Localiser::hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const {
+LocalHit PathPreparer::hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const {
   LocalHit local = this->hit(hit);
   std::array<Vec3, 3> of_corners;
   if (find_smooth_normals(local, of_corners)) local.normals = &normals.emplace_back(of_corners);
   return local;
 }
 
-bool Localiser::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
+bool PathPreparer::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
   const std::vector<Vec3>& of_vertices = smooth_normals_[hit.mesh_id];
   if (of_vertices.empty()) return false;
   const Triangle& triangle = paths_.scene->node_of(hit.mesh_id).mesh->triangles()[hit.triangle_id];
@@ -93,7 +93,7 @@ bool Localiser::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& ou
   return is_smooth_facet(hit.normal, out);
 }
 
-LocalPaths Localiser::operator()(std::span<const int64_t> indices) const {
+LocalPaths PathPreparer::operator()(std::span<const int64_t> indices) const {
   LocalPaths block;
   size_t num_hits = 0;
   for (const int64_t index : indices) num_hits += paths_.num_bounces[static_cast<size_t>(index)];
@@ -106,7 +106,7 @@ LocalPaths Localiser::operator()(std::span<const int64_t> indices) const {
   return block;
 }
 
-LocalPath Localiser::local_path(int64_t index, LocalPaths& block) const {
+LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   const auto p = static_cast<size_t>(index);
   LocalPath path;
   path.hits = block.hits.data() + block.hits.size();

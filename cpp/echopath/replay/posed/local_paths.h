@@ -20,11 +20,11 @@ struct LocalPaths {
 };
 
 // Thread-safe.
-class Localiser {
+class PathPreparer {
  public:
   // The record must outlive it. patches: of its deforming meshes (hit_patches.h), those of the instants that its paths are
   // posed by.
-  Localiser(const Paths& paths, std::vector<SurfacePatch> patches);
+  PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches);
   // The paths of these indices, hits in the order in which they were traced.
   LocalPaths operator()(std::span<const int64_t> indices) const;
   // A hit in the frame of its mesh, without its normals.
@@ -44,7 +44,7 @@ class Localiser {
   // trace, and then zero outside of its patch.
   const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }
-  const Instant& trace_instant() const { return trace_instant_; }
+  const PosedScene& at_trace() const { return at_trace_; }
   // Undoes the matrix of the instant of the trace.
   const Mat3& mesh_from_trace(uint32_t mesh_id) const { return mesh_from_trace_[mesh_id]; }
   const Paths& paths() const { return paths_; }
@@ -57,7 +57,7 @@ class Localiser {
   const Paths& paths_;
   std::vector<SurfacePatch> patches_;                         // by mesh ID
   std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;    // by mesh ID
-  Instant trace_instant_;
+  PosedScene at_trace_;
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;
   std::vector<double> facet_area_;  // by mesh ID

@@ -19,13 +19,13 @@ Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last)
 }
 
 // Moves a posed hit from its facet to the curved surface.
-void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
+void curve(const LocalHit& hit, const PosedScene& scene, PosedHit& posed) {
   const Vec3 corner = posed.point - hit.u * posed.edge_u - hit.v * posed.edge_v;
-  const std::vector<Vec3>& deformed = instant.deformed_normals(hit.mesh_id);
+  const std::vector<Vec3>& deformed = scene.deformed_normals(hit.mesh_id);
   std::array<Vec3, 3> normals;
   for (size_t i = 0; i < 3; ++i) {
     const Vec3& local = hit.deformed ? deformed[hit.triangle[i]] : (*hit.normals)[i];
-    normals[i] = (instant.normal_matrix(hit.mesh_id) * local).normalized();
+    normals[i] = (scene.normal_matrix(hit.mesh_id) * local).normalized();
   }
   const SmoothPoint smooth = smooth_point({corner, corner + posed.edge_u, corner + posed.edge_v}, normals, hit.u, hit.v);
   posed.point = smooth.position;
@@ -33,47 +33,47 @@ void curve(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
   posed.curvature = smooth.curvature;
 }
 
-void pose_triangle(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
-  pose_facet(hit, instant, posed);
+void pose_triangle(const LocalHit& hit, const PosedScene& scene, PosedHit& posed) {
+  pose_facet(hit, scene, posed);
   posed.is_smooth = hit.normals != nullptr;
   posed.facet = posed.point;
-  if (posed.is_smooth) curve(hit, instant, posed);
+  if (posed.is_smooth) curve(hit, scene, posed);
 }
 
 // Most hits are on rigid facets and need no more than this.
-void pose_point(const LocalHit& hit, const Instant& instant, PosedHit& posed) {
-  posed.point = instant.rotation(hit.mesh_id) * hit.point + instant.translation(hit.mesh_id);
-  posed.normal = (instant.normal_matrix(hit.mesh_id) * hit.normal).normalized();
+void pose_point(const LocalHit& hit, const PosedScene& scene, PosedHit& posed) {
+  posed.point = scene.linear(hit.mesh_id) * hit.point + scene.translation(hit.mesh_id);
+  posed.normal = (scene.normal_matrix(hit.mesh_id) * hit.normal).normalized();
   posed.is_smooth = false;
   posed.area_ratio = 1.0;
 }
 
 }  // namespace
 
-void pose_facet(const LocalHit& hit, const Instant& instant, PosedHit& out) {
-  const Mat3& rotation = instant.rotation(hit.mesh_id);
+void pose_facet(const LocalHit& hit, const PosedScene& scene, PosedHit& out) {
+  const Mat3& rotation = scene.linear(hit.mesh_id);
   Vec3 corner = hit.corner, edge_u = hit.edge_u, edge_v = hit.edge_v;
   if (hit.deformed) {
-    const std::vector<Vec3>& vertices = instant.deformed_vertices(hit.mesh_id);
+    const std::vector<Vec3>& vertices = scene.local_vertices(hit.mesh_id);
     corner = vertices[hit.triangle[0]];
     edge_u = vertices[hit.triangle[1]] - corner;
     edge_v = vertices[hit.triangle[2]] - corner;
   }
   out.edge_u = rotation * edge_u;
   out.edge_v = rotation * edge_v;
-  out.point = rotation * corner + instant.translation(hit.mesh_id) + hit.u * out.edge_u + hit.v * out.edge_v;
+  out.point = rotation * corner + scene.translation(hit.mesh_id) + hit.u * out.edge_u + hit.v * out.edge_v;
   const Vec3 across = out.edge_u.cross(out.edge_v);
   out.normal = across.normalized();
   out.area_ratio = hit.trace_area > 0 ? across.norm() / hit.trace_area : 1.0;
 }
 
-void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out) {
-  if (with_triangle || hit.deformed || hit.normals || hit.trace_area > 0) pose_triangle(hit, instant, out);
-  else pose_point(hit, instant, out);
+void pose_hit(const LocalHit& hit, const PosedScene& scene, bool with_triangle, PosedHit& out) {
+  if (with_triangle || hit.deformed || hit.normals || hit.trace_area > 0) pose_triangle(hit, scene, out);
+  else pose_point(hit, scene, out);
 }
 
-void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out) {
-  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], instant, false, out[k]);
+void pose_hits(const LocalPath& path, const PosedScene& scene, PosedHit* out) {
+  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], scene, false, out[k]);
 }
 
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to) {

@@ -2,14 +2,15 @@
 // Hits of paths, posed: points, normals and the legs between them, with images for flagged mirrors.
 #include <vector>
 
-#include "echopath/replay/posed/instant.h"
+#include "echopath/posed/posed_scene.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
 // A hit in the frame of its mesh.
 struct LocalHit {
   uint32_t mesh_id = 0, triangle_id = 0;
-  bool deformed = false;        // the corners are those of the instant, `triangle` counts places in the mesh's patch
+  bool deformed = false;        // the corners are those of the scene, `triangle` counts places in the mesh's patch
   Triangle triangle{};
   double u = 0.0, v = 0.0;
   Vec3 corner, edge_u, edge_v;  // of its triangle at rest, of deformed ones as at the trace
@@ -46,10 +47,10 @@ struct LocalPath {
 };
 
 // Point, edges and normal of a hit on its flat triangle.
-void pose_facet(const LocalHit& hit, const Instant& instant, PosedHit& out);
+void pose_facet(const LocalHit& hit, const PosedScene& scene, PosedHit& out);
 // with_triangle: the edges are needed too.
-void pose_hit(const LocalHit& hit, const Instant& instant, bool with_triangle, PosedHit& out);
-void pose_hits(const LocalPath& path, const Instant& instant, PosedHit* out);
+void pose_hit(const LocalHit& hit, const PosedScene& scene, bool with_triangle, PosedHit& out);
+void pose_hits(const LocalPath& path, const PosedScene& scene, PosedHit* out);
 
 // From one point to another over the mirrors `first` to `last` - 1 of a path, unfolded.
 struct UnfoldedLeg {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFalseHitAbsolute = 1e-3;  // m
 constexpr double kFalseHitRelative = 1e-5;
 constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
-// Of PosedMeshes::mean_cover, with a tree per mesh: loose heaps of triangles over each other would cost queries 1.5 times the time
+// Of EmbreeMeshes::mean_cover, with a tree per mesh: loose heaps of triangles over each other would cost queries 1.5 times the time
 // at 2, 4 times at 10; separate objects cost -15 to +10 %.
 constexpr double kMostCover = 1.5;
 
@@ -31,7 +31,7 @@ void meet_again(const Vec3& from, const Vec3& direction, const std::array<Vec3, 
   hit.v = static_cast<float>(v / sum);
 }
 
-Eigen::AlignedBox3d world_box(const Scene& scene, const Pose& pose) {
+Eigen::AlignedBox3d world_box(const Scene& scene, const PosedScene& pose) {
   Eigen::AlignedBox3d box;
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
     for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
@@ -41,12 +41,12 @@ Eigen::AlignedBox3d world_box(const Scene& scene, const Pose& pose) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job)
+EmbreeScene::EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
     : device_(std::make_unique<Device>()) {
   update(scene, pose, origin, job);
 }
 
-void EmbreeScene::update(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job) {
+void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) {
   std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
   const bool tree_per_mesh = scene.is_anything_moving() && meshes_.mean_cover() <= kMostCover;
   if (!device_->scene || device_->has_mesh.size() != meshes_.size() || tree_per_mesh != device_->has_tree_per_mesh) {
@@ -69,7 +69,7 @@ void EmbreeScene::update(const Scene& scene, const Pose& pose, const Vec3& origi
 
 EmbreeScene::~EmbreeScene() = default;
 
-Vec3 EmbreeScene::origin_near(const Scene& scene, const Pose& pose, const Vec3& near, bool near_moves) {
+Vec3 EmbreeScene::origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves) {
   const Eigen::AlignedBox3d box = world_box(scene, pose);
   if (box.isEmpty()) return near;
   const Vec3 nearest = near.cwiseMax(box.min()).cwiseMin(box.max());

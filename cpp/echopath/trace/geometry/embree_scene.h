@@ -10,7 +10,7 @@
 #include "echopath/scene/scene.h"
 #include "echopath/trace/geometry/packet.h"
 #include "echopath/trace/record/paths.h"
-#include "echopath/trace/geometry/posed_meshes.h"
+#include "echopath/trace/geometry/embree_meshes.h"
 #include "echopath/trace/geometry/query_log.h"
 #include "echopath/trace/sbr/ray_formula.h"
 
@@ -40,14 +40,14 @@ struct Segment {
 class EmbreeScene {
  public:
   // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build.
-  EmbreeScene(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
+  EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   // As if made anew, with the same answers, but builds only what differs from before: where something moves and meshes overlap
   // little, trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the constructor; then it
   // may only be destroyed.
-  void update(const Scene& scene, const Pose& pose, const Vec3& origin, Job* job = nullptr);
+  void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
   // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
@@ -90,7 +90,7 @@ class EmbreeScene {
   // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
   // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
   // it is the same for most times, and what is at rest need not be built again.
-  static Vec3 origin_near(const Scene& scene, const Pose& pose, const Vec3& near, bool near_moves = false);
+  static Vec3 origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves = false);
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
     const Surface& surface = surfaces_[mesh_id];
@@ -125,7 +125,7 @@ class EmbreeScene {
   QueryLog* log_ = nullptr;
   double lift_ = 0.0;   // m
   double reach_ = 0.0;  // m: rays from farther away are moved up to there
-  PosedMeshes meshes_;
+  EmbreeMeshes meshes_;
   std::vector<Surface> surfaces_;  // by mesh ID
 };
 

@@ -4,7 +4,7 @@
 
 namespace echopath {
 
-GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const Pose& pose, const Vec3& origin, Job* job)
+GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
   if (geometry_) geometry_->update(scene, pose, origin, job);
   else geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);

@@ -14,7 +14,7 @@ class GeometryLoan {
  public:
   // Of the scene at the pose: the kept one brought up to it, or a new one where `kept` is null or lends its own to another.
   // Raises as EmbreeScene; nothing is kept then.
-  GeometryLoan(KeptGeometry* kept, const Scene& scene, const Pose& pose, const Vec3& origin, Job* job);
+  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
   ~GeometryLoan();
   GeometryLoan(const GeometryLoan&) = delete;
   GeometryLoan& operator=(const GeometryLoan&) = delete;

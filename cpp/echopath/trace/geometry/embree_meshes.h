@@ -1,18 +1,18 @@
 #pragma once
-// The meshes of a scene at one time, in coordinates relative to an origin. Brought up to another time, it poses anew only what
-// has changed.
+// What Embree reads: the vertices of all meshes at one time, relative to an origin. Brought up to another time, they are computed
+// anew only where they differ.
 #include <memory>
 #include <vector>
 
-#include "echopath/scene/scene.h"
+#include "echopath/posed/posed_scene.h"
 
 namespace echopath {
 
-class PosedMeshes {
+class EmbreeMeshes {
  public:
   // Returns the IDs of the meshes that differ from those of the last call, ascending: all where the origin (m, world) or the
   // number of meshes is another, none where nothing moves.
-  std::vector<uint32_t> update(const Scene& scene, const Pose& pose, const Vec3& origin);
+  std::vector<uint32_t> update(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
   uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }
   const std::vector<Triangle>& triangles(uint32_t mesh_id) const { return meshes_[mesh_id].source.mesh->triangles(); }
@@ -29,7 +29,8 @@ class PosedMeshes {
     MeshPtr mesh;
     std::shared_ptr<const Deformation> deformation;
     double time = 0.0;  // s, where it deforms
-    Transform world_from_mesh = Transform::Identity();
+    Mat3 linear = Mat3::Identity();  // of the pose
+    Vec3 translation = Vec3::Zero();  // m, world
     bool smooth = false;
     bool is_same(const Source& other) const;
   };
@@ -38,8 +39,8 @@ class PosedMeshes {
     std::vector<Vec3> vertices, normals;
     Eigen::AlignedBox3d box;
   };
-  static Source source_of(const Scene& scene, const Pose& pose, uint32_t mesh_id);
-  void place(Posed& posed, const Pose& pose, uint32_t mesh_id) const;
+  static Source source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id);
+  void place(Posed& posed, const PosedScene& pose, uint32_t mesh_id) const;
 
   Vec3 origin_ = Vec3::Zero();
   std::vector<Posed> meshes_;  // by mesh ID

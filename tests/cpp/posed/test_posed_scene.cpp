@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/scene/scene.h"
+#include "echopath/posed/posed_scene.h"
 
 namespace echopath {
 namespace {
@@ -69,44 +69,46 @@ Scene driving_scene() {
   return scene;
 }
 
-TEST(Pose, NestedMotionsAreTheProductOfTheirMatrices) {
+TEST(PosedScene, NestedMotionsAreTheProductOfTheirMatrices) {
   const Scene scene = driving_scene();
   for (const double t : {-1.0, 0.0, 0.3, 2.0}) {
     const Matrix4 car = shift(10, 2, 0) * shift(3 * t, t, 0) * turn_z(0.2 * t) * turn_z(0.5);
     const Matrix4 turret = shift(0, 0, 1.5) * turn_z(2 * t) * turn_x(0.1);
     const Matrix4 dish = shift(0.4, 0, 0.2) * turn_x(-0.7);
-    const Pose pose(scene, t);
+    const PosedScene pose(scene, t);
     EXPECT_EQ(pose.time(), t);
-    EXPECT_LT((pose.world_from_mesh(0).matrix() - car * turret * dish).norm(), kRounding);
+    const Matrix4 expected = car * turret * dish;
+    EXPECT_LT((pose.linear(0) - expected.topLeftCorner<3, 3>()).norm(), kRounding);
+    EXPECT_LT((pose.world_translation(0) - expected.topRightCorner<3, 1>()).norm(), kRounding);
   }
 }
 
-TEST(Pose, AMotionTurnsANodeAboutItsOwnOriginInTheAxesOfItsParent) {
+TEST(PosedScene, AMotionTurnsANodeAboutItsOwnOriginInTheAxesOfItsParent) {
   Scene scene;
   Node fan = node("fan", -1, shift(5, 0, 0) * turn_x(kPi / 2),
                   std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, kPi / 2)));
   fan.mesh = triangle(), fan.material = metal();
   scene.add(fan);
-  const std::vector<Vec3> vertices = Pose(scene, 1.0).world_vertices(0);
+  const std::vector<Vec3> vertices = PosedScene(scene, 1.0).world_vertices(0);
   EXPECT_LT((vertices[0] - Vec3(5, 0, 0)).norm(), kRounding);
   EXPECT_LT((vertices[1] - Vec3(5, 1, 0)).norm(), kRounding);  // x axis of the fan, a quarter turn about the parent's z
   EXPECT_LT((vertices[2] - Vec3(5, 0, 1)).norm(), kRounding);  // y axis, tilted up by the placement
 }
 
-TEST(Pose, TrianglesVerticesAndSingleMeshesAgree) {
+TEST(PosedScene, TrianglesVerticesAndSingleMeshesAgree) {
   const Scene scene = driving_scene();
-  const Pose pose(scene, 0.7);
+  const PosedScene pose(scene, 0.7);
   const std::vector<Vec3> all = pose.world_vertices(0);
   const std::array<Vec3, 3> corners = pose.world_triangle(0, 0);
   const std::vector<Vec3> alone = world_vertices(scene, 0, 0.7);
   for (size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(corners[k], all[k]);
     EXPECT_LT((alone[k] - all[k]).norm(), kRounding);
-    EXPECT_LT((pose.world_from_mesh(0) * pose.local_vertices(0)[k] - all[k]).norm(), kRounding);
+    EXPECT_LT((pose.linear(0) * pose.local_vertices(0)[k] + pose.translation(0) - all[k]).norm(), kRounding);
   }
 }
 
-TEST(Pose, ASequenceDeformsInTheFrameOfItsNode) {
+TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
   Scene scene;
   Node flag = node("flag", -1, shift(0, 0, 4) * turn_z(kPi / 2), std::make_shared<const LinearMotion>(Vec3(1, 0, 0)));
   flag.mesh = triangle(), flag.material = metal();
@@ -116,12 +118,12 @@ TEST(Pose, ASequenceDeformsInTheFrameOfItsNode) {
       std::vector<double>{0, 2}, std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
   scene.add(flag);
   const Vec3 expected = (shift(1, 0, 0) * shift(0, 0, 4) * turn_z(kPi / 2) * Eigen::Vector4d(1, 0, 1, 1)).head<3>();
-  EXPECT_LT((Pose(scene, 1.0).world_vertices(0)[1] - expected).norm(), kRounding);
+  EXPECT_LT((PosedScene(scene, 1.0).world_vertices(0)[1] - expected).norm(), kRounding);
   EXPECT_LT((world_vertices(scene, 0, 1.0)[1] - expected).norm(), kRounding);
-  EXPECT_THROW(Pose(scene, 2.5), std::invalid_argument);
+  EXPECT_THROW(PosedScene(scene, 2.5), std::invalid_argument);
 }
 
-TEST(Pose, AnEmptySceneHasOne) { EXPECT_EQ(Pose(Scene(), 3.0).time(), 3.0); }
+TEST(PosedScene, AnEmptySceneHasOne) { EXPECT_EQ(PosedScene(Scene(), 3.0).time(), 3.0); }
 
 }  // namespace
 }  // namespace echopath

@@ -1,24 +1,31 @@
 #pragma once
-// Meshes and antennas at all nodes of a level, in rows that loops along nodes read.
-#include <span>
+// The scene and the radar at all nodes of a time grid: one PosedScene for each node, and the same in rows that loops along the
+// nodes read.
+#include <memory>
+#include <vector>
 
+#include "echopath/posed/posed_scene.h"
 #include "echopath/replay/kernels/chain_kernels.h"
-#include "echopath/replay/posed/instant.h"
 #include "echopath/replay/posed/node_rows.h"
 
 namespace echopath {
 
-struct NodePoses {
-  NodeRows meshes;        // of mesh IDs, PointToPose::MeshRow
-  NodeRows antennas[2];   // of transmitters, of receivers; LegToMeasure::ImageRow
+using PosedScenes = std::vector<PosedScene>;  // by node
+
+struct PosedNodes {
+  PosedNodes() = default;
+  // The scenes are shared with whoever else looks at single nodes; there is at least one.
+  explicit PosedNodes(std::shared_ptr<const PosedScenes> at_nodes);
+
+  std::shared_ptr<const PosedScenes> scenes;
+  NodeRows meshes;            // of mesh IDs, PointToPose::MeshRow
+  NodeRows antennas[2];       // of transmitters, of receivers; LegToMeasure::ImageRow
   NodeRows polarizations[2];  // likewise, in the world: ComponentsToFind::PolarizationRow
   bool is_upright = true;     // every polarisation points along z at every node: across any direction it is the vertical one
-};
-NodePoses node_poses(std::span<const Instant> instants, uint32_t num_meshes);
 
-inline const std::vector<PosedAntenna>& antennas_of(const Instant& instant, bool of_receivers) {
-  return of_receivers ? instant.receivers : instant.transmitters;
-}
+  size_t size() const { return scenes ? scenes->size() : 0; }
+  const PosedScene& at(size_t node) const { return (*scenes)[node]; }
+};
 
 inline void store(const Vec3& vector, NodeRows& rows, size_t entry, size_t first_row, size_t node) {
   for (int axis = 0; axis < 3; ++axis) rows.row(entry, first_row + static_cast<size_t>(axis))[node] = vector[axis];

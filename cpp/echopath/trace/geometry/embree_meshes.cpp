@@ -1,21 +1,22 @@
-#include "echopath/trace/geometry/posed_meshes.h"
+#include "echopath/trace/geometry/embree_meshes.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace echopath {
 
-bool PosedMeshes::Source::is_same(const Source& other) const {
+bool EmbreeMeshes::Source::is_same(const Source& other) const {
   return mesh == other.mesh && deformation == other.deformation && time == other.time && smooth == other.smooth &&
-         world_from_mesh.matrix() == other.world_from_mesh.matrix();
+         linear == other.linear && translation == other.translation;
 }
 
-PosedMeshes::Source PosedMeshes::source_of(const Scene& scene, const Pose& pose, uint32_t mesh_id) {
+EmbreeMeshes::Source EmbreeMeshes::source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) {
   const Node& node = scene.node_of(mesh_id);
-  return {node.mesh, node.deformation, node.deformation ? pose.time() : 0.0, pose.world_from_mesh(mesh_id), node.smooth};
+  const double time = node.deformation ? pose.time() : 0.0;
+  return {node.mesh, node.deformation, time, pose.linear(mesh_id), pose.world_translation(mesh_id), node.smooth};
 }
 
-void PosedMeshes::place(Posed& posed, const Pose& pose, uint32_t mesh_id) const {
+void EmbreeMeshes::place(Posed& posed, const PosedScene& pose, uint32_t mesh_id) const {
   posed.vertices = pose.world_vertices(mesh_id);
   posed.box.setEmpty();
   for (Vec3& vertex : posed.vertices) {
@@ -25,7 +26,7 @@ void PosedMeshes::place(Posed& posed, const Pose& pose, uint32_t mesh_id) const 
   posed.normals = posed.source.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>();
 }
 
-std::vector<uint32_t> PosedMeshes::update(const Scene& scene, const Pose& pose, const Vec3& origin) {
+std::vector<uint32_t> EmbreeMeshes::update(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
   if (origin != origin_ || meshes_.size() != scene.meshes().size()) meshes_.clear();
   origin_ = origin;
   meshes_.resize(scene.meshes().size());
@@ -41,7 +42,7 @@ std::vector<uint32_t> PosedMeshes::update(const Scene& scene, const Pose& pose, 
   return changed;
 }
 
-double PosedMeshes::largest_coordinate() const {
+double EmbreeMeshes::largest_coordinate() const {
   double largest = 0.0;
   for (const Posed& posed : meshes_) {
     if (posed.box.isEmpty()) continue;
@@ -50,7 +51,7 @@ double PosedMeshes::largest_coordinate() const {
   return largest;
 }
 
-double PosedMeshes::mean_cover() const {
+double EmbreeMeshes::mean_cover() const {
   Eigen::AlignedBox3d whole;
   double volumes = 0.0;
   for (const Posed& posed : meshes_) {

@@ -1,0 +1,23 @@
+#pragma once
+// A value that is made when it is first asked for.
+#include <mutex>
+#include <optional>
+
+namespace echopath {
+
+// Thread-safe: whoever asks first makes the value, all others wait for it. Where making it throws, the next one makes it.
+template <class T>
+class Lazy {
+ public:
+  template <class Make>
+  const T& get(Make make) const {
+    std::call_once(once_, [&] { value_.emplace(make()); });
+    return *value_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::optional<T> value_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,16 @@
+#include "echopath/posed/posed_antenna.h"
+
+namespace echopath {
+
+std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin) {
+  std::vector<PosedAntenna> out;
+  for (const Antenna& antenna : antennas) {
+    const Mat3 world_from_antenna = world_from_radar.linear() * antenna.orientation.toRotationMatrix();
+    out.push_back({world_from_radar * antenna.position - origin,
+                   (world_from_radar.linear() * (antenna.orientation * Vec3::UnitX())).normalized(),
+                   world_from_antenna * antenna.polarization, &antenna.pattern, world_from_antenna.transpose()});
+  }
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,26 @@
+#pragma once
+// Antennas of a radar at one time, in the axes of the world.
+#include <vector>
+
+#include "echopath/radar/radar.h"
+
+namespace echopath {
+
+struct PosedAntenna {
+  Vec3 position;                     // m, relative to the origin of the scene that it was posed with
+  Vec3 boresight;                    // unit
+  Vec3 polarization;                 // unit
+  const AntennaPattern* pattern = nullptr;
+  Mat3 antenna_from_world = Mat3::Identity();
+
+  // Returns the gain toward a unit direction that leads away from the antenna, in world axes.
+  AntennaGain toward(const Vec3& direction) const {
+    if (pattern->kind != AntennaPattern::Kind::kTable) return {pattern->gain(boresight.dot(direction)), 0.0};
+    return pattern->toward(antenna_from_world * direction);
+  }
+};
+
+// Poses antennas, which must outlive the result; positions count from `origin` (m, world).
+std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin);
+
+}  // namespace echopath

@@ -1,0 +1,77 @@
+#include "echopath/posed/posed_scene.h"
+
+#include "echopath/scene/smooth.h"
+
+namespace echopath {
+namespace {
+
+// Unit vertex normals [V] of a deforming mesh, in its frame.
+std::vector<Vec3> whole_deformed_normals(const Node& node, double time) {
+  const SurfacePatch patch = make_patch(*node.mesh, std::vector<uint8_t>(node.mesh->triangles().size(), 1), true);
+  std::vector<Vec3> vertices, normals;
+  node.deformation->at(time, patch.original_vertex, vertices);
+  const std::vector<Vec3> of_patch = vertex_normals(vertices, patch.triangles);
+  for (const uint32_t place : patch.place) normals.push_back(of_patch[place]);
+  return normals;
+}
+
+}  // namespace
+
+PosedScene::PosedScene(const Scene& scene, double time) : scene_(&scene), time_(time) {
+  place_meshes();
+  for (uint32_t id = 0; id < num_meshes(); ++id) {
+    const Node& node = scene.node_of(id);
+    if (node.deformation) node.deformation->at(time, node.mesh->original_vertex(), deformed_[id]);
+  }
+}
+
+PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
+                       double time)
+    : scene_(&scene), time_(time), origin_(origin) {
+  const Transform world_from_radar = radar.world_from_radar(time);
+  transmitters = posed_antennas(radar.transmitters, world_from_radar, origin);
+  receivers = posed_antennas(radar.receivers, world_from_radar, origin);
+  place_meshes();
+  for (uint32_t id = 0; id < num_meshes(); ++id) {
+    const Node& node = scene.node_of(id);
+    if (!node.deformation) continue;
+    node.deformation->at(time, patches[id].original_vertex, deformed_[id]);
+    if (node.smooth) deformed_normals_[id] = vertex_normals(deformed_[id], patches[id].triangles);
+  }
+}
+
+void PosedScene::place_meshes() {
+  for (const Transform& world_from_mesh : world_from_meshes(*scene_, time_)) {
+    linear_.push_back(world_from_mesh.linear());
+    normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));
+    world_translation_.push_back(world_from_mesh.translation());
+  }
+  deformed_.resize(linear_.size());
+  deformed_normals_.resize(linear_.size());
+}
+
+const std::vector<Vec3>& PosedScene::local_vertices(uint32_t mesh_id) const {
+  const Node& node = scene_->node_of(mesh_id);
+  return node.deformation ? deformed_[mesh_id] : node.mesh->vertices();
+}
+
+std::vector<Vec3> PosedScene::world_vertices(uint32_t mesh_id) const {
+  std::vector<Vec3> vertices = local_vertices(mesh_id);
+  for (Vec3& vertex : vertices) vertex = in_world(mesh_id, vertex);
+  return vertices;
+}
+
+std::vector<Vec3> PosedScene::world_normals(uint32_t mesh_id) const {
+  const Node& node = scene_->node_of(mesh_id);
+  std::vector<Vec3> normals = node.deformation ? whole_deformed_normals(node, time_) : vertex_normals(*node.mesh);
+  for (Vec3& normal : normals) normal = (normal_matrix_[mesh_id] * normal).stableNormalized();
+  return normals;
+}
+
+std::array<Vec3, 3> PosedScene::world_triangle(uint32_t mesh_id, uint32_t triangle_id) const {
+  const std::vector<Vec3>& vertices = local_vertices(mesh_id);
+  const Triangle& triangle = scene_->node_of(mesh_id).mesh->triangles()[triangle_id];
+  return {in_world(mesh_id, vertices[triangle[0]]), in_world(mesh_id, vertices[triangle[1]]), in_world(mesh_id, vertices[triangle[2]])};
+}
+
+}  // namespace echopath

@@ -1,0 +1,61 @@
+#pragma once
+// The one answer to "where is everything at time t": the meshes of a scene and the antennas of a radar.
+#include <array>
+#include <vector>
+
+#include "echopath/posed/posed_antenna.h"
+#include "echopath/scene/scene.h"
+#include "echopath/scene/surface_patch.h"
+
+namespace echopath {
+
+// Nodes move by the rule of `moved` (motion/motion.h). A rigid mesh costs one transform, a deforming one the vertices that are
+// posed. The scene must outlive it.
+class PosedScene {
+ public:
+  // Poses all vertices and no antennas; the origin is that of the world.
+  PosedScene(const Scene& scene, double time);
+  // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is relative
+  // counts from `origin` (m, world). Raises invalid_argument when a motion is not defined at `time` (s).
+  PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin, double time);
+
+  std::vector<PosedAntenna> transmitters, receivers;  // relative to the origin
+  const std::vector<PosedAntenna>& antennas(bool of_receivers) const { return of_receivers ? receivers : transmitters; }
+
+  double time() const { return time_; }
+  uint32_t num_meshes() const { return static_cast<uint32_t>(linear_.size()); }
+  // A point x of the mesh's frame lies at linear * x + translation, relative to the origin.
+  const Mat3& linear(uint32_t mesh_id) const { return linear_[mesh_id]; }
+  Vec3 translation(uint32_t mesh_id) const { return world_translation_[mesh_id] - origin_; }
+  const Vec3& world_translation(uint32_t mesh_id) const { return world_translation_[mesh_id]; }
+  // Takes normals of the mesh's frame to the world; they are not normalised there. It is made of cofactors, so that normals
+  // follow the winding of the triangles through reflections too.
+  const Mat3& normal_matrix(uint32_t mesh_id) const { return normal_matrix_[mesh_id]; }
+
+  // Vertices in the mesh's frame, m. Where the mesh deforms and patches were given, these are the vertices of its patch.
+  const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
+  // Unit normals at the vertices of the patch of a smooth deforming mesh, in its frame; right at the corners of the patch's own
+  // triangles. Empty for other meshes.
+  const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[mesh_id]; }
+
+  // All vertices of a mesh in the world, m; not for meshes of which only a patch is posed.
+  std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
+  // Unit normals [V] in world axes of the curved surface that the mesh stands for, and its part is of (scene/smooth.h).
+  std::vector<Vec3> world_normals(uint32_t mesh_id) const;
+  // Corners of a triangle in the world, m; not for meshes of which only a patch is posed.
+  std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
+
+ private:
+  void place_meshes();
+  Vec3 in_world(uint32_t mesh_id, const Vec3& local) const { return linear_[mesh_id] * local + world_translation_[mesh_id]; }
+
+  const Scene* scene_;
+  double time_;
+  Vec3 origin_ = Vec3::Zero();
+  // By mesh ID.
+  std::vector<Mat3> linear_, normal_matrix_;
+  std::vector<Vec3> world_translation_;
+  std::vector<std::vector<Vec3>> deformed_, deformed_normals_;  // empty where rigid
+};
+
+}  // namespace echopath

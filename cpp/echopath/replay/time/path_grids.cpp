@@ -1,0 +1,90 @@
+#include "echopath/replay/time/path_grids.h"
+
+#include <algorithm>
+
+#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/turn_rates.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kNodesBeyondTurns = 2;  // of a polynomial that follows a turning: where its coefficients begin to fall
+// Amplitudes in this many chirps cost as much as one more node, with what a polynomial costs that is tried in vain.
+constexpr int64_t kWorthOfANode = 5;
+
+}  // namespace
+
+PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed, double wavenumber,
+                     double phase_tolerance)
+    : paths_(paths), grids_(grids), posed_(posed), wavenumber_(wavenumber), phase_tolerance_(phase_tolerance),
+      num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.motion != nullptr) {
+  const TimeSpan frame{grids.start_time(), grids.start_time() + radar.frame_duration()};
+  const double of_radar = turn_rate(radar, frame);
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    const bool moves = paths.scene->is_moving(id) || radar.motion;
+    int& needed = of_mesh_.emplace_back(moves ? 1 : 0);
+    const double rate = moves ? turn_rate(*paths.scene, id, frame) + of_radar : 0.0;
+    while (moves && needed <= grids.num_polynomials() && !(is_quick_enough(needed, rate) && follows(needed, id))) ++needed;
+  }
+}
+
+// The Chebyshev coefficients of a turning by w over a piece of length T are Bessel functions of w T / 2, which fall but for orders
+// above that: with fewer nodes it may look as if it stood still, as four of them find what turns four times.
+bool PathGrids::is_quick_enough(int polynomial, double turn_rate) const {
+  const PolynomialGrid& grid = grids_.polynomial(polynomial);
+  return grid.order >= kNodesBeyondTurns + 0.5 * turn_rate * grid.longest_piece;
+}
+
+// The distances of vertices all over a mesh from the first transmitter tell how many nodes its motion needs: the length of a path is
+// made of such distances.
+bool PathGrids::follows(int polynomial, uint32_t mesh_id) const {
+  const auto& [nodes, scenes] = posed_.trial(polynomial);
+  const size_t num_vertices = scenes->front().local_vertices(mesh_id).size();
+  const size_t step = std::max<size_t>(1, num_vertices / 16);
+  std::vector<double> distance;
+  for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
+    distance.clear();
+    for (const PosedScene& scene : *scenes) {
+      const Vec3 point = scene.linear(mesh_id) * scene.local_vertices(mesh_id)[vertex] + scene.translation(mesh_id);
+      distance.push_back(2.0 * (point - scene.transmitters.front().position).norm());
+    }
+    if (wavenumber_ * tail_of(nodes, distance) > phase_tolerance_) return false;
+  }
+  return true;
+}
+
+int PathGrids::first(int64_t path) const {
+  uint8_t grid;
+  first(path, {&grid, 1});
+  return grid;
+}
+
+void PathGrids::first(int64_t begin, std::span<uint8_t> first) const {
+  const int* const of_mesh = of_mesh_.data();
+  const int least = radar_moves_ ? 1 : 0;
+  for (size_t i = 0; i < first.size(); ++i) {
+    const int64_t path = begin + static_cast<int64_t>(i);
+    const Hit* hits = paths_.hits_of(path);
+    const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
+    int needed = least;
+    // Most paths have one to four hits, and a branch on the number would be mispredicted: the last of them stands for those beyond.
+    for (int k = 0; k < num_hits; k += 4) {
+      for (int step = 0; step < 4; ++step) needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
+    }
+    first[i] = static_cast<uint8_t>(needed);
+  }
+}
+
+// Amplitudes that a polynomial follows late or never are left to the chirps: those of surfaces that turn, and those that an order
+// named by their own tail did not follow.
+NextGrid PathGrids::next(const UnfollowedPath& path, int polynomial) const {
+  const double needed_order = std::max(path.order_for_length, path.is_turned ? 0.0 : path.order_for_amplitude);
+  const int next = grids_.next_polynomial(polynomial, needed_order);
+  const bool was_tried_before = first(path.path) < polynomial;
+  const bool is_costly = next > grids_.num_polynomials() || grids_.polynomial(next).num_nodes * kWorthOfANode >= num_chirps_;
+  const bool is_late = path.is_turned || was_tried_before || is_costly;
+  if (path.order_for_length == 0.0 && is_late) return {polynomial, true};
+  return {next, false};
+}
+
+}  // namespace echopath

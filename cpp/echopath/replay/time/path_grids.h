@@ -1,0 +1,51 @@
+#pragma once
+// Which time grid follows a path: where to begin, from the motion of the meshes that it touches, and how to go on.
+#include <span>
+#include <vector>
+
+#include "echopath/replay/time/posed_grids.h"
+
+namespace echopath {
+
+// A path that a polynomial did not follow.
+struct UnfollowedPath {
+  int64_t path;
+  // Orders at which polynomials would follow it; 0 where this one does.
+  double order_for_length, order_for_amplitude;
+  bool is_turned;  // the surface at an end of it shows its other side within the frame
+};
+
+// How to go on with such a path.
+struct NextGrid {
+  int polynomial;
+  bool by_chirp;  // lengths follow that polynomial, amplitudes are evaluated in every chirp
+};
+
+// Grids are those of TimeGrids: 0 for what does not move, then the polynomials, and num_polynomials() + 1 for what none of them
+// follows. All is found at once, when it is made; it is read by many threads.
+class PathGrids {
+ public:
+  // The record, the radar and the grids must outlive it. wavenumber: rad/m. Raises what motions raise.
+  PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed, double wavenumber,
+            double phase_tolerance);
+
+  int num_grids() const { return grids_.num_polynomials() + 2; }
+  int first(int64_t path) const;
+  // Those of paths [begin, begin + first.size()).
+  void first(int64_t begin, std::span<uint8_t> first) const;
+  NextGrid next(const UnfollowedPath& path, int polynomial) const;
+
+ private:
+  bool is_quick_enough(int polynomial, double turn_rate) const;
+  bool follows(int polynomial, uint32_t mesh_id) const;
+
+  const Paths& paths_;
+  const TimeGrids& grids_;
+  const PosedGrids& posed_;
+  double wavenumber_, phase_tolerance_;
+  int num_chirps_;
+  bool radar_moves_;
+  std::vector<int> of_mesh_;  // by mesh ID: the first that follows its motion
+};
+
+}  // namespace echopath

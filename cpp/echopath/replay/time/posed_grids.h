@@ -1,0 +1,55 @@
+#pragma once
+// Time grids with the scene as it is posed at their nodes.
+#include <memory>
+#include <vector>
+
+#include "echopath/base/lazy.h"
+#include "echopath/replay/posed/local_paths.h"
+#include "echopath/replay/posed/posed_nodes.h"
+#include "echopath/replay/time/time_grids.h"
+
+namespace echopath {
+
+struct PosedGrid {
+  FrameNodes nodes;
+  PosedNodes posed;
+  int transmitter = -1;  // the only one that is posed; -1: all are
+};
+
+// A polynomial as its order is tried on meshes: the nodes without their sampling, which is what costs.
+struct TrialGrid {
+  FrameNodes nodes;
+  std::shared_ptr<const PosedScenes> scenes;
+};
+
+// Poses what is asked for. Polynomials and the time of the trace are posed once and kept; grids of chirps, which are large, belong
+// to whoever asks for them. Thread-safe.
+class PosedGrids {
+ public:
+  // All must outlive it.
+  PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer);
+
+  const PosedGrid& at_trace() const;
+  const PosedGrid& polynomial(int index) const;
+  const TrialGrid& trial(int polynomial) const;
+  // Raises what PosedScene does.
+  PosedGrid pose(const TimeGrid& grid) const;
+  PosedNodes pose(double time) const;  // s
+
+ private:
+  struct Polynomial {
+    Lazy<TrialGrid> trial;
+    Lazy<PosedGrid> posed;
+  };
+  std::shared_ptr<const PosedScenes> scenes_at(const std::vector<double>& times, int transmitter) const;
+  const Polynomial& kept(int polynomial) const { return polynomials_[static_cast<size_t>(polynomial) - 1]; }
+
+  const TimeGrids& grids_;
+  const Paths& paths_;
+  const Radar& radar_;
+  const PathPreparer& preparer_;
+  Lazy<PosedGrid> at_trace_;
+  std::vector<Polynomial> polynomials_;
+};
+
+}  // namespace echopath

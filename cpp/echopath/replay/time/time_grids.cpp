@@ -1,0 +1,60 @@
+#include "echopath/replay/time/time_grids.h"
+
+#include <algorithm>
+#include <array>
+
+#include "echopath/replay/time/motion_knots.h"
+
+namespace echopath {
+namespace {
+
+constexpr std::array<int, 13> kOrders = {4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, TimeGrids::kHighestOrder};
+
+// Between neighbours of start, cuts (s, ascending) and end.
+double longest_piece(double start, double end, const std::vector<double>& cuts) {
+  double longest = 0.0, from = start;
+  for (const double cut : cuts) {
+    longest = std::max(longest, cut - from);
+    from = cut;
+  }
+  return std::max(longest, end - from);
+}
+
+}  // namespace
+
+// A chirp needs the value and the slope in its middle, or its delay throughout.
+TimeGrids::TimeGrids(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
+    : start_time_(paths.frame.start_time), trace_time_(paths.frame.trace_time), num_chirps_(radar.waveform.num_chirps),
+      sample_order_(settings.per_sample ? 5 : 3),
+      derivatives_(settings.per_sample ? ChirpDerivatives::kThird : ChirpDerivatives::kFirst) {
+  if (!settings.exact) find_polynomials(*paths.scene, radar);
+}
+
+void TimeGrids::find_polynomials(const Scene& scene, const Radar& radar) {
+  const double start = start_time_, end = start + radar.frame_duration();
+  std::vector<double> breakpoints = motion_breakpoints(scene, radar), knots = motion_knots(scene, radar);
+  for (std::vector<double>* cuts : {&breakpoints, &knots}) {
+    std::erase_if(*cuts, [&](double time) { return time <= start || time >= end; });
+  }
+  const int64_t smooth = num_pieces(radar, start, breakpoints), analytic = num_pieces(radar, start, knots);
+  const double longest_smooth = longest_piece(start, end, breakpoints), longest_analytic = longest_piece(start, end, knots);
+  const auto add = [&](const PolynomialGrid& grid) {
+    if (grid.num_nodes <= num_sample_nodes()) polynomials_.push_back(grid);
+  };
+  for (const int order : kOrders) {
+    add({order, PolynomialGrid::Pieces::kSmooth, breakpoints, order * smooth, longest_smooth});
+    if (analytic > smooth) add({order, PolynomialGrid::Pieces::kAnalytic, knots, order * analytic, longest_analytic});
+  }
+  std::stable_sort(polynomials_.begin(), polynomials_.end(),
+                   [](const PolynomialGrid& a, const PolynomialGrid& b) { return a.num_nodes < b.num_nodes; });
+}
+
+int TimeGrids::next_polynomial(int index, double needed_order) const {
+  const PolynomialGrid::Pieces pieces = polynomial(index).pieces;
+  for (int next = index + 1; next <= num_polynomials(); ++next) {
+    if (polynomial(next).order >= needed_order || polynomial(next).pieces != pieces) return next;
+  }
+  return num_polynomials() + 1;
+}
+
+}  // namespace echopath

@@ -1,0 +1,40 @@
+#pragma once
+// The time grids that a frame offers: polynomials by their number of nodes, and what stands at every chirp.
+#include <vector>
+
+#include "echopath/replay/replay_settings.h"
+#include "echopath/replay/time/time_grid.h"
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+
+// Polynomials are counted from 1 in ascending order of their nodes: 0 stands for what does not move. There is none that has more
+// nodes than evaluation in every chirp, and none at all where that was asked for. The grids do not change once they are made.
+class TimeGrids {
+ public:
+  static constexpr int kHighestOrder = 32;
+  TimeGrids(const Paths& paths, const Radar& radar, const ReplaySettings& settings);
+
+  StillGrid still() const { return {trace_time_}; }
+  int num_polynomials() const { return static_cast<int>(polynomials_.size()); }
+  const PolynomialGrid& polynomial(int index) const { return polynomials_[static_cast<size_t>(index) - 1]; }
+  ChirpGrid chirps(int transmitter) const { return {transmitter}; }
+  SampleGrid samples(int transmitter) const { return {transmitter, sample_order_}; }
+  int64_t num_sample_nodes() const { return int64_t{num_chirps_} * sample_order_; }  // of the samples of one transmitter
+
+  double start_time() const { return start_time_; }  // s, of the frame
+  ChirpDerivatives derivatives() const { return derivatives_; }
+  // Returns the first polynomial after `index` that has at least this order, or that lies between knots where `index` does not;
+  // num_polynomials() + 1 where there is none.
+  int next_polynomial(int index, double needed_order) const;
+
+ private:
+  void find_polynomials(const Scene& scene, const Radar& radar);
+
+  double start_time_, trace_time_;  // s
+  int num_chirps_, sample_order_;
+  ChirpDerivatives derivatives_;
+  std::vector<PolynomialGrid> polynomials_;
+};
+
+}  // namespace echopath

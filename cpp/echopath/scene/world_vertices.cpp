@@ -1,0 +1,47 @@
+#include <utility>
+
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+namespace {
+
+// Parents come before their children, so one pass in order is enough.
+std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
+  std::vector<Transform> result;
+  result.reserve(scene.nodes().size());
+  for (const Node& node : scene.nodes()) {
+    const Transform local = moved(node.placement, node.motion.get(), time);
+    result.push_back(node.parent < 0 ? local : result[static_cast<size_t>(node.parent)] * local);
+  }
+  return result;
+}
+
+std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> points) {
+  for (Vec3& point : points) point = transform * point;
+  return points;
+}
+
+}  // namespace
+
+std::vector<Transform> world_from_meshes(const Scene& scene, double time) {
+  const std::vector<Transform> world_from_node = world_from_nodes(scene, time);
+  std::vector<Transform> result;
+  result.reserve(scene.meshes().size());
+  for (const SceneMesh& mesh : scene.meshes()) result.push_back(world_from_node[static_cast<size_t>(mesh.node)]);
+  return result;
+}
+
+std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time) {
+  const Node& node = scene.node_of(mesh_id);
+  Transform world_from_mesh = Transform::Identity();
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
+    const Node& above = scene.nodes()[static_cast<size_t>(i)];
+    world_from_mesh = moved(above.placement, above.motion.get(), time) * world_from_mesh;
+  }
+  if (!node.deformation) return transformed(world_from_mesh, node.mesh->vertices());
+  std::vector<Vec3> vertices;
+  node.deformation->at(time, node.mesh->original_vertex(), vertices);
+  return transformed(world_from_mesh, std::move(vertices));
+}
+
+}  // namespace echopath

@@ -15,14 +15,14 @@ namespace {
 
 constexpr int64_t kTrianglesPerBlock = 2048;
 
-// The triangles of a scene at one time, in m about one of their corners, mesh after mesh.
+// Holds the triangles of a scene at one time, mesh after mesh, in m relative to one of their corners.
 struct PosedTriangles {
   std::vector<Corners> corners;
   std::vector<uint32_t> mesh_id;
-  std::vector<size_t> begin = {0};  // of each mesh, and their end
+  std::vector<size_t> begin = {0};  // place of the first triangle of each mesh, and their number
 };
 
-// One triangle laid on another; both by place, the first of the mesh with the lower ID.
+// Describes one triangle laid on another. Both are given by place, and the first belongs to the mesh with the lower ID.
 struct Laid {
   uint32_t first_mesh_id, second_mesh_id, first, second;
   FacetOverlap overlap;
@@ -43,7 +43,7 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
     if (id == 0) origin = vertices.front();
     for (const Triangle& t : scene.node_of(id).mesh->triangles()) {
       const Corners corners = {vertices[t[0]] - origin, vertices[t[1]] - origin, vertices[t[2]] - origin};
-      if (area_of(corners) == 0.0) continue;  // a deformation may take it
+      if (area_of(corners) == 0.0) continue;  // a deformation may flatten a triangle
       posed.corners.push_back(corners);
       posed.mesh_id.push_back(id);
     }
@@ -52,7 +52,7 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   return posed;
 }
 
-// For each mesh the first whose triangles are the same to the bit, in the same order: itself where there is no other.
+// Returns for each mesh the first mesh whose triangles are the same to the bit and in the same order, which may be itself.
 std::vector<uint32_t> find_originals(const PosedTriangles& posed) {
   std::unordered_map<std::string_view, uint32_t> first_of;
   std::vector<uint32_t> original;
@@ -64,7 +64,7 @@ std::vector<uint32_t> find_originals(const PosedTriangles& posed) {
   return original;
 }
 
-// What is left when copies are taken out.
+// Returns the triangles of the meshes that are not copies.
 PosedTriangles without_copies(const PosedTriangles& posed, const std::vector<uint32_t>& original) {
   PosedTriangles kept;
   for (size_t k = 0; k < posed.corners.size(); ++k) {
@@ -80,7 +80,7 @@ class OverlapSearch {
   OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
       : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
 
-  // All pairs, in an order that threads do not change.
+  // Returns all pairs, in an order that does not depend on the threads.
   std::vector<Laid> run(Job* job) const {
     const auto count = static_cast<int64_t>(tree_.size());
     std::vector<std::vector<Laid>> found(static_cast<size_t>((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock));
@@ -118,7 +118,7 @@ class OverlapSearch {
   double max_distance_;
 };
 
-// How many triangles the pairs speak of.
+// Counts the different triangles in a range of pairs.
 int64_t count_triangles(const Laid* begin, const Laid* end) {
   std::vector<uint32_t> places;
   for (const Laid* pair = begin; pair != end; ++pair) {
@@ -138,7 +138,7 @@ CoplanarOverlap summed(const Laid* begin, const Laid* end) {
   return sum;
 }
 
-// Sums over the pairs of each two meshes.
+// Sums the overlaps of all pairs of triangles, for each pair of meshes.
 std::vector<CoplanarOverlap> summed_by_meshes(std::vector<Laid> pairs) {
   std::stable_sort(pairs.begin(), pairs.end(), [](const Laid& a, const Laid& b) { return a.meshes() < b.meshes(); });
   std::vector<CoplanarOverlap> overlaps;
@@ -150,7 +150,8 @@ std::vector<CoplanarOverlap> summed_by_meshes(std::vector<Laid> pairs) {
   return overlaps;
 }
 
-// A mesh and its copy: each triangle lies on its own copy, and two that lie on each other lie on each other's copies.
+// Describes a mesh and its copy: each triangle lies on its own copy, and two that lie on each other lie on each other's
+// copies.
 CoplanarOverlap of_copy(const PosedTriangles& posed, uint32_t original, uint32_t copy, const CoplanarOverlap* on_itself) {
   const size_t begin = posed.begin[copy], end = posed.begin[copy + 1];
   CoplanarOverlap found{original, copy, 2 * static_cast<int64_t>(end - begin)};

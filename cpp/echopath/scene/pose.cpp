@@ -23,7 +23,7 @@ std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> poin
   return points;
 }
 
-// Unit vertex normals [V] in the mesh's frame.
+// Returns unit vertex normals [V] in the mesh's frame.
 std::vector<Vec3> deformed_normals(const Node& node, double time) {
   const SurfacePatch patch = make_patch(*node.mesh, std::vector<uint8_t>(node.mesh->triangles().size(), 1), true);
   std::vector<Vec3> vertices, normals;

@@ -11,11 +11,11 @@ namespace echopath {
 namespace {
 
 constexpr double kOutside = 0.02;  // of an edge
-constexpr double kLost = 1.0;      // of an edge: from there no step comes back
+constexpr double kLost = 1.0;      // of an edge: iterations that stray this far are given up
 constexpr int kSteps = 8;
 constexpr double kArrived = 1e-4;  // of an edge
 
-// The length of the way about a point of the surface, in its tangent plane.
+// Holds the gradient and the Hessian of the path length in the tangent plane at a point of the surface.
 struct Way {
   std::array<Vec3, 2> tangents;
   Eigen::Vector2d slope;
@@ -50,7 +50,7 @@ SmoothPoint point_at(const ReflectingTriangle& triangle, double u, double v) {
   return {a + u * (b - a) + v * (c - a), triangle.facet_normal, Mat3::Zero(), 1.0};
 }
 
-// By the image of one point: a plane has one such point.
+// Returns (u, v) of the one reflection point of a plane, by the image of one end.
 Eigen::Vector2d on_plane(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
   const auto& [a, b, c] = triangle.corners;
   const double here = triangle.facet_normal.dot(first - a), there = triangle.facet_normal.dot(second - a);
@@ -59,7 +59,7 @@ Eigen::Vector2d on_plane(const ReflectingTriangle& triangle, const Vec3& first, 
   return edge_coordinates(b - a, c - a, triangle.facet_normal, point - a);
 }
 
-// By Newton's method from the middle.
+// Returns (u, v) of a reflection point of a curved triangle, found by Newton's method from its centre.
 std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
   const auto& [a, b, c] = triangle.corners;
   Eigen::Vector2d place(1.0 / 3.0, 1.0 / 3.0);
@@ -95,8 +95,8 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   const Vec3 to_first = first - triangle.centre, to_second = second - triangle.centre;
   const double side = triangle.facet_normal.dot(to_first);
   if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
-  // Where the way is stationary, the sum of both unit vectors lies along the normal. Over the triangle they turn by no more than
-  // its radius over their distances, and the normal by `turn`.
+  // Where the path length is stationary, the sum of the unit vectors to both ends lies along the normal. Over the triangle
+  // these vectors turn by no more than its radius over their distances, and the normal turns by no more than `turn`.
   const double near = to_first.norm() - triangle.radius, far = to_second.norm() - triangle.radius;
   if (near > 0.0 && far > 0.0) {
     const double reach = 2.0 * triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);

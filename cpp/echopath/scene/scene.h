@@ -1,5 +1,5 @@
 #pragma once
-// A tree of named nodes with placements, motions and meshes; and its pose at a time.
+// A scene is a tree of named nodes with placements, motions and meshes; a pose is its geometry at one time.
 #include <array>
 #include <memory>
 #include <optional>
@@ -28,7 +28,7 @@ struct Node {
   bool smooth = false;                              // the mesh stands for a curved surface (scene/smooth.h)
 };
 
-// What a mesh ID names.
+// Tells where a mesh ID stands in the tree.
 struct SceneMesh {
   int node = 0;      // index into Scene::nodes()
   int object = 0;    // index of the child of the root above it (or itself)
@@ -49,10 +49,11 @@ class Scene {
   std::vector<std::string> mesh_names() const;                       // by mesh ID
   std::optional<int> find(std::string_view full_name) const;         // node index
 
-  // Mesh moves at some time (its node or an ancestor has a motion, or it deforms).
+  // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
   bool is_moving(uint32_t mesh_id) const;
   bool is_anything_moving() const;
-  // Its triangles may change their areas: it deforms, or moves below or with a placement that scales unevenly.
+  // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
+  // scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;
   std::vector<double> breakpoints() const;  // of all motions, ascending
   // Raises invalid_argument naming the node when a motion is not defined on all of [begin, end] (s).
@@ -64,30 +65,31 @@ class Scene {
   std::unordered_map<std::string, int> index_;  // full name -> node
 };
 
-// A glob takes a mesh if it takes its full name or that of an ancestor; '*' crosses '/', '?' is one character.
+// Returns whether a glob matches the full name of a mesh or of one of its ancestors; '*' crosses '/', '?' is one character.
 bool glob_takes(std::string_view glob, std::string_view full_name);
-// Every full name of a mesh and of the groups above it, sorted: what a glob may be meant to take.
+// Returns the full names of all meshes and of the groups above them, sorted; these are the names that a glob can match.
 std::vector<std::string> names_with_ancestors(const std::vector<std::string>& mesh_names);
 
-// Vertices [V] of one mesh in world coordinates; poses nothing else.
+// Returns the vertices [V] of one mesh in world coordinates and poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
 
-// Of each mesh, by mesh ID.
+// Returns world_from_mesh of each mesh, by mesh ID.
 std::vector<Transform> world_from_meshes(const Scene& scene, double time);
 
-// World geometry of a scene at one time. Cheap for what is rigid: one transform per mesh. The scene must outlive it.
-// Motions move nodes by the rule of `moved` (motion/motion.h).
+// Holds the world geometry of a scene at one time; a rigid mesh costs only one transform. The scene must outlive it. Motions
+// move nodes by the rule of `moved` (motion/motion.h).
 class Pose {
  public:
   Pose(const Scene& scene, double time);
   double time() const { return time_; }
   const Transform& world_from_mesh(uint32_t mesh_id) const { return world_from_mesh_[mesh_id]; }
-  // In the mesh's own frame.
+  // Returns the vertices [V] in the mesh's own frame, m.
   const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
-  // Unit normals [V] in world axes of the curved surface that the mesh stands for, and its part is of (scene/smooth.h).
+  // Returns the unit normals [V] in world axes of the curved surface that the mesh stands for; a part takes those of its
+  // whole (scene/smooth.h).
   std::vector<Vec3> world_normals(uint32_t mesh_id) const;
-  // Corners of a triangle in world coordinates.
+  // Returns the corners of a triangle in world coordinates, m.
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
 
  private:

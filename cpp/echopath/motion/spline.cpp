@@ -51,7 +51,7 @@ void TurningPoints::add(double time, const Vec3& position) {
   is_empty_ = false;
 }
 
-// The extreme goes along with what travels on; a way back of more than rounding makes it a turning point.
+// The extreme moves on while the position does; a displacement back by more than rounding makes it a turning point.
 void TurningPoints::add(double time, double value, Axis& axis) {
   const double way = value - axis.extreme;
   if (axis.direction != 0 && way * axis.direction >= 0.0) {

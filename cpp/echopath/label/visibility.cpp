@@ -21,7 +21,7 @@ constexpr int64_t kDirectionsPerTask = 1024;
 // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
 constexpr double kSameDepth = 1e-5;
 
-// The antennas of one end of the radar.
+// Holds the antennas of one end of the radar.
 struct End {
   Vec3 position;  // mean, relative to the origin
   const std::vector<Antenna>& antennas;
@@ -38,7 +38,7 @@ struct End {
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3 normal = (b - a).cross(c - a).normalized();
-  bool is_above = true;  // all three edges leave the foot of the perpendicular on the inner side
+  bool is_above = true;  // the foot of the perpendicular lies on the inner side of all three edges
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
     is_above = is_above && normal.cross(to - from).dot(point - from) >= 0.0;
@@ -47,7 +47,7 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
   return is_above ? std::abs(normal.dot(point - a)) : least;
 }
 
-// The nodes of a scene in their places, with some of the meshes.
+// Returns the scene with the nodes in their places but only the meshes of one object.
 Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
   std::vector<bool> is_kept(scene.nodes().size());
   for (const uint32_t mesh : surfaces.meshes_of(object)) is_kept[static_cast<size_t>(scene.meshes()[mesh].node)] = true;
@@ -65,7 +65,7 @@ Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
   return part;
 }
 
-// What some directions found.
+// Counts what some directions found.
 struct Tally {
   int64_t num_found = 0, num_visible = 0;
   std::vector<int64_t> hidden_by;  // by surface
@@ -80,7 +80,7 @@ struct Tally {
   }
 };
 
-// One object in its scene.
+// Finds what hides one object in its scene.
 class Onlooker {
  public:
   Onlooker(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
@@ -100,7 +100,7 @@ class Onlooker {
   }
 
  private:
-  // All directions for what surrounds the antenna.
+  // Returns the cone of directions that holds the object, or all directions where it surrounds the antenna.
   Stratum stratum_from(const Vec3& apex) const {
     std::vector<Vec3> vertices;
     for (const uint32_t id : mesh_ids_) vertices.insert(vertices.end(), whole_.vertices(id).begin(), whole_.vertices(id).end());

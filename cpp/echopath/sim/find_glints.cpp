@@ -16,10 +16,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kBeside = 1.5;     // cells: how far from a point of reflection a path may be that tells that it is seen
-constexpr double kSamePoint = 0.5;  // Fresnel zones, the narrower way
+constexpr double kBeside = 1.5;     // cells: a point of reflection is seen where a path lies this near
+constexpr double kSamePoint = 0.5;  // of the narrower Fresnel zone
 
-// Ways of the rays of one stratum over the same flagged mirrors to the same mesh and on.
+// Identifies paths of one stratum that run over the same flagged mirrors to the same mesh and on.
 struct WayKind {
   uint16_t stratum;
   uint32_t mesh;
@@ -30,14 +30,14 @@ struct WayKind {
   }
 };
 
-// Its paths, as the launch sees them.
+// Holds a path of a kind and its direction of launch.
 struct SeenPath {
   Vec3 direction;
   int64_t path;
   double amplitude = 0.0;
 };
 
-// With one antenna each, where rays start and end.
+// Returns the radar with one antenna each, where rays start and end.
 Radar radar_of_rays(const Radar& radar) {
   Radar one = radar;
   for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
@@ -88,7 +88,7 @@ class GlintSearch {
     }
   }
 
-  // None of paths that are diffuse, reversed or over other mirrors than flagged ones.
+  // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
   std::optional<WayKind> kind_of(int64_t path) const {
     const auto p = static_cast<size_t>(path);
     if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
@@ -112,7 +112,7 @@ class GlintSearch {
     return (a + first.u * (b - a) + first.v * (c - a) - paths_.frame.transmitter).normalized();
   }
 
-  // Without a filter: what one launch cell sends.
+  // Computes amplitudes without a filter, which are what one launch cell sends.
   void weigh_paths(Job* job) {
     std::vector<int64_t> indices;
     for (const auto& [kind, seen] : kinds_) {
@@ -140,10 +140,10 @@ class GlintSearch {
     return out;
   }
 
-  // Of its largest triangle: the others lie in it to a tenth of a millimetre.
+  // Returns the plane of the largest triangle; the others lie in it to a tenth of a millimetre.
   Plane plane_of(uint32_t mirror) const {
     const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
-    Plane largest{Vec3::Zero(), Vec3::Zero()};  // its normal as long as twice the area
+    Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
     for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
       const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
       const Vec3 normal = (b - a).cross(c - a);
@@ -190,7 +190,7 @@ class GlintSearch {
 
   double cell_of(size_t stratum) const { return 1.0 / std::sqrt(paths_.frame.lattice_density(stratum)); }  // rad
 
-  // The path beside a glint, if there is one.
+  // Returns the path beside a glint, or null.
   static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
     const auto found = std::min_element(seen.begin(), seen.end(),

@@ -24,17 +24,17 @@ constexpr int kSamples = ProbedChirp::kSamples;
 constexpr int kMostChirps = 2;  // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
-constexpr size_t kSumsOfShare = 4;             // side by side: one would wait for itself
+constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
 
-// Sums of kSamples samples; also offsets of these in samples from the first of the chirp.
+// Holds sums of kSamples samples, or the offsets of these in samples from the first of the chirp.
 using SampleSums = std::array<double, kSamples>;
 
-// Samples of each row, real parts first.
+// Holds the samples of a row, real parts first.
 struct SampleRow {
   SampleSums re{}, im{};
 };
 
-// Carriers side by side.
+// At most so many carriers are computed side by side.
 constexpr int kMostLanes = 8;
 template <int kLanes>
 struct VectorOfLanes;
@@ -49,8 +49,8 @@ struct VectorOfLanes<8> {
   typedef double Unaligned __attribute__((vector_size(64), aligned(8), may_alias));
 };
 
-// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced: one phasor for the
-// first and one for the step between them.
+// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
+// phasor for the first and one for the step between them.
 template <int kLanes>
 ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
                                double* sums) {
@@ -80,19 +80,19 @@ ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const 
   }
 }
 
-// A number below `count` for the k-th draw of a pass that begins with a chirp of the frame.
+// Returns a number below `count` that depends on nothing but the arguments.
 int draw(uint64_t seed, int64_t index, int dimension, int count) {
   const double unit = uniform2(seed, Stream::kProbe, static_cast<uint64_t>(index), static_cast<uint32_t>(dimension))[0];
   return std::min(count - 1, static_cast<int>(unit * count));
 }
 
-// Of some echoes, in kLanes sums side by side.
+// Holds sums over some echoes, in kLanes sums side by side.
 struct PowerSums {
   static constexpr int kLanes = 8;
   double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
 };
 
-// Powers of echoes, as many as fill whole lanes: those behind the last are 0.
+// Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
 ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
   for (int p = 0; p < count; ++p) power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
   PowerSums sums;
@@ -107,7 +107,7 @@ ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __r
   *out = sums;
 }
 
-// Of dark paths: 0 at all nodes.
+// Returns whether the amplitude of an echo is 0 at all nodes.
 bool is_dark(const Echoes& echoes, int64_t echo) {
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;
@@ -115,7 +115,7 @@ bool is_dark(const Echoes& echoes, int64_t echo) {
   return true;
 }
 
-// An echo as the polynomials have it.
+// Holds an echo as the polynomials have it.
 struct DrawnEcho {
   int64_t path;
   double delay;                    // s
@@ -128,7 +128,7 @@ DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
 }
 
-// power: room for EchoStates::kCapacity of them, W.
+// `power` has room for EchoStates::kCapacity powers, W.
 PowerSums powers_of(EchoStates& states, int count, double* power) {
   const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
   std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
@@ -137,7 +137,7 @@ PowerSums powers_of(EchoStates& states, int count, double* power) {
   return sums;
 }
 
-// At most kEchoesOfChirp: the strongest half and an even choice of the others.
+// Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
 void thin_out(std::vector<DrawnEcho>& echoes) {
   if (echoes.size() <= kEchoesOfChirp) return;
   std::stable_sort(echoes.begin(), echoes.end(),
@@ -149,10 +149,10 @@ void thin_out(std::vector<DrawnEcho>& echoes) {
 
 }  // namespace
 
-// The few strongest of the echoes that are shown to it, strongest first.
+// Keeps the few strongest of the echoes that are shown to it, strongest first.
 class PassProbe::Strongest {
  public:
-  // largest: of these, W.
+  // `largest` is the largest of these powers, W.
   void show(const double* power, double largest, int64_t first, int count) {
     if (largest <= best_.back().first) return;
     for (int p = 0; p < count; ++p) {
@@ -174,7 +174,7 @@ class PassProbe::Strongest {
   std::array<std::pair<double, int64_t>, kStrongest> best_{};
 };
 
-// Carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
+// Holds carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
 struct PassProbe::Tones {
   explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
     for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMostLanes);
@@ -227,17 +227,17 @@ struct PassProbe::Tones {
   }
 };
 
-// Of one block.
+// Holds what was seen of one block, or of all so far.
 struct PassProbe::Seen {
   explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
   std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
-  std::vector<double> power;    // W of these, [share, kSumsOfShare] whose sum it is
+  std::vector<double> power;    // W of the latter, [share, kSumsOfShare]; the sums side by side add up
   double power_sum = 0.0, strongest = 0.0;  // W
   double amplitude_sum = 0.0;
   std::vector<DrawnEcho> drawn;
 };
 
-// A chirp of a channel, and what was seen of it so far.
+// Holds a chirp of a channel that is probed, and what was seen of it so far.
 struct PassProbe::Aim {
   explicit Aim(size_t num_shares) : seen(num_shares) {}
   int channel = 0, chirp = 0;
@@ -276,7 +276,7 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
   }
 }
 
-// Steps of half the longest to the longest: samples far apart see what neighbours would see together.
+// Takes steps of half the longest to the longest, because neighbouring samples would all see the same.
 void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim) {
   aim.num_samples = std::min(kSamples, num_samples);
   const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
@@ -343,7 +343,7 @@ void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_
   if (!block.sampling.is_static()) draw_echoes(aim, block, paths, strongest, seen);
 }
 
-// The row of each path. `power`: W of each.
+// Finds the row of each path. `power` is that of each, W.
 void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const {
   const auto images = static_cast<uint32_t>(num_shares() - 1);
   double strongest = seen.strongest;

@@ -30,7 +30,7 @@ class BoxTree {
 
   uint32_t size() const { return static_cast<uint32_t>(order_.size()); }
   const Corners& triangle(uint32_t place) const { return triangles_[place]; }
-  uint32_t given(uint32_t place) const { return order_[place]; }  // index among the constructor's triangles
+  uint32_t input_index(uint32_t place) const { return order_[place]; }  // index among the constructor's triangles
 
   // Calls visit(other) for each triangle behind `place` whose box `may_meet` accepts, in order of place. Boxes around
   // several triangles are asked about first, so `may_meet` must accept every box that contains one it accepts.

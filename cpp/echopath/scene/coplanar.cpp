@@ -23,7 +23,7 @@ struct PosedTriangles {
 };
 
 // Describes one triangle laid on another. Both are given by place, and the first belongs to the mesh with the lower ID.
-struct Laid {
+struct OverlapPair {
   uint32_t first_mesh_id, second_mesh_id, first, second;
   FacetOverlap overlap;
   std::pair<uint32_t, uint32_t> meshes() const { return {first_mesh_id, second_mesh_id}; }
@@ -81,9 +81,9 @@ class OverlapSearch {
       : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
 
   // Returns all pairs, in an order that does not depend on the threads.
-  std::vector<Laid> run(Job* job) const {
+  std::vector<OverlapPair> run(Job* job) const {
     const auto count = static_cast<int64_t>(tree_.size());
-    std::vector<std::vector<Laid>> found(static_cast<size_t>((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock));
+    std::vector<std::vector<OverlapPair>> found(static_cast<size_t>((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock));
     if (job) job->start(static_cast<int64_t>(found.size()));
     parallel_for(static_cast<int64_t>(found.size()), [&](int64_t block) {
       const int64_t end = std::min((block + 1) * kTrianglesPerBlock, count);
@@ -91,24 +91,24 @@ class OverlapSearch {
         search_behind(static_cast<uint32_t>(place), found[static_cast<size_t>(block)]);
       }
     }, job);
-    std::vector<Laid> all;
-    for (const std::vector<Laid>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
+    std::vector<OverlapPair> all;
+    for (const std::vector<OverlapPair>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
     return all;
   }
 
  private:
-  void search_behind(uint32_t place, std::vector<Laid>& found) const {
+  void search_behind(uint32_t place, std::vector<OverlapPair>& found) const {
     const FacetPlane plane(tree_.triangle(place));
     tree_.visit_behind(
         place, [&](const Box& box) { return plane.may_meet(box, max_distance_); },
         [&](uint32_t other) {
           const auto overlap = plane.overlap(tree_.triangle(other), max_distance_);
-          if (overlap) found.push_back(laid(place, other, *overlap));
+          if (overlap) found.push_back(overlap_pair(place, other, *overlap));
         });
   }
 
-  Laid laid(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {
-    const uint32_t mesh_of_one = mesh_id_[tree_.given(one)], mesh_of_two = mesh_id_[tree_.given(two)];
+  OverlapPair overlap_pair(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {
+    const uint32_t mesh_of_one = mesh_id_[tree_.input_index(one)], mesh_of_two = mesh_id_[tree_.input_index(two)];
     if (mesh_of_two < mesh_of_one) return {mesh_of_two, mesh_of_one, two, one, overlap};
     return {mesh_of_one, mesh_of_two, one, two, overlap};
   }
@@ -119,9 +119,9 @@ class OverlapSearch {
 };
 
 // Counts the different triangles in a range of pairs.
-int64_t count_triangles(const Laid* begin, const Laid* end) {
+int64_t count_triangles(const OverlapPair* begin, const OverlapPair* end) {
   std::vector<uint32_t> places;
-  for (const Laid* pair = begin; pair != end; ++pair) {
+  for (const OverlapPair* pair = begin; pair != end; ++pair) {
     places.push_back(pair->first);
     places.push_back(pair->second);
   }
@@ -129,9 +129,9 @@ int64_t count_triangles(const Laid* begin, const Laid* end) {
   return std::unique(places.begin(), places.end()) - places.begin();
 }
 
-CoplanarOverlap summed(const Laid* begin, const Laid* end) {
+CoplanarOverlap summed(const OverlapPair* begin, const OverlapPair* end) {
   CoplanarOverlap sum{begin->first_mesh_id, begin->second_mesh_id, count_triangles(begin, end)};
-  for (const Laid* pair = begin; pair != end; ++pair) {
+  for (const OverlapPair* pair = begin; pair != end; ++pair) {
     sum.area += pair->overlap.area;
     sum.distance = std::max(sum.distance, pair->overlap.distance);
   }
@@ -139,11 +139,13 @@ CoplanarOverlap summed(const Laid* begin, const Laid* end) {
 }
 
 // Sums the overlaps of all pairs of triangles, for each pair of meshes.
-std::vector<CoplanarOverlap> summed_by_meshes(std::vector<Laid> pairs) {
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Laid& a, const Laid& b) { return a.meshes() < b.meshes(); });
+std::vector<CoplanarOverlap> summed_by_meshes(std::vector<OverlapPair> pairs) {
+  const auto is_before = [](const OverlapPair& a, const OverlapPair& b) { return a.meshes() < b.meshes(); };
+  std::stable_sort(pairs.begin(), pairs.end(), is_before);
   std::vector<CoplanarOverlap> overlaps;
-  for (const Laid *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
-    const Laid* next = std::find_if(begin, end, [begin](const Laid& pair) { return pair.meshes() != begin->meshes(); });
+  for (const OverlapPair *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
+    const auto is_other = [begin](const OverlapPair& pair) { return pair.meshes() != begin->meshes(); };
+    const OverlapPair* next = std::find_if(begin, end, is_other);
     overlaps.push_back(summed(begin, next));
     begin = next;
   }

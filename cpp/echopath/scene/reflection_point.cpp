@@ -16,30 +16,30 @@ constexpr int kSteps = 8;
 constexpr double kArrived = 1e-4;  // of an edge
 
 // Holds the gradient and the Hessian of the path length in the tangent plane at a point of the surface.
-struct Way {
+struct PathLength {
   std::array<Vec3, 2> tangents;
-  Eigen::Vector2d slope;
-  Eigen::Matrix2d bend;
+  Eigen::Vector2d gradient;
+  Eigen::Matrix2d hessian;
 };
 
-Way way_over(const SmoothPoint& at, const Vec3& first, const Vec3& second) {
+PathLength path_length_at(const SmoothPoint& at, const Vec3& first, const Vec3& second) {
   const Vec3 lines[2] = {first - at.position, second - at.position};
-  Way way{{at.normal.unitOrthogonal(), {}}, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
-  way.tangents[1] = at.normal.cross(way.tangents[0]);
+  PathLength path_length{{at.normal.unitOrthogonal(), {}}, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  path_length.tangents[1] = at.normal.cross(path_length.tangents[0]);
   for (const Vec3& line : lines) {
     const double distance = line.norm();
     const Vec3 direction = line / distance;
     for (int i = 0; i < 2; ++i) {
-      const Vec3& along = way.tangents[static_cast<size_t>(i)];
-      way.slope[i] -= direction.dot(along);
+      const Vec3& along = path_length.tangents[static_cast<size_t>(i)];
+      path_length.gradient[i] -= direction.dot(along);
       for (int j = 0; j < 2; ++j) {
-        const Vec3& other = way.tangents[static_cast<size_t>(j)];
-        way.bend(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
-                          direction.dot(at.normal) * along.dot(at.curvature * other);
+        const Vec3& other = path_length.tangents[static_cast<size_t>(j)];
+        path_length.hessian(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
+                                     direction.dot(at.normal) * along.dot(at.curvature * other);
       }
     }
   }
-  return way;
+  return path_length;
 }
 
 bool is_inside(double u, double v, double margin) { return u >= -margin && v >= -margin && u + v <= 1.0 + margin; }
@@ -65,9 +65,9 @@ std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, cons
   Eigen::Vector2d place(1.0 / 3.0, 1.0 / 3.0);
   for (int step = 0; step < kSteps; ++step) {
     const SmoothPoint at = point_at(triangle, place[0], place[1]);
-    const Way way = way_over(at, first, second);
-    const Eigen::Vector2d away = -way.bend.inverse() * way.slope;
-    const Vec3 step_there = away[0] * way.tangents[0] + away[1] * way.tangents[1];
+    const PathLength path_length = path_length_at(at, first, second);
+    const Eigen::Vector2d away = -path_length.hessian.inverse() * path_length.gradient;
+    const Vec3 step_there = away[0] * path_length.tangents[0] + away[1] * path_length.tangents[1];
     const Eigen::Vector2d moved = edge_coordinates(b - a, c - a, at.normal, step_there);
     place += moved;
     if (!is_inside(place[0], place[1], kLost)) return std::nullopt;
@@ -107,12 +107,12 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
       triangle.is_flat() ? std::optional(on_plane(triangle, first, second)) : on_curve(triangle, first, second);
   if (!place || !is_inside((*place)[0], (*place)[1], kOutside)) return std::nullopt;
   const SmoothPoint at = point_at(triangle, (*place)[0], (*place)[1]);
-  const Way way = way_over(at, first, second);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(way.bend);
+  const PathLength path_length = path_length_at(at, first, second);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(path_length.hessian);
   ReflectionPoint found{at.position, {}, {solver.eigenvalues()[0], solver.eigenvalues()[1]}};
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector2d axis = solver.eigenvectors().col(i);
-    found.axes[static_cast<size_t>(i)] = axis[0] * way.tangents[0] + axis[1] * way.tangents[1];
+    found.axes[static_cast<size_t>(i)] = axis[0] * path_length.tangents[0] + axis[1] * path_length.tangents[1];
   }
   return found;
 }

@@ -68,14 +68,14 @@ struct KeyframeMotion::Data {
   // spline has the derivative of the chord plus at most h / 3 times the second derivatives at its ends, and is never shorter
   // than the chord.
   double angular_speed(size_t k) const {
-    constexpr double kShortestChord = 0.7071;  // of any chord between rotations less than 180 degrees apart
+    constexpr double kMinQuaternionLength = 0.7071;  // between rotations less than 180 degrees apart
     const double step = knots.times()[k + 1] - knots.times()[k];
     if (knots.interpolation() == Interpolation::kLinear) return rotations[k].angularDistance(rotations[k + 1]) / step;
     double speed = (rotations[k + 1].coeffs() - rotations[k].coeffs()).norm() / step;
     if (knots.has_curvature()) {
       speed += step / 3.0 * (rotation_curvature[k].coeffs().norm() + rotation_curvature[k + 1].coeffs().norm());
     }
-    return 2.0 * speed / kShortestChord;
+    return 2.0 * speed / kMinQuaternionLength;
   }
 
   Quaternion rotation(const SplineKnots::Weights& w) const {

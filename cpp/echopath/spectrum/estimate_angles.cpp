@@ -98,8 +98,8 @@ class PeakSearch {
     if (step <= 0.0) return;
     const double centre = peak.*angle, low = at(beam, peak, angle, centre - step, axis).power;
     const double high = at(beam, peak, angle, centre + step, axis).power;
-    const double bend = low - 2.0 * peak.power + high;
-    const double offset = bend < 0.0 ? 0.5 * step * (low - high) / bend : 0.0;
+    const double second_difference = low - 2.0 * peak.power + high;
+    const double offset = second_difference < 0.0 ? 0.5 * step * (low - high) / second_difference : 0.0;
     for (const double shift : {-step, step, std::clamp(offset, -step, step)}) {
       const Peak candidate = at(beam, peak, angle, centre + shift, axis);
       if (candidate.power > peak.power) peak = candidate;

@@ -27,7 +27,7 @@ struct End {
   const std::vector<Antenna>& antennas;
   Mat3 radar_from_world;
 
-  bool looks_toward(const Vec3& direction) const {
+  bool has_gain_toward(const Vec3& direction) const {
     const Vec3 in_radar = radar_from_world * direction;
     return std::any_of(antennas.begin(), antennas.end(), [&](const Antenna& antenna) {
       return antenna.pattern.toward(antenna.orientation.conjugate() * in_radar).power > 0.0;
@@ -48,7 +48,7 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
 }
 
 // Returns the scene with the nodes in their places but only the meshes of one object.
-Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
+Scene scene_with_object(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
   std::vector<bool> is_kept(scene.nodes().size());
   for (const uint32_t mesh : surfaces.meshes_of(object)) is_kept[static_cast<size_t>(scene.meshes()[mesh].node)] = true;
   Scene part;
@@ -81,14 +81,14 @@ struct Tally {
 };
 
 // Finds what hides one object in its scene.
-class Onlooker {
+class ObjectScanner {
  public:
-  Onlooker(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
-           uint32_t object)
+  ObjectScanner(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
+                uint32_t object)
       : scene_(scene), whole_(whole), alone_(alone), surfaces_(surfaces), object_(object),
         mesh_ids_(surfaces.meshes_of(object)) {}
 
-  Sight look(const End& end, int num_directions, Job* job) const {
+  Sight sight_from(const End& end, int num_directions, Job* job) const {
     const Stratum stratum = stratum_from(end.position);
     int64_t count = num_directions;
     Tally tally = scan(end, stratum, count, job);
@@ -116,7 +116,7 @@ class Onlooker {
       if (job) job->throw_if_cancelled();
       const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
       for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
-        look_along(directions.direction(0, points->point(i)), end, tallies[static_cast<size_t>(task)]);
+        add_direction(directions.direction(0, points->point(i)), end, tallies[static_cast<size_t>(task)]);
       }
     });
     Tally sum(surfaces_.names.size());
@@ -124,13 +124,13 @@ class Onlooker {
     return sum;
   }
 
-  void look_along(const Vec3& direction, const End& end, Tally& tally) const {
+  void add_direction(const Vec3& direction, const End& end, Tally& tally) const {
     RayHit object, nearest;
     if (alone_.intersect(end.position, direction, object) != EmbreeScene::Verdict::kHit) return;
     const EmbreeScene::Verdict verdict = whole_.intersect(end.position, direction, nearest);
     if (verdict == EmbreeScene::Verdict::kFalseHit) return;
     ++tally.num_found;
-    tally.in_view = tally.in_view || end.looks_toward(direction);
+    tally.in_view = tally.in_view || end.has_gain_toward(direction);
     const uint32_t surface = verdict == EmbreeScene::Verdict::kHit ? surfaces_.of_mesh[nearest.hit.mesh_id] : object_;
     if (surface == object_ || nearest.distance >= object.distance * (1.0 - kSameDepth)) ++tally.num_visible;
     else ++tally.hidden_by[surface];
@@ -138,7 +138,7 @@ class Onlooker {
 
   Sight sight_of(const Tally& tally, double solid_angle_each, const End& end) const {
     Sight sight;
-    sight.in_view = tally.num_found > 0 ? tally.in_view : looks_at_a_vertex(end);
+    sight.in_view = tally.num_found > 0 ? tally.in_view : has_gain_toward_a_vertex(end);
     sight.distance = distance_from(end.position);
     if (tally.num_found == 0) return sight;
     const auto found = static_cast<double>(tally.num_found);
@@ -153,11 +153,11 @@ class Onlooker {
     return sight;
   }
 
-  bool looks_at_a_vertex(const End& end) const {
+  bool has_gain_toward_a_vertex(const End& end) const {
     return std::any_of(mesh_ids_.begin(), mesh_ids_.end(), [&](uint32_t mesh) {
       const std::vector<Vec3>& vertices = whole_.vertices(mesh);
       return std::any_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
-        return vertex != end.position && end.looks_toward((vertex - end.position).normalized());
+        return vertex != end.position && end.has_gain_toward((vertex - end.position).normalized());
       });
     });
   }
@@ -203,11 +203,11 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   std::vector<ObjectVisibility> seen;
   if (job) job->start(surfaces.num_objects);
   for (uint32_t object = 0; object < surfaces.num_objects; ++object) {
-    const Scene part = only(scene, surfaces, object);
+    const Scene part = scene_with_object(scene, surfaces, object);
     const EmbreeScene alone(part, Pose(part, settings.time), origin, job);
-    const Onlooker onlooker(scene, whole, alone, surfaces, object);
-    seen.push_back({surfaces.names[object], onlooker.look(sending, settings.num_directions, job),
-                    onlooker.look(receiving, settings.num_directions, job)});
+    const ObjectScanner scanner(scene, whole, alone, surfaces, object);
+    seen.push_back({surfaces.names[object], scanner.sight_from(sending, settings.num_directions, job),
+                    scanner.sight_from(receiving, settings.num_directions, job)});
     if (job) job->advance(1);
   }
   return seen;

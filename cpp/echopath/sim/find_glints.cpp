@@ -20,12 +20,12 @@ constexpr double kBeside = 1.5;     // cells: a point of reflection is seen wher
 constexpr double kSamePoint = 0.5;  // of the narrower Fresnel zone
 
 // Identifies paths of one stratum that run over the same flagged mirrors to the same mesh and on.
-struct WayKind {
+struct RouteKind {
   uint16_t stratum;
   uint32_t mesh;
   std::vector<uint32_t> before, behind;  // meshes of the mirrors, from antenna to antenna
 
-  bool operator<(const WayKind& other) const {
+  bool operator<(const RouteKind& other) const {
     return std::tie(stratum, mesh, before, behind) < std::tie(other.stratum, other.mesh, other.before, other.behind);
   }
 };
@@ -77,22 +77,22 @@ class GlintSearch {
   }
 
  private:
-  using Kinds = std::map<WayKind, std::vector<SeenPath>>;
+  using Kinds = std::map<RouteKind, std::vector<SeenPath>>;
 
   void sort_paths(Job* job) {
     constexpr int64_t kTogether = 1 << 16;
     for (int64_t path = 0; path < paths_.num_paths(); ++path) {
       if (job && path % kTogether == 0) job->throw_if_cancelled();
-      std::optional<WayKind> kind = kind_of(path);
+      std::optional<RouteKind> kind = kind_of(path);
       if (kind) kinds_[std::move(*kind)].push_back({direction_of_launch(path), path});
     }
   }
 
   // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
-  std::optional<WayKind> kind_of(int64_t path) const {
+  std::optional<RouteKind> kind_of(int64_t path) const {
     const auto p = static_cast<size_t>(path);
     if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
-    WayKind kind{paths_.stratum[p], 0, {}, {}};
+    RouteKind kind{paths_.stratum[p], 0, {}, {}};
     int surfaces = 0;
     for (int k = 0; k < paths_.num_bounces[p]; ++k) {
       const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
@@ -153,7 +153,7 @@ class GlintSearch {
     return largest;
   }
 
-  std::vector<Glint> glints_of(const WayKind& kind, const std::vector<SeenPath>& seen) const {
+  std::vector<Glint> glints_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
     std::vector<Plane> before;
     for (const uint32_t mirror : kind.before) before.push_back(plane_of(mirror));
     Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;

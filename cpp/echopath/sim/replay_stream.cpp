@@ -122,9 +122,9 @@ struct ReplayStream::Window {
 };
 
 // Hands windows to the sink, each while the next is replayed.
-class ReplayStream::HandOver {
+class ReplayStream::WindowPipeline {
  public:
-  HandOver(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
+  WindowPipeline(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
 
   // Hands the last window to the sink while `replay` makes the next, each with whatever threads the other leaves idle.
   void beside(const std::function<void(Window& next)>& replay) {
@@ -157,7 +157,7 @@ class ReplayStream::HandOver {
 };
 
 void ReplayStream::run(const Sink& sink) const {
-  HandOver out(*this, sink);
+  WindowPipeline out(*this, sink);
   std::vector<std::vector<int64_t>> by_level = PathsByLevel(replayer_.levels(), num_paths_, job_).take();
   add_still(by_level.front(), out);
   by_level.front() = {};
@@ -165,13 +165,13 @@ void ReplayStream::run(const Sink& sink) const {
   out.finish();
 }
 
-void ReplayStream::add_still(const std::vector<int64_t>& paths, HandOver& out) const {
+void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const {
   run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
 }
 
 // Replays each path at the order that its meshes need; where that was not enough, at the next, or with its amplitude in
 // every chirp.
-void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const {
+void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, WindowPipeline& out) const {
   const NodeLevels& levels = replayer_.levels();
   std::vector<std::vector<int64_t>> by_chirp(by_level.size());
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
@@ -186,7 +186,8 @@ void ReplayStream::add_moving(std::vector<std::vector<int64_t>> by_level, HandOv
 }
 
 // Holds only the scene as posed at the chirps of one transmitter. The last level has the paths that no polynomial follows.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const {
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter,
+                              WindowPipeline& out) const {
   const NodeLevels& levels = replayer_.levels();
   const int num_receivers = num_channels() / num_transmitters_, first = transmitter * num_receivers;
   for (int level = 1; level <= levels.num_polynomials(); ++level) {
@@ -200,7 +201,7 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_level,
 
 // Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
 std::vector<FailedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                                 HandOver& out) const {
+                                                 WindowPipeline& out) const {
   const int64_t size = block_size(extent.num_channels, extent.num_nodes), num_paths = static_cast<int64_t>(paths.size());
   std::vector<FailedPath> all_left;
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {

@@ -58,10 +58,10 @@ class ReplayStream {
                                                    std::vector<FailedPath>& left)>;
   struct Block;
   struct Window;
-  class HandOver;
-  void add_still(const std::vector<int64_t>& paths, HandOver& out) const;
-  void add_moving(std::vector<std::vector<int64_t>> by_level, HandOver& out) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, HandOver& out) const;
+  class WindowPipeline;
+  void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
+  void add_moving(std::vector<std::vector<int64_t>> by_level, WindowPipeline& out) const;
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_level, int transmitter, WindowPipeline& out) const;
   // Describes the channels that `replay` makes echoes of, the number of nodes, and whether it joins paths itself on request.
   struct Extent {
     int first_channel, num_channels;
@@ -69,7 +69,7 @@ class ReplayStream {
     bool joins = false;
   };
   std::vector<FailedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                     HandOver& out) const;
+                                     WindowPipeline& out) const;
   std::vector<FailedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
                                         const Replay& replay, Window& window) const;
   bool is_watched(const Extent& extent) const;

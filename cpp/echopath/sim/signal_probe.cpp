@@ -228,8 +228,8 @@ struct PassProbe::Tones {
 };
 
 // Holds what was seen of one block, or of all so far.
-struct PassProbe::Seen {
-  explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
+struct PassProbe::EchoTally {
+  explicit EchoTally(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
   std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
   std::vector<double> power;    // W of the latter, [share, kSumsOfShare]; the sums side by side add up
   double power_sum = 0.0, strongest = 0.0;  // W
@@ -238,13 +238,13 @@ struct PassProbe::Seen {
 };
 
 // Holds a chirp of a channel that is probed, and what was seen of it so far.
-struct PassProbe::Aim {
-  explicit Aim(size_t num_shares) : seen(num_shares) {}
+struct PassProbe::ChirpTarget {
+  explicit ChirpTarget(size_t num_shares) : tally(num_shares) {}
   int channel = 0, chirp = 0;
   int num_samples = 0;  // that differ; the others repeat them
   SampleSums sample{};  // evenly spaced, from the first of the chirp
-  Seen seen;
-  std::array<std::optional<Seen>, ReplayStream::kBlocksInFlight> of_block;
+  EchoTally tally;
+  std::array<std::optional<EchoTally>, ReplayStream::kBlocksInFlight> of_block;
 };
 
 void ProbedChirp::add(const ProbedChirp& other) {
@@ -269,38 +269,38 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
   const int num_chirps = std::min(kMostChirps, replayer.num_channels());
   for (int i = 0; i < num_chirps; ++i) {
     const int64_t index = int64_t{probe.first_chirp} * kMostChirps + i;
-    Aim& aim = aims_.emplace_back(num_shares());
-    aim.channel = draw(seed_, index, 0, replayer.num_channels());
-    aim.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
-    draw_samples(seed_, index, radar.waveform.num_samples, aim);
+    ChirpTarget& target = targets_.emplace_back(num_shares());
+    target.channel = draw(seed_, index, 0, replayer.num_channels());
+    target.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
+    draw_samples(seed_, index, radar.waveform.num_samples, target);
   }
 }
 
 // Takes steps of half the longest to the longest, because neighbouring samples would all see the same.
-void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim) {
-  aim.num_samples = std::min(kSamples, num_samples);
+void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, ChirpTarget& target) {
+  target.num_samples = std::min(kSamples, num_samples);
   const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
   const int step = shortest + draw(seed, index, 2, longest - shortest + 1);
-  const int first = draw(seed, index, 3, num_samples - (aim.num_samples - 1) * step);
-  for (int s = 0; s < kSamples; ++s) aim.sample[static_cast<size_t>(s)] = first + s * step;
+  const int first = draw(seed, index, 3, num_samples - (target.num_samples - 1) * step);
+  for (int s = 0; s < kSamples; ++s) target.sample[static_cast<size_t>(s)] = first + s * step;
 }
 
 PassProbe::~PassProbe() = default;
 
 bool PassProbe::watches(int channel) const {
-  return std::any_of(aims_.begin(), aims_.end(), [&](const Aim& aim) { return aim.channel == channel; });
+  return std::any_of(targets_.begin(), targets_.end(), [&](const ChirpTarget& target) { return target.channel == channel; });
 }
 
 void PassProbe::see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) {
-  for (Aim& aim : aims_) {
-    if (aim.channel == channel) look(aim, echoes, paths, aim.of_block[block].emplace(num_shares()));
+  for (ChirpTarget& target : targets_) {
+    if (target.channel == channel) tally_block(target, echoes, paths, target.of_block[block].emplace(num_shares()));
   }
 }
 
 void PassProbe::end_blocks() {
-  for (Aim& aim : aims_) {
-    for (std::optional<Seen>& some : aim.of_block) {
-      if (some) add(*some, aim.seen);
+  for (ChirpTarget& target : targets_) {
+    for (std::optional<EchoTally>& some : target.of_block) {
+      if (some) add(*some, target.tally);
       some.reset();
     }
   }
@@ -308,7 +308,7 @@ void PassProbe::end_blocks() {
 
 size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.num_batches) + 1; }
 
-void PassProbe::add(const Seen& some, Seen& all) {
+void PassProbe::add(const EchoTally& some, EchoTally& all) {
   for (size_t row = 0; row < all.rows.size(); ++row) {
     for (size_t s = 0; s < kSamples; ++s) {
       all.rows[row].re[s] += some.rows[row].re[s];
@@ -322,50 +322,51 @@ void PassProbe::add(const Seen& some, Seen& all) {
   all.drawn.insert(all.drawn.end(), some.drawn.begin(), some.drawn.end());
 }
 
-void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const {
+void PassProbe::tally_block(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            EchoTally& tally) const {
   constexpr int kCapacity = EchoStates::kCapacity;
   EchoStates states;
   alignas(64) double power[kCapacity];
   uint32_t row[kCapacity];
   Strongest strongest;
-  Tones tones(seen.rows.size());
+  Tones tones(tally.rows.size());
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
-    evaluate_states(block, aim.chirp, begin, count, states);
+    evaluate_states(block, target.chirp, begin, count, states);
     const PowerSums sums = powers_of(states, count, power);
-    seen.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), seen.amplitude_sum);
-    seen.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), seen.power_sum);
+    tally.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), tally.amplitude_sum);
+    tally.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), tally.power_sum);
     strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);
-    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, seen);
-    add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, tones, seen);
+    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, tally);
+    add_samples(target, block, begin, states, {row, static_cast<size_t>(count)}, tones, tally);
   }
-  tones.give(seen.rows);
-  if (!block.sampling.is_static()) draw_echoes(aim, block, paths, strongest, seen);
+  tones.give(tally.rows);
+  if (!block.sampling.is_static()) draw_echoes(target, block, paths, strongest, tally);
 }
 
 // Finds the row of each path. `power` is that of each, W.
-void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const {
+void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, EchoTally& tally) const {
   const auto images = static_cast<uint32_t>(num_shares() - 1);
-  double strongest = seen.strongest;
+  double strongest = tally.strongest;
   for (size_t i = 0; i < paths.size(); ++i) {
     const auto path = static_cast<size_t>(paths[i]);
     const uint8_t batch = paths_.batch[path];
     const uint32_t share = batch == kNoBatch ? images : 2u * batch + ((paths_.flags[path] & kSecondHalf) != 0 ? 1u : 0u);
     const bool is_rough = paths_.diffuse[path] != 0;
     row[i] = is_rough ? images + 1 : share;
-    seen.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
+    tally.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
     if (share != images) strongest = std::max(strongest, power[i]);
   }
-  seen.strongest = strongest;
+  tally.strongest = strongest;
 }
 
-void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
-                            std::span<const uint32_t> row, Tones& tones, Seen& seen) const {
+void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
+                            std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const {
   const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
     for (int i = 0; i < count; ++i) {
-      SampleRow& to = seen.rows[row[static_cast<size_t>(i)]];
-      per_sample_->add_samples(block, aim.chirp, begin + i, 1, aim.sample, to.re, to.im);
+      SampleRow& to = tally.rows[row[static_cast<size_t>(i)]];
+      per_sample_->add_samples(block, target.chirp, begin + i, 1, target.sample, to.re, to.im);
     }
     return;
   }
@@ -373,11 +374,11 @@ void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, 
   carriers.count = count;
   carriers.group = row.data();
   signal_kernels().modulate(model_, states, count, carriers);
-  tones.add(carriers, aim.sample[0], aim.sample[1] - aim.sample[0]);
+  tones.add(carriers, target.sample[0], target.sample[1] - target.sample[0]);
 }
 
-void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
-                            Seen& seen) const {
+void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            const Strongest& strongest, EchoTally& tally) const {
   std::vector<int64_t> echoes;
   strongest.append_to(echoes);
   for (size_t i = 0; i < kRandom && block.num_echoes > 0; ++i) {
@@ -386,53 +387,53 @@ void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const
   std::sort(echoes.begin(), echoes.end());
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
-    if (!is_dark(block, echo)) seen.drawn.push_back(state_of(block, aim.chirp, echo, paths[static_cast<size_t>(echo)]));
+    if (!is_dark(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
   }
 }
 
 void PassProbe::finish(SignalProbe& probe, Job* job) {
   const int num_receivers = static_cast<int>(radar_.receivers.size());
-  for (Aim& aim : aims_) {
+  for (ChirpTarget& target : targets_) {
     ProbedChirp& chirp = probe.chirps.emplace_back();
-    chirp.tx = aim.channel / num_receivers;
-    chirp.rx = aim.channel % num_receivers;
-    chirp.chirp = probe.first_chirp + aim.chirp;
-    chirp.amplitude_sum = aim.seen.amplitude_sum;
-    sum_up(aim, chirp);
-    thin_out(aim.seen.drawn);
-    compare_echoes(aim, chirp, job);
+    chirp.tx = target.channel / num_receivers;
+    chirp.rx = target.channel % num_receivers;
+    chirp.chirp = probe.first_chirp + target.chirp;
+    chirp.amplitude_sum = target.tally.amplitude_sum;
+    sum_up(target, chirp);
+    thin_out(target.tally.drawn);
+    compare_echoes(target, chirp, job);
   }
 }
 
-void PassProbe::sum_up(const Aim& aim, ProbedChirp& chirp) const {
-  const Seen& seen = aim.seen;
-  chirp.power_sum = seen.power_sum;
-  chirp.strongest = seen.strongest;
+void PassProbe::sum_up(const ChirpTarget& target, ProbedChirp& chirp) const {
+  const EchoTally& tally = target.tally;
+  chirp.power_sum = tally.power_sum;
+  chirp.strongest = tally.strongest;
   chirp.shares.resize(num_shares());
   for (size_t s = 0; s < kSamples; ++s) {
-    const size_t from = s % static_cast<size_t>(aim.num_samples);
-    chirp.sample[s] = static_cast<int>(aim.sample[from]);
-    for (const SampleRow& row : seen.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
+    const size_t from = s % static_cast<size_t>(target.num_samples);
+    chirp.sample[s] = static_cast<int>(target.sample[from]);
+    for (const SampleRow& row : tally.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
     if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
     for (size_t share = 0; share < num_shares(); ++share) {
-      chirp.shares[share].field[s] = {seen.rows[share].re[from], seen.rows[share].im[from]};
+      chirp.shares[share].field[s] = {tally.rows[share].re[from], tally.rows[share].im[from]};
     }
   }
   for (size_t share = 0; share < num_shares(); ++share) {
-    const auto first = seen.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
+    const auto first = tally.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
     chirp.shares[share].power = std::accumulate(first, first + kSumsOfShare, 0.0);
   }
 }
 
-void PassProbe::compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const {
-  const std::vector<DrawnEcho>& drawn = aim.seen.drawn;
+void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Job* job) const {
+  const std::vector<DrawnEcho>& drawn = target.tally.drawn;
   if (drawn.empty()) return;
   std::vector<int64_t> paths;
   for (const DrawnEcho& echo : drawn) paths.push_back(echo.path);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, aim.chirp), lengths, amplitudes, job);
-  const size_t first = static_cast<size_t>(aim.channel) * paths.size();
+  replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, target.chirp), lengths, amplitudes, job);
+  const size_t first = static_cast<size_t>(target.channel) * paths.size();
   const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
   double power = 0.0, of_phase = 0.0, of_amplitude = 0.0;
   for (size_t i = 0; i < paths.size(); ++i) {

@@ -67,21 +67,21 @@ class PassProbe : public PathWatcher {
   void finish(SignalProbe& probe, Job* job);
 
  private:
-  struct Aim;
-  struct Seen;
+  struct ChirpTarget;
+  struct EchoTally;
   class Strongest;
   struct Tones;
-  void look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const;
-  static void draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim);
+  void tally_block(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths, EchoTally& tally) const;
+  static void draw_samples(uint64_t seed, int64_t index, int num_samples, ChirpTarget& target);
   size_t num_shares() const;
-  void sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const;
-  void add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
-                   std::span<const uint32_t> row, Tones& tones, Seen& seen) const;
-  void sum_up(const Aim& aim, ProbedChirp& chirp) const;
-  void draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
-                   Seen& seen) const;
-  void compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const;
-  static void add(const Seen& some, Seen& all);
+  void sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, EchoTally& tally) const;
+  void add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
+                   std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const;
+  void sum_up(const ChirpTarget& target, ProbedChirp& chirp) const;
+  void draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                   const Strongest& strongest, EchoTally& tally) const;
+  void compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Job* job) const;
+  static void add(const EchoTally& some, EchoTally& all);
 
   const Paths& paths_;
   const Radar& radar_;
@@ -89,7 +89,7 @@ class PassProbe : public PathWatcher {
   CarrierModel model_;
   std::unique_ptr<const PerSample> per_sample_;
   uint64_t seed_;
-  std::vector<Aim> aims_;
+  std::vector<ChirpTarget> targets_;
 };
 
 }  // namespace echopath

@@ -74,17 +74,19 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
 // Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs.
 void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end, std::vector<double>& out) {
   int previous = path.first_material;
-  const auto arrive = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
-  const auto depart = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel); };
-  arrive(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
+  const auto set_arrival = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
+  const auto set_departure = [&](int k, const Vec3& travel) {
+    out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel);
+  };
+  set_arrival(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
   for (int k = previous + 1; k <= path.last_material; ++k) {
     if (path.is_image(k)) continue;
     const UnfoldedLeg leg = inner_leg(hits, previous, k);
-    depart(previous, leg.departure);
-    arrive(k, leg.arrival);
+    set_departure(previous, leg.departure);
+    set_arrival(k, leg.arrival);
     previous = k;
   }
-  depart(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
+  set_departure(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
 }
 
 }  // namespace

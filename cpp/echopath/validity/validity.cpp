@@ -107,9 +107,9 @@ class Sampling {
   std::vector<int64_t> count_;
 };
 
-class Certificate {
+class ValidityCheck {
  public:
-  Certificate(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
+  ValidityCheck(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
       : paths_(paths), radar_(radar), check_(paths, radar, std::move(times), settings.specular, job),
         sample_(Sampling(paths)(settings.arrays)), band_(radar.waveform), keeps_arrays_(settings.arrays), job_(job) {
     report_.num_paths = paths.num_paths();
@@ -123,7 +123,7 @@ class Certificate {
     findings_.resize(sample_.paths.size());
     for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
     sum_findings();
-    look_at_surface();
+    search_new_surface();
     make_objects();
     return std::move(report_);
   }
@@ -259,7 +259,7 @@ class Certificate {
   }
 
   // Looks for new surface at each of the times, from the antennas of the trace and from those at the rim.
-  void look_at_surface() {
+  void search_new_surface() {
     if (!check_.anything_moves() && !check_.has_array()) return;
     const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
     LookSettings look;
@@ -276,13 +276,13 @@ class Certificate {
 
   // Adds what a look finds. What rim antennas see counts for shares alone.
   void add_look(const Look& found, size_t time, bool is_own) {
-    Radar ears = is_own ? check_.first_radar() : found.paths.radar;
-    ears.waveform.num_chirps = ears.waveform.num_samples = 1;
+    Radar pair_radar = is_own ? check_.first_radar() : found.paths.radar;
+    pair_radar.waveform.num_chirps = pair_radar.waveform.num_samples = 1;
     std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));
     std::iota(all.begin(), all.end(), 0);
     std::vector<double> lengths;
     std::vector<std::complex<double>> amplitudes;
-    Replayer(found.paths, ears).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
+    Replayer(found.paths, pair_radar).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
     std::map<size_t, SeenNow> seen;
     for (size_t i = 0; i < all.size(); ++i) {
       const Hit* hits = found.paths.hits_of(all[i]);
@@ -398,7 +398,7 @@ Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings
   for (const double time : settings.times) require(std::isfinite(time), "times", "must be finite", time);
   CheckTimes times = settings.times.empty() ? check_times(*paths.scene, radar, start)
                                             : given_check_times(*paths.scene, radar, start, settings.times);
-  return Certificate(paths, radar, std::move(times), settings, job).run();
+  return ValidityCheck(paths, radar, std::move(times), settings, job).run();
 }
 
 }  // namespace echopath

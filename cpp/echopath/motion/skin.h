@@ -29,7 +29,7 @@ struct SkinWeights {
 
 // Computes v(t) = sum_j weight_j * skin_from_joint_j(t) * inverse_bind_j * v, exactly at every time (Magnenat-Thalmann,
 // Laperriere, Thalmann 1988, "Joint-dependent local deformations"). Where a vertex follows several joints, the surface
-// narrows where these twist, as is known of the method. It poses only the vertices it is asked for. Immutable.
+// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Immutable.
 class Skin : public Deformation {
  public:
   // vertices [V] in m as bound, in the frame of the skin. A vertex may follow any number of joints; rows whose sum is off 1

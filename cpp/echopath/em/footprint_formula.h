@@ -1,17 +1,17 @@
 #pragma once
-// The filters of em/footprint.h for doubles and for vectors of doubles: Math as in base/scalar_math.h.
+// Evaluates the filters of em/footprint.h for doubles and for vectors of doubles. Math is as in base/scalar_math.h.
 #include "echopath/base/scalar_math.h"
 
 namespace echopath {
 
 enum class Footprint {
-  kNone,         // every ray is a point: sums alias where phases turn faster than rays are spaced
+  kNone,         // every ray is a point: sums alias where the phase turns much from ray to ray
   kFirstOrder,   // linear phase across the cell
   kSecondOrder,  // quadratic phase: few rays suffice on curved surfaces
-  kEdges,        // the same, flatter: far fewer rays where the edges of a curved surface make the echo
+  kEdges,        // as kSecondOrder, but flatter: far fewer rays where a curved surface's edges make the echo
 };
 
-// Phase of the path across the footprint, g.x + x.h.x / 2, with x in units of launch cells along the two footprint axes.
+// Holds the phase of the path across the footprint, g.x + x.h.x / 2, with x in launch cells along the two footprint axes.
 template <class Real>
 struct FootprintPhaseOf {
   Real g1{}, g2{};          // rad per cell
@@ -53,7 +53,7 @@ ECHOPATH_INLINE ComplexOf<Real> edges_footprint_of(const FootprintPhaseOf<Real>&
   return {3.0 * (once.re - twice.re) + thrice.re, 3.0 * (once.im - twice.im) + thrice.im};
 }
 
-// Of one axis.
+// Evaluates the flat-top filter along one axis.
 template <class Math, class Real>
 ECHOPATH_INLINE Real flat_top_of(Real g) {
   const Real loss = 1.0 - Math::exp(g * g * -0.125);  // its fourth power needs no more digits
@@ -61,17 +61,18 @@ ECHOPATH_INLINE Real flat_top_of(Real g) {
   return 1.0 - square * square;
 }
 
-// What a launch cell may hold between its ray and those beside it, as shares of the amplitude that it has without a filter.
+// Bounds the waves that a launch cell may hold between its ray and those beside it, as shares of the amplitude without a
+// filter.
 template <class Real>
 struct BetweenRays {
-  Real points;  // waves of points of reflection
-  Real edges;   // waves of the edge of the surface, if that cuts the cell
+  Real points;  // waves of points of stationary phase
+  Real edges;   // waves of the surface's edge, if that cuts the cell
 };
 
 // A ray of a coarse lattice misses a point of stationary phase by up to kReach cells. The filter then removes the wave of
 // that point with all others, although the surface sends it: the integral of e^{jhx^2/2}, sqrt(2 pi/|h|) along each axis of
-// h. Where the phase is not stationary along an axis, only a cut across it leaves a wave, of at most 2/|g|. Nothing is left
-// out where phases hardly turn across the cell, because such rays add up to what there is.
+// h. Where the phase is not stationary along an axis, only an edge across it leaves a wave, of at most 2/|g|. Nothing is
+// lost where the phase hardly turns across the cell, because such rays add up to the true field.
 template <class Math, class Real>
 ECHOPATH_INLINE BetweenRays<Real> between_rays_of(const FootprintPhaseOf<Real>& phase) {
   constexpr double kReach = 0.75, kTurn = 6.283185307179586, kTiny = 1e-300;

@@ -5,7 +5,7 @@
 namespace echopath {
 namespace {
 
-// Principal square root of a number far from the ends of the range of double.
+// Returns the principal square root of a number far from the ends of the range of double.
 std::complex<double> principal_root(std::complex<double> squared) {
   const double size = std::sqrt(std::norm(squared));
   const double larger = std::sqrt(0.5 * (size + std::abs(squared.real())));  // of the root's two parts
@@ -15,8 +15,8 @@ std::complex<double> principal_root(std::complex<double> squared) {
   return {std::abs(smaller), std::copysign(larger, smaller)};
 }
 
-// The principal root has Re q >= 0, hence Im q <= 0 for a lossy or lossless half space; a tiny permittivity below sin^2
-// lies on the cut and decays with Im q < 0.
+// The principal root has Re q >= 0, hence Im q <= 0 for a lossy or lossless half space. The root of a permittivity below
+// sin^2 lies on the branch cut, where a wave that decays has Im q < 0.
 std::complex<double> transmitted_cosine(std::complex<double> permittivity, double cos_incidence) {
   const std::complex<double> squared = permittivity - (1.0 - cos_incidence * cos_incidence);
   const std::complex<double> root = principal_root(squared);

@@ -1,14 +1,14 @@
 #pragma once
-// What one hit makes of the two modes of a wave (TE, TM), seen in the horizontal and vertical components of what leaves it
-// (em/jones.h says what is modelled). For doubles: formulas that loops over lanes may take in. Math as in base/scalar_math.h.
+// Computes what one hit makes of the two modes of a wave (TE, TM), in the horizontal and vertical components of what leaves
+// it (em/jones.h says what is modelled). The formulas are for doubles and can be inlined into loops over lanes.
 #include "echopath/base/scalar_math.h"
 #include "echopath/base/vector_of.h"
 
 namespace echopath {
 
-inline constexpr double kLeastSine = 1e-9;  // of two directions that have a plane of their own
+inline constexpr double kLeastSine = 1e-9;  // two directions at a smaller sine have no plane of their own
 
-// Two unit vectors across a direction of travel; horizontal x vertical points along it.
+// Holds two unit vectors across a direction of travel; horizontal x vertical points along it.
 struct BasisAcross {
   VectorOf<double> horizontal, vertical;
 };
@@ -21,8 +21,8 @@ ECHOPATH_INLINE BasisAcross basis_across(const VectorOf<double>& direction) {
   return {horizontal, cross(direction, horizontal)};
 }
 
-// Unit vectors along the fields of both modes of a wave that meets a surface: te = direction x normal, tm = te x direction.
-// At normal incidence any plane serves: te is horizontal.
+// Holds unit vectors along the fields of both modes of a wave that meets a surface: te = direction x normal, tm = te x
+// direction. At normal incidence any plane serves, and te is horizontal.
 struct ModeAxes {
   VectorOf<double> te, tm;
 };
@@ -36,24 +36,24 @@ ECHOPATH_INLINE ModeAxes mode_axes(const VectorOf<double>& direction, const Vect
   return {te, cross(te, direction)};
 }
 
-// From the components TE and TM to those along h and v.
+// Maps the components TE and TM to those along h and v.
 struct HitMatrix {
   ComplexOf<double> h_te, h_tm, v_te, v_tm;
 };
 
-// Where a wave comes from and goes to.
+// Describes where a wave that hits a surface comes from and goes to.
 struct HitGeometryOfModes {
   VectorOf<double> direction, normal, out;  // unit; the normal on the lit side
   ModeAxes modes;                           // of `direction`
-  BasisAcross across;                       // `out`
+  BasisAcross across;                       // across `out`
 };
 ECHOPATH_INLINE HitGeometryOfModes hit_geometry(const VectorOf<double>& direction, const VectorOf<double>& normal,
                                                 const VectorOf<double>& out) {
   return {direction, normal, out, mode_axes(direction, normal), basis_across(out)};
 }
 
-// Physical optics: -(1/2) out x [n x E_t - out x (n x H_t)] of a unit field along TE, which goes with (1 + Gamma) and
-// cos_i (1 - Gamma), and along TM, with the same of its own Gamma in each other's place.
+// Evaluates physical optics, -(1/2) out x [n x E_t - out x (n x H_t)], for unit fields along TE and TM. For TE the electric
+// part goes with (1 + Gamma) and the magnetic part with cos_i (1 - Gamma); for TM they change places, with its own Gamma.
 ECHOPATH_INLINE HitMatrix radiated_modes(const HitGeometryOfModes& hit, ComplexOf<double> te, ComplexOf<double> tm) {
   const double cosine = -dot(hit.direction, hit.normal);
   const VectorOf<double> along = cross(hit.normal, hit.modes.te);
@@ -78,7 +78,7 @@ ECHOPATH_INLINE FacetTurn facet_turn(const HitGeometryOfModes& hit) {
           -(dot(k, hit.across.vertical) * onto + dot(hit.across.vertical, hit.modes.te))};
 }
 
-// The axis across `direction` at an angle from the normal of the scattering plane, along TE and TM.
+// Holds the axis across `direction` at an angle from the normal of the scattering plane, in components along TE and TM.
 struct AxisInModes {
   double te, tm;
 };
@@ -91,16 +91,17 @@ ECHOPATH_INLINE AxisInModes scattering_axis(const HitGeometryOfModes& hit, doubl
   return {cosine * te + sine * tm, cosine * tm - sine * te};
 }
 
-// A wave as it is and one that is mirrored at an axis, in quadrature (em/jones.h, scattered_field).
+// Splits a wave into one that stays as it is and one that is mirrored at an axis, in quadrature (em/jones.h,
+// scattered_field).
 struct ModeMixing {
-  double kept = 1.0, turned = 0.0;  // roots of the shares of power
+  double kept = 1.0, turned = 0.0;  // square roots of the shares of power
 };
 
 ECHOPATH_INLINE ModeMixing mixing_of(double cross_share) {
   return {ScalarMath::root(1.0 - 2.0 * cross_share), ScalarMath::root(2.0 * cross_share)};
 }
 
-// Diffuse scattering that leaves `reflection` of the field.
+// Evaluates diffuse scattering; `reflection` is the magnitude of the field that is left.
 ECHOPATH_INLINE HitMatrix scattered_modes(const HitGeometryOfModes& hit, double reflection, const ModeMixing& mixing,
                                           const AxisInModes& axis) {
   const FacetTurn turn = facet_turn(hit);

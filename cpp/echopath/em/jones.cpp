@@ -10,10 +10,10 @@
 namespace echopath {
 namespace {
 
-// a.b without conjugation.
+// Returns a.b without conjugation.
 std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Unit normal of the plane of two directions; where they are parallel any plane through the first serves.
+// Returns the unit normal of the plane of two directions; where they are parallel, any plane through the first serves.
 Vec3 plane_normal(const Vec3& direction, const Vec3& other) {
   const Vec3 across = direction.cross(other);
   const double sine = across.norm();
@@ -27,7 +27,7 @@ HitGeometryOfModes geometry_of(const Vec3& direction, const Vec3& normal, const 
   return hit_geometry(unpacked(direction), unpacked(normal), unpacked(out));
 }
 
-// What a hit makes of a field, across its way out.
+// Returns what a hit makes of a field, as a vector across its outgoing direction.
 FieldVector through(const HitGeometryOfModes& hit, const HitMatrix& matrix, const FieldVector& incident) {
   const std::complex<double> te = dot(packed(hit.modes.te), incident), tm = dot(packed(hit.modes.tm), incident);
   const auto along = [&](const ComplexOf<double>& of_te, const ComplexOf<double>& of_tm) {

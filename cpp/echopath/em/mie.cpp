@@ -16,7 +16,8 @@ constexpr double kTiny = 1e-250;       // where the downward recurrence starts
 constexpr double kHuge = 1e200;        // where it is scaled back
 constexpr int kGuardOrders = 16;       // orders above the last one from which the downward recurrence forgets its start
 
-// Riccati-Bessel functions x j_n(x), n = 0..count: downward, since upward they lose all digits above n = x.
+// Returns the Riccati-Bessel functions x j_n(x), n = 0..count, by downward recurrence; upward they lose all digits above n =
+// x.
 std::vector<double> regular_functions(double x, int count) {
   std::vector<double> psi(static_cast<size_t>(count) + 1, 0.0);
   double above = 0.0, here = kTiny;
@@ -30,7 +31,7 @@ std::vector<double> regular_functions(double x, int count) {
     above /= kHuge;
     for (int m = n; m <= count; ++m) psi[static_cast<size_t>(m)] /= kHuge;
   }
-  // Scaled by whichever of the two lowest orders is not near a zero.
+  // The values are scaled by whichever of the two lowest orders is not near a zero.
   const double exact[2] = {std::sin(x), std::sin(x) / x - std::cos(x)};
   const int anchor = std::abs(psi[0]) >= std::abs(psi[1]) ? 0 : 1;
   const double scale = exact[anchor] / psi[static_cast<size_t>(anchor)];
@@ -38,7 +39,7 @@ std::vector<double> regular_functions(double x, int count) {
   return psi;
 }
 
-// x y_n(x), n = 0..count: upward, the direction in which they grow.
+// Returns x y_n(x), n = 0..count, by upward recurrence, the direction in which they grow.
 std::vector<double> singular_functions(double x, int count) {
   std::vector<double> chi = {-std::cos(x), -std::cos(x) / x - std::sin(x)};
   for (int n = 1; n < count; ++n) {
@@ -52,7 +53,7 @@ struct Coefficients {
   std::vector<std::complex<double>> a, b;  // [n - 1]: electric and magnetic multipoles
 };
 
-// b_n = j_n / h_n, a_n = (x j_n)' / (x h_n)', h_n = j_n - j y_n (time factor e^{+jwt}).
+// Computes b_n = j_n / h_n, a_n = (x j_n)' / (x h_n)', h_n = j_n - j y_n (time factor e^{+jwt}).
 Coefficients coefficients(double x) {
   const int count = static_cast<int>(x + 4.05 * std::cbrt(x) + 12.0);
   const std::vector<double> psi = regular_functions(x, count), chi = singular_functions(x, count);
@@ -77,7 +78,7 @@ double mie_rcs(double radius, double frequency, double bistatic_angle, Scatterin
   require(x <= kLargestSize, "radius", "must be such that 2 pi radius / wavelength <= 1e6", radius);
 
   const Coefficients multipoles = coefficients(x);
-  // pi_n = P_n^1 / sin, tau_n = d P_n^1 / d theta at the scattering angle, measured from straight on.
+  // The loop computes pi_n = P_n^1 / sin, tau_n = d P_n^1 / d theta at the scattering angle, measured from straight on.
   const double cosine = -std::cos(bistatic_angle);
   std::complex<double> sum = 0.0;
   double pi_below = 0.0, pi_here = 1.0;

@@ -1,5 +1,5 @@
 #pragma once
-// The perfectly conducting sphere, exactly: the reference for everything that ray optics says about curved metal.
+// Computes the exact echo of a perfectly conducting sphere, the reference for all that ray optics says about curved metal.
 
 namespace echopath {
 
@@ -8,7 +8,7 @@ enum class ScatteringPlane {
   kH,  // it is perpendicular to the electric field
 };
 
-// Radar cross section in m^2, far field, receiver co-polarised, by the Mie series.
+// Returns the radar cross section in m^2 in the far field, for a co-polarised receiver, by the Mie series.
 //   radius > 0 m, frequency > 0 Hz; ka = 2 pi radius frequency / c at most 1e6.
 //   bistatic_angle: rad in [0, pi] between the directions to transmitter and receiver; 0 is monostatic, where both
 //   planes agree.

@@ -19,7 +19,7 @@ std::complex<double> complex_permittivity(const Material& material, double frequ
 
 double facet_reflection(std::complex<double> permittivity) { return std::abs(fresnel_te(permittivity, 1.0)); }
 
-// `phase`: k sigma_h cos(incidence) in rad.
+// `phase` is k sigma_h cos(incidence) in rad.
 double ament_of_phase(double phase) { return std::exp(-2.0 * phase * phase); }
 
 }  // namespace
@@ -54,7 +54,7 @@ SurfaceResponse SurfaceModel::respond_at(double cos_incidence, PolarizationMode 
   return response;
 }
 
-// A conductor's TM coefficient is +1 there.
+// The TM coefficient of a conductor is +1 for field vectors.
 ModeCoefficients SurfaceModel::modes(double cos_incidence) const {
   if (!is_dielectric_) return {constant_.gamma, -constant_.gamma};
   const FresnelModes found = fresnel_modes(permittivity_, cos_incidence);

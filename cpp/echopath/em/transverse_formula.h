@@ -1,6 +1,6 @@
 #pragma once
-// The components of a polarisation across a direction (em/jones.h) for doubles and for vectors of doubles: Math as in
-// base/scalar_math.h.
+// Computes the components of a polarisation across a direction (em/jones.h) for doubles and for vectors of doubles. Math is
+// as in base/scalar_math.h.
 #include "echopath/base/scalar_math.h"
 #include "echopath/base/vector_of.h"
 
@@ -11,7 +11,7 @@ struct TransverseOf {
   Real horizontal, vertical;
 };
 
-// line: along the direction, of any length.
+// `line` points along the direction and may have any length.
 template <class Math, class Real>
 ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& line) {
   constexpr double kLeast = 1e-18;  // squares of sines below count as 0

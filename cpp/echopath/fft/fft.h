@@ -1,12 +1,12 @@
 #pragma once
-// Fourier transforms in double precision: a thin wrapper of FFTW, which appears nowhere else.
+// Wraps FFTW's Fourier transforms in double precision; FFTW appears nowhere else.
 #include <complex>
 #include <cstdint>
 #include <memory>
 
 namespace echopath {
 
-// Aligned complex numbers, zero at first: what a transform works on.
+// Holds aligned complex numbers, zero at first, for a transform to work on.
 class FftBuffer {
  public:
   explicit FftBuffer(int64_t size);  // raises invalid_argument unless size >= 1, bad_alloc when memory is short
@@ -24,10 +24,10 @@ class FftBuffer {
   std::complex<double>* data_ = nullptr;
 };
 
-// Exponent of the transform out[k] = sum_n in[n] e^{-+ j 2 pi k n / size}; neither direction is normalised.
+// The transform is out[k] = sum_n in[n] e^{-+ j 2 pi k n / size}, forward with the minus; neither direction is normalised.
 enum class FftDirection { kForward, kBackward };
 
-// A plan for one size. Planning is estimated, never measured: the same input gives the same bits in every run.
+// Holds a plan for one size. Planning is estimated, never measured, so that the same input gives the same bits in every run.
 class Fft {
  public:
   Fft(int size, FftDirection direction);  // raises invalid_argument unless size >= 1
@@ -35,8 +35,8 @@ class Fft {
   Fft(Fft&&) noexcept;
   Fft& operator=(Fft&&) noexcept;
   int size() const;
-  // In place; raises invalid_argument unless the buffer has the plan's size. Safe from several threads on different
-  // buffers.
+  // Transforms in place; raises invalid_argument unless the buffer has the plan's size. Safe from several threads on
+  // different buffers.
   void transform(FftBuffer& buffer) const;
 
  private:
@@ -44,7 +44,7 @@ class Fft {
   std::unique_ptr<Plan> plan_;
 };
 
-// The smallest 2^a 3^b 5^c >= size: sizes that transform quickly.
+// Returns the smallest 2^a 3^b 5^c >= size; such sizes transform quickly.
 int fast_fft_size(int size);
 
 }  // namespace echopath

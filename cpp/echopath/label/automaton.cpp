@@ -37,7 +37,7 @@ ECHOPATH_INLINE void keep_touching(const uint64_t* bits, uint64_t needed, size_t
                               " states; use smaller counts or split it, got " + text);
 }
 
-// Nondeterministic automaton (Thompson 1968): a state either reads one hit or branches without reading.
+// A nondeterministic automaton (Thompson 1968), in which a state either reads one hit or branches without reading.
 struct Nfa {
   struct State {
     int pattern = -1;        // index into `patterns`; -1: a branch
@@ -57,7 +57,7 @@ class NfaBuilder {
   Nfa take() { return std::move(nfa_); }
 
  private:
-  // The state from which `syntax` and then what follows `next` is read.
+  // Returns the state from which `syntax`, and then what follows `next`, is read.
   int build(const Syntax& syntax, int next) {
     switch (syntax.kind) {
       case Syntax::Kind::kHit:
@@ -123,7 +123,7 @@ class NfaBuilder {
   throw_expression_error(expression.text, glob.position, what);
 }
 
-// [M] whether the pattern takes a hit on each mesh, whatever its event.
+// Returns [M] whether the pattern takes a hit on each mesh, whatever its event.
 std::vector<bool> meshes_of(const HitPattern& pattern, const PathExpression& expression,
                             const std::vector<std::string>& mesh_names) {
   std::vector<bool> taken(mesh_names.size(), pattern.globs.empty());
@@ -163,7 +163,7 @@ bool takes_event(const HitPattern& pattern, bool diffuse) {
   return pattern.event == HitPattern::Event::kAny || (pattern.event == HitPattern::Event::kDiffuse) == diffuse;
 }
 
-// Subset construction (Rabin and Scott 1959).
+// Makes the automaton deterministic by subset construction (Rabin and Scott 1959).
 class Determiniser {
  public:
   Determiniser(const Nfa& nfa, const MeshClasses& classes, const std::string& text)
@@ -205,7 +205,7 @@ class Determiniser {
     return entry->second;
   }
 
-  // The reading and accepting states that branches lead to.
+  // Returns the reading and accepting states that branches lead to.
   StateSet closure(StateSet pending) {
     ++visit_;
     StateSet set;
@@ -256,7 +256,7 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
   find_needed_bits();
 }
 
-// By the paths from the start, in places of rows.
+// Walks from the start; states are named by the beginnings of their rows.
 bool Automaton::takes_something_without(uint32_t mesh_class) const {
   std::vector<uint8_t> was_seen(table_.size());
   std::vector<uint32_t> pending = {0};
@@ -295,7 +295,7 @@ namespace {
 
 constexpr size_t kWord = sizeof(uint64_t);
 
-// The first path from `path` on whose word of candidates is not all zeros; most paths are often none.
+// Returns the first path from `path` on in whose word of candidates not all are zero; often most paths are no candidates.
 size_t next_candidate(const std::vector<uint8_t>& candidates, size_t path, size_t end) {
   for (; path + kWord <= end; path += kWord) {
     uint64_t word;

@@ -31,7 +31,7 @@ double sum_of_squares(const std::vector<double>& values) {
   return sum;
 }
 
-// One part in one cell.
+// Holds one part in one cell.
 struct PartInCell {
   double power = 0.0;             // W
   double noise = 0.0;             // W^2, variance of the power by noise of second order
@@ -65,7 +65,7 @@ PartInCell part_in_cell(const BatchPowers& part, int num_batches, int64_t cell, 
   return made;
 }
 
-// All parts in one cell.
+// Holds all parts in one cell.
 class Cell {
  public:
   Cell(const std::vector<BatchPowers>& parts, int num_batches, int64_t cell, int64_t num_cells)
@@ -84,7 +84,7 @@ class Cell {
     return std::sqrt(sum_of_squares(parts_[part].influence) / pairs_ + parts_[part].noise);
   }
   double share(size_t part) const { return parts_[part].power / total_; }
-  // Standard error of share(plus) - share(minus); of share(plus) where there is no part `minus`.
+  // Returns the standard error of share(plus) - share(minus), or of share(plus) where there is no part `minus`.
   double error_of_difference(size_t plus, size_t minus) const {
     const bool is_difference = minus < parts_.size();
     std::vector<double> influence = share_influence_[plus];
@@ -104,7 +104,7 @@ class Cell {
   }
 
  private:
-  // From the shares without each batch in turn.
+  // Computes the influence of each batch from the shares without it.
   void set_share_influence() {
     share_influence_.assign(parts_.size(), std::vector<double>(static_cast<size_t>(num_batches_)));
     for (size_t b = 0; b < static_cast<size_t>(num_batches_); ++b) {

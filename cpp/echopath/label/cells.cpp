@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kCellsPerTask = 1 << 13;
 constexpr int64_t kMaxParts = std::numeric_limits<int16_t>::max();
 
-// Calls body(begin, end) for stretches of cells, in parallel.
+// Calls body(begin, end) for ranges of cells, in parallel.
 template <class Body>
 void for_cells(int64_t num_cells, const Body& body) {
   parallel_for((num_cells + kCellsPerTask - 1) / kCellsPerTask, [&](int64_t task) {
@@ -21,7 +21,7 @@ void for_cells(int64_t num_cells, const Body& body) {
   });
 }
 
-// Number of cells of `size` values of `count` parts or channels.
+// Returns the number of cells that `size` values of `count` parts or channels have.
 int64_t cells_of(size_t size, int64_t count, const char* argument) {
   require(count >= 1 && count <= kMaxParts, argument, "must be in [1, 32767]", count);
   const auto total = static_cast<int64_t>(size);
@@ -88,7 +88,8 @@ void add_cell(LabelRegion& region, int64_t row, int64_t column, double power) {
   region.last_column = first ? column : std::max(region.last_column, column);
 }
 
-// First and last of the occupied rows (ascending, at least one): all of them, or where rows wrap the shortest way round.
+// Sets the first and last of the occupied rows (ascending, at least one): all of them, or where rows wrap the shortest way
+// round.
 void set_rows(LabelRegion& region, const std::vector<int64_t>& occupied, const MapShape& shape) {
   region.first_row = occupied.front();
   region.last_row = occupied.back();

@@ -17,7 +17,7 @@ class Parser {
  public:
   Parser(std::string_view text, size_t at) : text_(text), at_(at) {}
 
-  // From T to R; position() is then behind it.
+  // Parses from T to R; position() is then behind it.
   Syntax parse() {
     skip_space();
     if (!take('T')) fail("expected T, the transmitter, at the beginning");
@@ -167,7 +167,7 @@ class Parser {
   int nesting_ = 0;
 };
 
-// Positions of globs in a text that begins at byte `begin` of the one that was read.
+// Moves the positions of globs to a text that begins at byte `begin` of the one that was read.
 void move_globs(Syntax& syntax, size_t begin) {
   for (HitPattern::Glob& glob : syntax.hit.globs) glob.position -= begin;
   for (Syntax& child : syntax.children) move_globs(child, begin);

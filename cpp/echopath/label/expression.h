@@ -26,7 +26,7 @@ namespace echopath {
 constexpr int kMaxRepeatCount = 64;  // the longest path that a trace makes
 constexpr int kNoLimit = -1;
 
-// What one hit must be.
+// Describes what one hit must be.
 struct HitPattern {
   enum class Event { kAny, kSpecular, kDiffuse };
   struct Glob {
@@ -38,7 +38,7 @@ struct HitPattern {
   std::vector<Glob> globs;  // empty: every mesh
 };
 
-// Syntax tree of a path expression without its T and R.
+// Holds the syntax tree of a path expression without its T and R.
 struct Syntax {
   enum class Kind { kHit, kSequence, kChoice, kRepeat };
   Kind kind = Kind::kSequence;   // a sequence without children takes no hit at all
@@ -52,18 +52,18 @@ struct PathExpression {
   Syntax body;
 };
 
-// Raises invalid_argument whose message says what was expected, with a caret under the fault.
+// Parses a path expression. Raises invalid_argument whose message says what was expected, with a caret under the fault.
 PathExpression parse_path_expression(std::string_view text);
 
-// The same for one that begins at byte `position` of a longer text and ends with its R, to which `position` is moved. The
-// caret stands in the whole text.
+// Parses an expression that begins at byte `position` of a longer text, and moves `position` behind its R. The caret stands
+// in the whole text.
 PathExpression read_path_expression(std::string_view text, size_t& position);
 
 // Raises invalid_argument("path expression: <what>") followed by the line of `text` that holds byte `position` and a
 // caret under it.
 [[noreturn]] void throw_expression_error(std::string_view text, size_t position, std::string_view what);
 
-// What stands at `position`, for such a message: a whole character or "the end".
+// Returns what stands at `position`, for such a message: a whole character or "the end".
 std::string found_in_expression(std::string_view text, size_t position);
 
 bool is_expression_space(char c);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int64_t kPathsPerTask = 1 << 16;
 
-// A family by indices into SurfaceMap::names; sorts as the families do.
+// Identifies a family by indices into SurfaceMap::names; it sorts as the families do.
 struct Key {
-  uint32_t owner = 0;  // num_objects: background
+  uint32_t owner = 0;  // num_objects for the background
   uint32_t order = 0, ghost_type = 0;
   std::vector<uint32_t> via;
   auto operator<=>(const Key&) const = default;
@@ -38,7 +38,7 @@ void classify(const Hit* hits, int num_hits, const SurfaceMap& surfaces, Key& ke
   if (key.order > 1) key.ghost_type = last == key.owner ? 1 : 2;
 }
 
-// Families of a range of paths, numbered as they come.
+// Holds the families of a range of paths, numbered as they come.
 struct Block {
   std::map<Key, uint32_t> index_of;
   std::vector<uint32_t> local;  // [paths of the range]
@@ -68,7 +68,7 @@ Family family_of(const Key& key, const SurfaceMap& surfaces) {
   return family;
 }
 
-// Index of each key that occurs, in their order.
+// Returns the index of each key that occurs, in the order of the keys.
 std::map<Key, uint32_t> number_keys(const std::vector<Block>& blocks, const SurfaceMap& surfaces) {
   std::map<Key, uint32_t> index_of{{Key{surfaces.num_objects, 0, 0, {}}, 0}};  // the background, which sorts last
   for (const Block& block : blocks) index_of.insert(block.index_of.begin(), block.index_of.end());

@@ -1,5 +1,5 @@
 #pragma once
-// Ghost families: which object an echo belongs to and how it went there, from the hits of its path.
+// A ghost family tells from the hits of a path which object an echo belongs to and how it went there.
 //
 // After the Radar Ghost Dataset (Kraus, Scheiner, Ritter, Dietmayer: "The Radar Ghost Dataset - An Evaluation of Ghost
 // Objects in Automotive Radar Data", 2021). There an annotator sees where an echo appears, here the path is known:
@@ -21,19 +21,20 @@
 namespace echopath {
 
 struct Family {
-  std::string object;            // empty: background
-  int ghost_type = 0;            // 0: real echo or background
-  int order = 0;                 // bounces; 1: real echo, 0: background
-  std::vector<std::string> via;  // what mirrored it, each once, in the order of the first bounce on it
+  std::string object;            // empty for the background
+  int ghost_type = 0;            // 0 for real echoes and the background
+  int order = 0;                 // bounces; 1 for real echoes, 0 for the background
+  std::vector<std::string> via;  // surfaces that mirrored it, each once, by the first bounce
 
-  // The label of the dataset, four digits CMTO without the class: 1000 C is to be added (1 pedestrian, 2 cyclist, 3 car,
-  // 4 large vehicle, 5 motorcycle). M is 1, as for objects whose ghosts are told apart. 111: real; 112: type 1 of order 2;
-  // 122: type 2 of order 2; 124: type 2 of order 3 (orders are bits there). The dataset leaves every other ghost
-  // undecided: 100. Background has 0 and no class.
+  // Returns the label of the dataset, four digits CMTO without the class: 1000 C is to be added (1 pedestrian, 2 cyclist, 3
+  // car, 4 large vehicle, 5 motorcycle). M is 1, as for objects whose ghosts are told apart. 111 is real, 112 type 1 of
+  // order 2, 122 type 2 of order 2, and 124 type 2 of order 3 (orders are bits there). The dataset leaves every other ghost
+  // undecided, 100. Background has 0 and no class.
   int class_code() const;
-  // For people, "walker: type 2, order 3 via wall_left"; "walker"; "background". Objects may be called so too.
+  // Returns a name for people: "walker: type 2, order 3 via wall_left", "walker" or "background". Objects may have such
+  // names too.
   std::string name() const;
-  // Differs where families do: the fields, each after the first behind kBetweenFields; empty for the background.
+  // Returns a key that differs where families do: all fields, separated by kBetweenFields; empty for the background.
   std::string key() const;
   auto operator<=>(const Family&) const = default;
 };
@@ -41,14 +42,16 @@ struct Family {
 inline constexpr char kBetweenFields = '\x1e';  // grouping.h: kBetweenNames is another
 
 struct Families {
-  // Those that occur, by object in the order of the list, order, type and surfaces; last the background, always.
+  // The families that occur, sorted by object in the order of the list, order, type and surfaces; the background is always
+  // the last.
   std::vector<Family> families;
   std::vector<uint32_t> family_of_path;  // [P] index into families
 
   Partition partition() const;  // names are those of Family::key
 };
 
-// `surfaces`: of the scene of the paths. The same for any number of threads. Raises Cancelled.
+// Finds the family of each path. `surfaces` are those of the paths' scene. The result does not depend on the threads. Raises
+// Cancelled.
 Families find_families(const Paths& paths, const SurfaceMap& surfaces, Job* job = nullptr);
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// Rules that sort the paths of any record of a scene: what `decompose` takes signals apart by. A frame with keyframes has
+// Defines rules that sort the paths of any record of a scene; `decompose` splits signals by them. A frame with keyframes has
 // several records, and the same rule sorts each.
 #include <functional>
 #include <vector>
@@ -9,21 +9,22 @@
 
 namespace echopath {
 
-// Parts of the same name of several records are one part. The last part is the rest, in all records the same.
+// A grouping sorts paths into parts. Parts of the same name in several records are one part. The last part is the rest, the
+// same in all records.
 using Grouping = std::function<Partition(const Paths&, Job*)>;
 
-// make_partition.
+// Groups by make_partition.
 Grouping by_selections(std::vector<NamedSelection> parts);
 
-// find_families.
+// Groups by find_families.
 Grouping by_families(SurfaceMap surfaces);
 
-// What error bars are made from: the coherent and the diffuse paths of each batch of rays, "batch 0 coherent",
-// "batch 0 diffuse", ...; last "all batches", the paths by images, which stand in each batch's estimate in full.
+// Groups the paths for error bars: the coherent and the diffuse paths of each batch of rays, "batch 0 coherent", "batch 0
+// diffuse", ...; the last group, "all batches", holds the paths by images, which count in full in each batch's estimate.
 Grouping by_batches();
 inline constexpr const char* kAllBatches = "all batches";
 
-// The combinations of parts that occur, in order; names joined by kBetweenNames.
+// Groups by the combinations of parts that occur, in order; kBetweenNames joins their names.
 Grouping by_all(std::vector<Grouping> groupings);
 inline constexpr char kBetweenNames = '\x1f';
 

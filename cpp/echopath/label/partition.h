@@ -1,5 +1,5 @@
 #pragma once
-// Paths sorted into named parts that always add up to the whole; and several such views from one synthesis.
+// Sorts paths into named parts that always add up to the whole, and combines several such views in one synthesis.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ struct NamedSelection {
   Selection selection;
 };
 
-// Every path is in exactly one part.
+// Assigns every path to exactly one part.
 struct Partition {
   std::vector<std::string> names;  // of the parts; the last is "other"
   std::vector<uint32_t> group;     // [P] index into names
@@ -22,11 +22,11 @@ struct Partition {
 // Raises invalid_argument when a name is empty, "other" or given twice.
 void check_part_names(const std::vector<NamedSelection>& parts);
 
-// The first selection that takes a path names its part; paths that none takes are "other". Raises what check_part_names
-// does, and invalid_argument when a glob takes no mesh; Cancelled when the job is.
+// The first selection that takes a path names its part; paths that none takes are "other". Raises as check_part_names, and
+// invalid_argument when a glob takes no mesh; raises Cancelled when the job is cancelled.
 Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& parts, Job* job = nullptr);
 
-// Several partitions of the same paths in one group index: one group per combination of parts that occurs.
+// Combines several partitions of the same paths in one group index: one group per combination of parts that occurs.
 struct CombinedPartition {
   std::vector<Partition> partitions;
   std::vector<uint32_t> group;               // [P]
@@ -36,11 +36,11 @@ struct CombinedPartition {
   uint32_t part_in(uint32_t combined_group, size_t partition) const {
     return part_of_group[combined_group * partitions.size() + partition];
   }
-  // The groups that add up to one part, ascending; empty for a part without paths.
+  // Returns the groups that add up to one part, ascending; empty for a part without paths.
   std::vector<uint32_t> groups_of(size_t partition, uint32_t part) const;
 
-  // Sums what was computed per group into one part. by_group: [num_groups, size], for example the cubes of one
-  // synthesis pass. Returns [size], added in ascending order of groups; zeros for a part without paths.
+  // Sums values per group into one part. by_group is [num_groups, size], for example the cubes of one synthesis pass.
+  // Returns [size], added in ascending order of groups; zeros for a part without paths.
   template <class Value>
   std::vector<Value> sum_part(size_t partition, uint32_t part, const std::vector<Value>& by_group, size_t size) const {
     std::vector<Value> sum(size);
@@ -52,8 +52,8 @@ struct CombinedPartition {
   }
 };
 
-// Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations; Cancelled
-// when the job is.
+// Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations; raises
+// Cancelled when the job is cancelled.
 CombinedPartition combine(std::vector<Partition> partitions, Job* job = nullptr);
 
 }  // namespace echopath

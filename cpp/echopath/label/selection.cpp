@@ -98,7 +98,7 @@ void narrow_by_expression(PathTraits& paths, const PathExpression& expression, B
   narrow(Automaton(expression, record.scene->mesh_names()), record, candidates, job, paths.mesh_bits(job));
 }
 
-// Counts in [min, min + range].
+// Keeps counts in [min, min + range].
 ECHOPATH_INLINE void keep_counts(const uint8_t* counts, uint8_t min, uint8_t range, size_t size, uint8_t* candidates) {
   for (size_t i = 0; i < size; ++i) candidates[i] &= static_cast<uint8_t>(static_cast<uint8_t>(counts[i] - min) <= range);
 }
@@ -126,7 +126,7 @@ void clear(Bits& bits, const Bits& cleared) {
   for (size_t path = 0; path < bits.size(); ++path) bits[path] &= static_cast<uint8_t>(~cleared[path]);
 }
 
-// With the fewest digits that read back as the same number.
+// Writes the fewest digits that read back as the same number.
 std::string power_text(Selection::Comparison comparison, double watts) {
   constexpr std::array<const char*, 4> kSigns = {"<", "<=", ">", ">="};
   std::array<char, 32> digits{};
@@ -176,7 +176,7 @@ void Selection::narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job*
 }
 
 void Selection::narrow_by_children(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const {
-  if (term_->kind == Term::Kind::kAnd) {  // what is quick to tell spares expressions the rest
+  if (term_->kind == Term::Kind::kAnd) {  // quick children go first and spare the expressions work
     const auto is_quick = [](const Selection& child) { return child.term_->kind == Term::Kind::kNumBounces; };
     for (const bool quick : {true, false}) {
       for (const Selection& child : term_->children) {
@@ -185,7 +185,7 @@ void Selection::narrow_by_children(PathTraits& paths, std::vector<uint8_t>& cand
     }
     return;
   }
-  Bits left = candidates;  // that no child takes; of one child it is the complement
+  Bits left = candidates;  // those that no child takes; for one child, the complement
   for (const Selection& child : term_->children) {
     Bits taken = left;
     child.narrow(paths, taken, job);

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxNesting = 100;  // parentheses and ~; bounds the recursion here and in Selection
 constexpr std::string_view kPower = "power";
 
-// Recursive descent; at_ is the next byte.
+// Parses by recursive descent; at_ is the next byte.
 class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
@@ -90,7 +90,7 @@ class Parser {
     at_ += symbol.size();
     return true;
   }
-  // Tells of all of the word that is there.
+  // Quotes the whole word that is there.
   [[noreturn]] void fail_at_word(const std::string& expected) {
     skip_space();
     const std::string_view rest = text_.substr(at_), word = rest.substr(0, rest.find_first_of(" \t\r\n()&|"));

@@ -1,5 +1,5 @@
 #pragma once
-// Selections as text: path expressions joined by & | ~ and parentheses, as Selection::text writes them.
+// Reads selections from text: path expressions joined by & | ~ and parentheses, as Selection::text writes them.
 //
 //   selection   := conjunction { '|' conjunction }
 //   conjunction := operand { '&' operand }
@@ -13,7 +13,7 @@
 
 namespace echopath {
 
-// Raises invalid_argument whose message says what was expected, with a caret under the fault.
+// Parses a selection. Raises invalid_argument whose message says what was expected, with a caret under the fault.
 Selection parse_selection(std::string_view text);
 
 }  // namespace echopath

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
-// Fills in the surfaces of meshes that no object has.
+// Fills in the surfaces of meshes that belong to no object.
 class SurfaceFinder {
  public:
   SurfaceFinder(const Scene& scene, SurfaceMap& map)
@@ -72,7 +72,7 @@ void require_takes_mesh(bool takes_any, const std::string& glob, const std::vect
   require(false, "objects", "must be globs that take meshes (nearest names: " + nearest + ")", "'" + glob + "'");
 }
 
-// Gives the meshes that `glob` takes to `object` unless they are taken.
+// Gives the meshes that `glob` takes to `object` unless another object has them.
 void take_meshes(const std::string& glob, uint32_t object, const std::vector<std::string>& mesh_names, SurfaceMap& map) {
   bool takes_any = false;
   for (size_t mesh = 0; mesh < mesh_names.size(); ++mesh) {

@@ -1,5 +1,5 @@
 #pragma once
-// What echoes are told by: the objects of a scene, and the surfaces around them that mirror or hide them.
+// Names what echoes are told apart by: the objects of a scene, and the surfaces around them that mirror or hide them.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ struct NamedGlobs {
   std::vector<std::string> globs;  // takes the meshes that any of them takes (scene.h: glob_takes)
 };
 
-// Names of all meshes: each belongs to one object or to one other surface.
+// Assigns each mesh to one object or to one other surface.
 //
 // A surface is the highest group above a mesh that holds no object and at most one flagged mirror: as a rule the child of
 // the scene's root, but each wall of a street on its own, because each mirror makes an image of its own.
@@ -26,12 +26,12 @@ struct SurfaceMap {
   std::vector<uint32_t> meshes_of(uint32_t surface) const;
 };
 
-// The first object that takes a mesh has it. Raises invalid_argument for names that are empty or given twice, and for a
-// glob that takes no mesh (naming the nearest names) or an object that is left without one by those before it.
+// Gives each mesh to the first object that takes it. Raises invalid_argument for names that are empty or given twice, for a
+// glob that takes no mesh (naming the nearest names) and for an object that those before it leave without a mesh.
 SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objects);
 
-// The objects that rays are aimed at: children of the root, without their flagged mirrors, whose bounding sphere at `time` (s) does
-// not hold `antenna` (world); in the order of the scene.
+// Takes the objects that rays are aimed at: children of the root, without their flagged mirrors, whose bounding sphere at
+// `time` (s) does not hold `antenna` (world); in the order of the scene.
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
 
 }  // namespace echopath

@@ -21,13 +21,13 @@ constexpr int64_t kDirectionsPerTask = 1024;
 // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
 constexpr double kSameDepth = 1e-5;
 
-// The antennas of one end of the radar.
+// Holds the antennas of one end of the radar.
 struct End {
   Vec3 position;  // mean, relative to the origin
   const std::vector<Antenna>& antennas;
   Mat3 radar_from_world;
 
-  bool looks_toward(const Vec3& direction) const {
+  bool has_gain_toward(const Vec3& direction) const {
     const Vec3 in_radar = radar_from_world * direction;
     return std::any_of(antennas.begin(), antennas.end(), [&](const Antenna& antenna) {
       return antenna.pattern.toward(antenna.orientation.conjugate() * in_radar).power > 0.0;
@@ -38,7 +38,7 @@ struct End {
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3 normal = (b - a).cross(c - a).normalized();
-  bool is_above = true;  // all three edges leave the foot of the perpendicular on the inner side
+  bool is_above = true;  // the foot of the perpendicular lies on the inner side of all three edges
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
     is_above = is_above && normal.cross(to - from).dot(point - from) >= 0.0;
@@ -47,8 +47,8 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
   return is_above ? std::abs(normal.dot(point - a)) : least;
 }
 
-// The nodes of a scene in their places, with some of the meshes.
-Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
+// Returns the scene with the nodes in their places but only the meshes of one object.
+Scene scene_with_object(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
   std::vector<bool> is_kept(scene.nodes().size());
   for (const uint32_t mesh : surfaces.meshes_of(object)) is_kept[static_cast<size_t>(scene.meshes()[mesh].node)] = true;
   Scene part;
@@ -65,7 +65,7 @@ Scene only(const Scene& scene, const SurfaceMap& surfaces, uint32_t object) {
   return part;
 }
 
-// What some directions found.
+// Counts what some directions found.
 struct Tally {
   int64_t num_found = 0, num_visible = 0;
   std::vector<int64_t> hidden_by;  // by surface
@@ -80,15 +80,15 @@ struct Tally {
   }
 };
 
-// One object in its scene.
-class Onlooker {
+// Finds what hides one object in its scene.
+class ObjectScanner {
  public:
-  Onlooker(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
-           uint32_t object)
+  ObjectScanner(const Scene& scene, const EmbreeScene& whole, const EmbreeScene& alone, const SurfaceMap& surfaces,
+                uint32_t object)
       : scene_(scene), whole_(whole), alone_(alone), surfaces_(surfaces), object_(object),
         mesh_ids_(surfaces.meshes_of(object)) {}
 
-  Sight look(const End& end, int num_directions, Job* job) const {
+  Sight sight_from(const End& end, int num_directions, Job* job) const {
     const Stratum stratum = stratum_from(end.position);
     int64_t count = num_directions;
     Tally tally = scan(end, stratum, count, job);
@@ -100,7 +100,7 @@ class Onlooker {
   }
 
  private:
-  // All directions for what surrounds the antenna.
+  // Returns the cone of directions that holds the object, or all directions where it surrounds the antenna.
   Stratum stratum_from(const Vec3& apex) const {
     std::vector<Vec3> vertices;
     for (const uint32_t id : mesh_ids_) vertices.insert(vertices.end(), whole_.vertices(id).begin(), whole_.vertices(id).end());
@@ -116,7 +116,7 @@ class Onlooker {
       if (job) job->throw_if_cancelled();
       const int64_t last = std::min(count, (task + 1) * kDirectionsPerTask);
       for (int64_t i = task * kDirectionsPerTask; i < last; ++i) {
-        look_along(directions.direction(0, points->point(i)), end, tallies[static_cast<size_t>(task)]);
+        add_direction(directions.direction(0, points->point(i)), end, tallies[static_cast<size_t>(task)]);
       }
     });
     Tally sum(surfaces_.names.size());
@@ -124,13 +124,13 @@ class Onlooker {
     return sum;
   }
 
-  void look_along(const Vec3& direction, const End& end, Tally& tally) const {
+  void add_direction(const Vec3& direction, const End& end, Tally& tally) const {
     RayHit object, nearest;
     if (alone_.intersect(end.position, direction, object) != EmbreeScene::Verdict::kHit) return;
     const EmbreeScene::Verdict verdict = whole_.intersect(end.position, direction, nearest);
     if (verdict == EmbreeScene::Verdict::kFalseHit) return;
     ++tally.num_found;
-    tally.in_view = tally.in_view || end.looks_toward(direction);
+    tally.in_view = tally.in_view || end.has_gain_toward(direction);
     const uint32_t surface = verdict == EmbreeScene::Verdict::kHit ? surfaces_.of_mesh[nearest.hit.mesh_id] : object_;
     if (surface == object_ || nearest.distance >= object.distance * (1.0 - kSameDepth)) ++tally.num_visible;
     else ++tally.hidden_by[surface];
@@ -138,7 +138,7 @@ class Onlooker {
 
   Sight sight_of(const Tally& tally, double solid_angle_each, const End& end) const {
     Sight sight;
-    sight.in_view = tally.num_found > 0 ? tally.in_view : looks_at_a_vertex(end);
+    sight.in_view = tally.num_found > 0 ? tally.in_view : has_gain_toward_a_vertex(end);
     sight.distance = distance_from(end.position);
     if (tally.num_found == 0) return sight;
     const auto found = static_cast<double>(tally.num_found);
@@ -153,11 +153,11 @@ class Onlooker {
     return sight;
   }
 
-  bool looks_at_a_vertex(const End& end) const {
+  bool has_gain_toward_a_vertex(const End& end) const {
     return std::any_of(mesh_ids_.begin(), mesh_ids_.end(), [&](uint32_t mesh) {
       const std::vector<Vec3>& vertices = whole_.vertices(mesh);
       return std::any_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
-        return vertex != end.position && end.looks_toward((vertex - end.position).normalized());
+        return vertex != end.position && end.has_gain_toward((vertex - end.position).normalized());
       });
     });
   }
@@ -203,11 +203,11 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   std::vector<ObjectVisibility> seen;
   if (job) job->start(surfaces.num_objects);
   for (uint32_t object = 0; object < surfaces.num_objects; ++object) {
-    const Scene part = only(scene, surfaces, object);
+    const Scene part = scene_with_object(scene, surfaces, object);
     const EmbreeScene alone(part, PosedScene(part, settings.time), origin, job);
-    const Onlooker onlooker(scene, whole, alone, surfaces, object);
-    seen.push_back({surfaces.names[object], onlooker.look(sending, settings.num_directions, job),
-                    onlooker.look(receiving, settings.num_directions, job)});
+    const ObjectScanner scanner(scene, whole, alone, surfaces, object);
+    seen.push_back({surfaces.names[object], scanner.sight_from(sending, settings.num_directions, job),
+                    scanner.sight_from(receiving, settings.num_directions, job)});
     if (job) job->advance(1);
   }
   return seen;

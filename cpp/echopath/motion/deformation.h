@@ -1,5 +1,5 @@
 #pragma once
-// Deformation of a mesh: time -> vertices.
+// A deformation maps time to the vertices of a mesh.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -14,19 +14,19 @@ class Deformation {
  public:
   virtual ~Deformation() = default;
   virtual int64_t num_vertices() const = 0;
-  // Vertices [V] in m at `time` (s); raises invalid_argument outside span().
+  // Returns the vertices [V] in m at `time` (s); raises invalid_argument outside span().
   virtual std::vector<Vec3> at(double time) const = 0;
-  // Vertices `indices` [I] only, at the cost of these; out [I]. Raises invalid_argument for an index beyond V.
+  // Writes only the vertices `indices` [I] to out [I], at the cost of these. Raises invalid_argument for an index beyond V.
   virtual void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const = 0;
-  // Times (s) where it is not smooth, ascending, ends of the span excluded.
+  // Returns the times (s) where the deformation is not smooth, ascending, without the ends of the span.
   virtual std::vector<double> breakpoints() const = 0;
   virtual TimeSpan span() const = 0;
-  // As Motion::turn_rate, of all vertices.
+  // Returns the bound of Motion::turn_rate for the fastest vertex, rad/s.
   virtual double turn_rate(const TimeSpan& during) const = 0;
 };
 
-// Sampled vertices: T frames of V vertices each, [T][V] in m. Interpolation as in KeyframeMotion; cubic ones keep the
-// second derivatives too, so they take twice the memory of their frames.
+// Interpolates sampled vertices, T frames of V vertices each, [T][V] in m, as KeyframeMotion does. Cubic interpolation keeps
+// the second derivatives too, so it takes twice the memory of the frames.
 class VertexSequence : public Deformation {
  public:
   VertexSequence(std::vector<double> times, std::vector<std::vector<Vec3>> vertices,

@@ -8,9 +8,9 @@
 namespace echopath {
 namespace {
 
-// Anything farther from length 1 is a mistake: another convention, or angles.
+// A quaternion farther from length 1 than this is a mistake, such as another convention or angles.
 constexpr double kUnitTolerance = 1e-6;
-// Nearer to length 1 than this a quaternion is left alone, so that saved ones keep their bits.
+// A quaternion nearer to length 1 than this is left alone, so that saved ones keep their bits.
 constexpr double kUnitRounding = 1e-14;
 
 void check_translations(const std::vector<Vec3>& translations, size_t num_times) {
@@ -20,7 +20,7 @@ void check_translations(const std::vector<Vec3>& translations, size_t num_times)
     require(value.allFinite(), "translations", "must be finite", value.transpose());
 }
 
-// Unit length, and neighbours in the same half space: q and -q are one rotation, but not to an interpolation.
+// Normalises the quaternions and puts neighbours in one half space: q and -q are one rotation, but not to an interpolation.
 std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num_times) {
   if (rotations.empty()) return rotations;
   require(rotations.size() == num_times, "rotations", "must be as many as times", rotations.size());
@@ -33,7 +33,7 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
   return rotations;
 }
 
-// Second derivatives of `samples` at the knots, in the same type.
+// Returns the second derivatives of `samples` at the knots, in the same type.
 template <class Value>
 std::vector<Value> curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
   if (samples.empty() || !knots.has_curvature()) return {};
@@ -64,17 +64,18 @@ struct KeyframeMotion::Data {
     return value;
   }
 
-  // Bound of the angular speed between knots k and k + 1, rad/s: twice the speed of the unit quaternion, whose spline has the
-  // derivative of the line and at most h / 3 times the second derivatives at its ends. It stays longer than the chord.
+  // Returns a bound of the angular speed between knots k and k + 1, rad/s: twice the speed of the unit quaternion. Its
+  // spline has the derivative of the chord plus at most h / 3 times the second derivatives at its ends, and is never shorter
+  // than the chord.
   double angular_speed(size_t k) const {
-    constexpr double kShortestChord = 0.7071;  // between rotations less than 180 degrees apart
+    constexpr double kMinQuaternionLength = 0.7071;  // between rotations less than 180 degrees apart
     const double step = knots.times()[k + 1] - knots.times()[k];
     if (knots.interpolation() == Interpolation::kLinear) return rotations[k].angularDistance(rotations[k + 1]) / step;
     double speed = (rotations[k + 1].coeffs() - rotations[k].coeffs()).norm() / step;
     if (knots.has_curvature()) {
       speed += step / 3.0 * (rotation_curvature[k].coeffs().norm() + rotation_curvature[k + 1].coeffs().norm());
     }
-    return 2.0 * speed / kShortestChord;
+    return 2.0 * speed / kMinQuaternionLength;
   }
 
   Quaternion rotation(const SplineKnots::Weights& w) const {

@@ -1,5 +1,5 @@
 #pragma once
-// Motion of a node: time -> rigid transform relative to the node's placement.
+// A motion maps time to a rigid transform relative to the placement of its node.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// The closed interval of times, in s, on which a motion is defined.
+// Holds the closed interval of times, in s, on which a motion is defined.
 struct TimeSpan {
   double begin = -1e300;  // s
   double end = 1e300;     // s
@@ -19,19 +19,20 @@ enum class Interpolation { kCubic, kLinear };
 class Motion {
  public:
   virtual ~Motion() = default;
-  // Rigid transform at `time` (s), in the axes of the node's parent about the node's origin:
+  // Returns the rigid transform at `time` (s), in the axes of the node's parent about the node's origin:
   // parent_from_node(t) = Translation(placement) * at(t) * Rotation(placement).
   // Raises invalid_argument when `time` lies outside span().
   virtual Transform at(double time) const = 0;
-  // Times (s) where the motion is not smooth, ascending, ends of the span excluded.
+  // Returns the times (s) where the motion is not smooth, ascending, without the ends of the span.
   virtual std::vector<double> breakpoints() const { return {}; }
   virtual TimeSpan span() const { return {}; }
-  // How fast what it does comes and goes within `during`, a bound in rad/s: its angular speed or, where it goes to and fro
-  // between samples, pi by the shortest time from one turning point to the next; the larger. 0: it goes straight on.
+  // Returns a bound (rad/s) of how fast the motion oscillates within `during`: the larger of its angular speed and, where it
+  // moves to and fro between samples, pi over the shortest time between two turning points. 0 means that it goes straight
+  // on.
   virtual double turn_rate(const TimeSpan& during) const = 0;
 };
 
-// Constant velocity and constant rotation: at(t) = Translation(velocity t) * Rotation(angular_velocity t).
+// Moves at a constant velocity and turns at a constant rate: at(t) = Translation(velocity t) * Rotation(angular_velocity t).
 class LinearMotion : public Motion {
  public:
   // velocity [m/s]; angular_velocity [rad/s], right-handed about its own direction. Values must be finite.
@@ -45,14 +46,14 @@ class LinearMotion : public Motion {
   Vec3 velocity_, angular_velocity_;
 };
 
-// Translations [T] in m and unit quaternions [T] at ascending times [T] in s, T >= 2.
-// kCubic: C2 not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised);
-// kLinear: piecewise linear and slerp, with a breakpoint at each inner time.
-// q and -q are one rotation: between keys it goes the shorter way, so neighbours should be less than 180 degrees apart.
+// Interpolates translations [T] in m and unit quaternions [T] given at ascending times [T] in s, T >= 2.
+// kCubic uses C2 not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised);
+// kLinear is piecewise linear with slerp, and has a breakpoint at each inner time. As q and -q are one rotation, it turns
+// the shorter way between keys, so neighbours should be less than 180 degrees apart.
 class KeyframeMotion : public Motion {
  public:
-  // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit
-  // length by 1e-6. Raises invalid_argument.
+  // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit length by
+  // 1e-6. Raises invalid_argument otherwise.
   KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations, std::vector<Quaternion> rotations,
                  Interpolation interpolation = Interpolation::kCubic);
   ~KeyframeMotion() override;
@@ -70,8 +71,8 @@ class KeyframeMotion : public Motion {
   std::shared_ptr<const Data> data_;
 };
 
-// parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement), the one rule by which motions move what is
-// placed: it turns about its own origin, in the axes of its parent. `motion` may be null: at rest.
+// Returns parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement). By this one rule motions move what
+// is placed: it turns about its own origin, in the axes of its parent. A null `motion` means at rest.
 Transform moved(const Transform& placement, const Motion* motion, double time);
 
 }  // namespace echopath

@@ -10,9 +10,9 @@
 namespace echopath {
 namespace {
 
-// Farther from 1 than this a sum of weights is a mistake; files keep weights in single precision.
+// A sum of weights farther from 1 than this is a mistake; files keep weights in single precision.
 constexpr double kSumTolerance = 1e-4;
-// Nearer to 1 than this it is left alone, so that saved weights keep their bits.
+// A sum nearer to 1 than this is left alone, so that saved weights keep their bits.
 constexpr double kSumRounding = 1e-13;
 
 struct Influence {
@@ -115,7 +115,7 @@ const std::vector<Vec3>& Skin::vertices() const { return data_->vertices; }
 const std::vector<Joint>& Skin::joints() const { return data_->joints; }
 
 std::vector<Transform> Skin::joint_transforms(double time) const {
-  std::vector<Transform> transforms;  // first skin_from_joint: children need it
+  std::vector<Transform> transforms;  // skin_from_joint at first, because children need it
   transforms.reserve(data_->joints.size());
   for (const Joint& joint : data_->joints) {
     const Transform local = moved(joint.placement, joint.motion.get(), time);

@@ -15,24 +15,25 @@ struct Joint {
   int parent = -1;                                // index of an earlier joint, -1: moves in the frame of the skin
   Transform placement = Transform::Identity();    // at rest, relative to the parent
   std::shared_ptr<const Motion> motion;           // may be null
-  // Frame of the skin -> frame of the joint, where the vertices were bound to it. None: as the joints stand at rest.
+  // Takes the frame of the skin to that of the joint, as the vertices were bound to it. None means the joints' placements at
+  // rest.
   std::optional<Transform> inverse_bind;
 };
 
-// Which joints a vertex follows, and how much: row-major [V, per_vertex]. Entries of weight 0 count as not there.
+// Tells in rows [V, per_vertex] which joints a vertex follows, and with what weight. Entries of weight 0 are ignored.
 struct SkinWeights {
   int64_t per_vertex = 0;
   std::vector<uint32_t> joint;
   std::vector<double> weight;  // >= 0, the sum over each row is 1
 };
 
-// v(t) = sum_j weight_j * skin_from_joint_j(t) * inverse_bind_j * v, exact at every time (Magnenat-Thalmann, Laperriere,
-// Thalmann 1988, "Joint-dependent local deformations"). Away from rigid weights the surface narrows where joints twist,
-// as that method does. Poses only what it is asked for. Immutable.
+// Computes v(t) = sum_j weight_j * skin_from_joint_j(t) * inverse_bind_j * v, exactly at every time (Magnenat-Thalmann,
+// Laperriere, Thalmann 1988, "Joint-dependent local deformations"). Where a vertex follows several joints, the surface
+// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Immutable.
 class Skin : public Deformation {
  public:
-  // vertices [V] in m as bound, in the frame of the skin. Any number of joints per vertex; rows whose sum is off 1 by less
-  // than 1e-4 are scaled. Raises invalid_argument naming the argument.
+  // vertices [V] in m as bound, in the frame of the skin. A vertex may follow any number of joints; rows whose sum is off 1
+  // by less than 1e-4 are scaled. Raises invalid_argument naming the argument.
   Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights);
   ~Skin() override;
 
@@ -40,16 +41,17 @@ class Skin : public Deformation {
   std::vector<Vec3> at(double time) const override;
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints() const override;  // of all joints
-  TimeSpan span() const override;                    // common to all joints; empty (begin > end) where there is none
-  double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, those above it added
+  TimeSpan span() const override;                    // common to all joints; begin > end where there is none
+  double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, with the joints above it added
 
   const std::vector<Vec3>& vertices() const;
   const std::vector<Joint>& joints() const;  // all with inverse_bind
-  SkinWeights weights() const;               // rows filled up with joint 0, weight 0
+  SkinWeights weights() const;               // rows are padded with joint 0, weight 0
 
-  // skin_from_joint(t) * inverse_bind [J]: what moves the vertices that follow one joint alone.
+  // Returns skin_from_joint(t) * inverse_bind [J], which moves the vertices that follow one joint alone.
   std::vector<Transform> joint_transforms(double time) const;
-  // Joint [F] of the largest summed weight over the corners of each triangle (indices of vertices), the first of equals.
+  // Returns for each triangle [F] (indices of vertices) the joint of the largest weight, summed over its corners; the first
+  // of equals.
   std::vector<uint32_t> dominant_joint(std::span<const std::array<uint32_t, 3>> triangles) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 // Times are sums of intervals, so the last chirp may pass the last key by a few units in the last place.
 constexpr double kTimeRounding = 1e-12;
-constexpr double kLeastWay = 1e-9;  // m
+constexpr double kMinDisplacement = 1e-9;  // m
 constexpr int64_t kColumnsPerTask = 2048;  // keeps three rows of a block in the first-level cache
 
 void check_times(const std::vector<double>& times) {
@@ -51,20 +51,20 @@ void TurningPoints::add(double time, const Vec3& position) {
   is_empty_ = false;
 }
 
-// The extreme goes along with what travels on; a way back of more than rounding makes it a turning point.
+// The extreme moves on while the position does; a displacement back by more than rounding makes it a turning point.
 void TurningPoints::add(double time, double value, Axis& axis) {
-  const double way = value - axis.extreme;
-  if (axis.direction != 0 && way * axis.direction >= 0.0) {
+  const double displacement = value - axis.extreme;
+  if (axis.direction != 0 && displacement * axis.direction >= 0.0) {
     axis.extreme = value, axis.time = time;
     return;
   }
-  if (std::abs(way) <= kLeastWay) return;
+  if (std::abs(displacement) <= kMinDisplacement) return;
   if (axis.direction != 0) {
     if (axis.has_turned) rate_ = std::max(rate_, kPi / (axis.time - axis.last_turn));
     axis.has_turned = true;
     axis.last_turn = axis.time;
   }
-  axis.direction = way > 0.0 ? 1 : -1;
+  axis.direction = displacement > 0.0 ? 1 : -1;
   axis.extreme = value, axis.time = time;
 }
 

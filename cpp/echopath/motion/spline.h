@@ -1,5 +1,5 @@
 #pragma once
-// Interpolation over knot times, shared by everything that is sampled: positions, quaternions, vertices.
+// Interpolates over knot times, for everything that is sampled: positions, quaternions, vertices.
 #include <cstdint>
 #include <vector>
 
@@ -7,14 +7,14 @@
 
 namespace echopath {
 
-// Knot times with the factors of the spline equations: made once, used for any number of columns. Immutable.
+// Holds knot times and the factors of the spline equations, made once and used for any number of columns. Immutable.
 //
 // kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two
 // and the last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the
 // parabola.
 class SplineKnots {
  public:
-  // `times` [T] in s. Raises invalid_argument naming `times` unless T >= 2, finite and strictly ascending.
+  // `times` [T] in s. Raises invalid_argument naming `times` unless there are at least 2, finite and strictly ascending.
   SplineKnots(std::vector<double> times, Interpolation interpolation);
 
   const std::vector<double>& times() const { return times_; }
@@ -29,12 +29,12 @@ class SplineKnots {
     double value[2];
     double curvature[2];  // s^2
   };
-  // Raises invalid_argument outside span(); rounding errors of the time are forgiven.
+  // Raises invalid_argument outside span(), but forgives rounding errors of the time.
   Weights weights(double time) const;
 
   bool has_curvature() const { return interpolation_ == Interpolation::kCubic && times_.size() > 2; }
-  // Second derivatives (per s^2) of the splines through `width` columns of samples: rows [T] point to `width` numbers
-  // each, and so do `out` [T]. Only where has_curvature().
+  // Computes the second derivatives (per s^2) of the splines through `width` columns of samples: rows [T] point to `width`
+  // numbers each, and so do `out` [T]. Requires has_curvature().
   void second_derivatives(const std::vector<const double*>& rows, int64_t width, const std::vector<double*>& out) const;
 
  private:
@@ -48,14 +48,14 @@ class SplineKnots {
   std::vector<double> lower_, inverse_, upper_;     // [T] rows 1..T-2 of the factored tridiagonal matrix
 };
 
-// Indices [first, last] of the knots between which a span of time lies, as far as there are knots.
+// Holds the indices of the knots between which a span of time lies, as far as there are knots.
 struct KnotRange {
   size_t first = 0, last = 0;
 };
 KnotRange knots_around(const std::vector<double>& times, const TimeSpan& during);
 
-// pi by the shortest time between two turning points of a sampled position, rad/s; 0 where it has fewer than two. Ways of less
-// than a nanometre are rounding.
+// Finds the turning points of a sampled position. rate() is pi over the shortest time between two of them, rad/s, or 0 where
+// there are fewer than two. Displacements of less than a nanometre are rounding.
 class TurningPoints {
  public:
   void add(double time, const Vec3& position);
@@ -75,7 +75,7 @@ class TurningPoints {
   double rate_ = 0.0;
 };
 
-// Raises invalid_argument unless `time` is inside `span` up to rounding; returns it moved into the span.
+// Returns `time` moved into `span`; raises invalid_argument unless it is inside up to rounding.
 double time_inside(double time, const TimeSpan& span);
 
 }  // namespace echopath

@@ -21,13 +21,13 @@ bool same_point(const Hit& a, const Hit& b) {
   return a.mesh_id == b.mesh_id && a.triangle_id == b.triangle_id && a.u == b.u && a.v == b.v;
 }
 
-// Place of the k-th diffuse hit of a path, in travel order.
+// Returns the place of the k-th diffuse hit of a path, in travel order.
 int diffuse_hit(uint64_t diffuse, int k) {
   for (; k > 0; --k) diffuse &= diffuse - 1;
   return std::countr_zero(diffuse);
 }
 
-// Paths that share a random phase run over the same diffuse hits, in this or the reversed order.
+// Returns whether two paths share a random phase: they run over the same diffuse hits, in the same or the reversed order.
 bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
   const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)], of_second = paths.diffuse[static_cast<size_t>(second)];
   const int count = std::popcount(of_first);
@@ -43,15 +43,15 @@ bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
   return forward || backward;
 }
 
-// The diffuse hit of a group whose paths are being added up. A ray records the paths over one hit one after the other, and
-// selections keep their order.
+// Holds the diffuse hit of a group whose paths are being added up. A ray records the paths over one hit one after the other,
+// and selections keep their order.
 struct OpenHit {
   int64_t path = kNoPath;
   size_t batch = 0;
   std::complex<double> field = 0.0;
 };
 
-// Of which kind a coherent path is: the mesh that radiates and whether other surfaces come before it.
+// Returns the kind of a coherent path: the mesh that radiates and whether other surfaces come before it.
 uint64_t kind_of(const Paths& paths, int64_t path) {
   constexpr uint64_t kMirrorsAlone = ~uint64_t{0};
   const auto p = static_cast<size_t>(path);
@@ -67,7 +67,7 @@ uint64_t kind_of(const Paths& paths, int64_t path) {
   return count == 0 ? kMirrorsAlone : radiating << 1 | (count > 1);
 }
 
-// The kinds of a group that there are so far. Paths that follow each other are mostly of one kind.
+// Numbers the kinds that a group has so far. Paths that follow each other are mostly of one kind.
 class KnownKinds {
  public:
   size_t index_of(uint64_t kind, std::vector<CoherentKind>& kinds) {
@@ -105,12 +105,12 @@ class Sums {
     open.field += arriving;
   }
 
-  // amplitudes: one for each of kCellViews, `stride` apart.
+  // `arriving` holds one field for each of kCellViews, `stride` apart.
   void add_coherent(size_t group, int64_t path, uint64_t kind, const std::complex<double>* arriving, size_t stride) {
     GroupSums& sums = groups_[group];
     sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
-    const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // else nothing is between rays
+    const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // others hold nothing between rays
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
       const std::complex<double> field = arriving[view * stride];
@@ -158,7 +158,7 @@ class Sums {
   std::vector<GroupSums> groups_;
 };
 
-// The paths of a block and what they send back.
+// Evaluates the paths of a block and what they send back.
 class Block {
  public:
   Block(const Paths& paths, const Radar& radar)

@@ -1,5 +1,5 @@
 #pragma once
-// What groups of a record's paths send back, summed up in one pass: by batch of rays, and for several widths of launch cells.
+// Sums up in one pass what groups of a record's paths send back, by batch of rays and for several widths of launch cells.
 #include <span>
 #include <vector>
 
@@ -10,25 +10,25 @@
 namespace echopath {
 
 struct GroupSums {
-  // [batches + 1] each; the last entry is of the paths that belong to no batch.
+  // [batches + 1] each; the last entry belongs to the paths that are in no batch.
   std::vector<std::complex<double>> field;                 // sqrt(W), coherent paths as they arrive
   std::vector<double> power;                               // W, of diffuse hits
-  std::vector<CoherentKind> kinds;                         // in the order in which they come
+  std::vector<CoherentKind> kinds;                         // in the order in which they occur
   double steady_power = 0.0, steady_squares = 0.0;         // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
   double lattice_squares = 0.0, drawn_squares = 0.0;       // W^2, of the powers of diffuse hits (PowerEvidence)
   double strongest_hit = 0.0;                              // W, of a diffuse hit
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
 };
 
-// One way to sort paths into groups.
+// Describes one way to sort paths into groups.
 struct Sorting {
   std::span<const uint32_t> group_of_path;  // [P], below num_groups
   size_t num_groups = 0;
 };
 
-// [sorting, group], at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of all paths
-// over it in its group, as they share its random phase. The sums of a group are those of its paths alone, to the last bit. A
-// job advances by paths. Raises Cancelled.
+// Returns sums [sorting, group] at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of
+// all paths over it in its group, as they share its random phase. The sums of a group are those of its paths alone, to the
+// last bit. A job advances by paths. Raises Cancelled.
 std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
                                                Job* job);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The power of each path of a record.
+// Computes the power of each path of a record.
 #include <vector>
 
 #include "echopath/base/job.h"
@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// [P] W: |amplitude|^2 at the trace time for the first antennas of the radar that traced. In blocks: needs no more memory
-// than the result. Raises Cancelled.
+// Returns |amplitude|^2 [P] in W at the trace time for the first antennas of the radar that traced. It works in blocks and
+// needs no more memory than the result. Raises Cancelled.
 std::vector<double> path_power(const Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -16,17 +16,17 @@ constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
 
 double squared(double x) { return x * x; }
 
-// Number of equal values with the same sum and sum of squares.
+// Returns the number of equal values with the same sum and sum of squares.
 double effective_number(double sum, double sum_of_squares) {
   return sum_of_squares > 0.0 ? sum * sum / sum_of_squares : 1.0;
 }
 
-// How far the coherent field may lie above and below, sqrt(W).
+// Tells how far the coherent field may lie above and below, sqrt(W).
 struct FieldBias {
   double above = 0.0, below = 0.0;
 };
 
-// Of several kinds: the size of their sum, and the root sum of squares of their sizes.
+// Adds up changes of several kinds; their size is that of the sum, but no less than the root sum of squares of their sizes.
 class SumOfChanges {
  public:
   void add(std::complex<double> change) {
@@ -74,7 +74,7 @@ double power_of(const PowerEvidence& evidence, CellViewIndex view) {
   return power;
 }
 
-// Standard error of the power of one batch, W.
+// Returns the standard error of the power of one batch, W.
 double chance_of_record(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   const double diffuse = evidence.drawn_squares + squared(kOutline) * evidence.lattice_squares / std::sqrt(num_hits);
@@ -89,13 +89,15 @@ struct Reach {
   double above = 0.0, below = 0.0;  // W
 };
 
-// Standard error, W: an even lattice meets a small surface a whole number of times, in each batch by itself.
+// Returns the standard error, W, of an even lattice that meets a small surface a whole number of times, in each batch by
+// itself.
 double counting_error(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   return evidence.diffuse * kOfAHit * std::sqrt(static_cast<double>(evidence.num_batches)) / std::max(num_hits, 1.0);
 }
 
-// By chance. A power that is made of few hits is as uneven as their number: 95 % limits of a Poisson count, by its root.
+// Returns the reach by chance. A power that is made of few hits is as uneven as their number, so that the root of a Poisson
+// count gives its 95 % limits.
 Reach chance_reach(const PowerEvidence& evidence, double power, double standard_error) {
   if (evidence.num_batches > 1) {
     const double reach =
@@ -120,7 +122,7 @@ double power_between_rays(const CoherentKind& kind, int num_batches) {
 double student_t95(int degrees_of_freedom) {
   constexpr double kFew[] = {12.706205, 4.302653, 3.182446, 2.776445, 2.570582};
   if (degrees_of_freedom <= 5) return kFew[std::max(degrees_of_freedom, 1) - 1];
-  // Cornish and Fisher's expansion, off by 1e-3 at most.
+  // This is Cornish and Fisher's expansion, off by 1e-3 at most.
   const double z = kNormal, per = 1.0 / degrees_of_freedom, z2 = z * z;
   return z * (1.0 + per * ((z2 + 1.0) / 4.0 + per * ((5.0 * z2 * z2 + 16.0 * z2 + 3.0) / 96.0 +
                                                       per * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0)));

@@ -27,7 +27,7 @@ Radar one_channel(const Radar& radar, Channel channel) {
   return one;
 }
 
-// Estimates of the whole by each batch of rays alone.
+// Holds the estimates of the whole by each batch of rays alone.
 struct Estimates {
   std::vector<std::complex<double>> field;
   std::vector<double> power;

@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kMaxEfficiency = 1.02;      // above it the gain is no power gain; below, tables are noisy
+constexpr double kMaxEfficiency = 1.02;      // larger means no power gain; smaller excess is noise of tables
 constexpr double kAngleTolerance = 1e-6;     // rad, degrees with five written digits
 constexpr double kNothing = 1e-12;           // of the peak: what rounding leaves of a zero
 constexpr double kSeamTolerance = 1e-3;      // of the peak: samples one turn apart are the same direction
@@ -29,8 +29,8 @@ void require_samples(const std::vector<double>& values, size_t count, const std:
   for (const double value : values) require(std::isfinite(value), name, "must be finite", value);
 }
 
-// Cubic Hermite weights at x between at[1] and at[2]; slopes from parabolas through three samples, at an end (no sample
-// before or behind) the cubic becomes the parabola through the other three.
+// Computes cubic Hermite weights at x between at[1] and at[2]. Slopes come from parabolas through three samples; at an end
+// (no sample before or behind) the cubic becomes the parabola through the other three.
 void set_weights(const double at[4], bool has_before, bool has_behind, double x, double weight[4]) {
   const double step = at[2] - at[1], t = (x - at[1]) / step;
   const double secant[4] = {0.0, -1.0, 1.0, 0.0};  // times 1 / step
@@ -172,7 +172,7 @@ std::complex<double> GainTable::field(const Vec3& direction) const {
   return field_at(std::atan2(direction.y(), direction.x()), std::asin(std::clamp(direction.z(), -1.0, 1.0)));
 }
 
-// Three Gauss points per cell and axis: exact for the sixth degree of the squared cubic but for cos(elevation).
+// Uses three Gauss points per cell and axis, exact up to the fifth degree; the squared cubic has the sixth.
 double GainTable::integrate() const {
   const double node[3] = {-std::sqrt(0.6), 0.0, std::sqrt(0.6)}, weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const int cells = period_ ? period_ : static_cast<int>(azimuth_.size()) - 1;

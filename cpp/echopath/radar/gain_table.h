@@ -1,5 +1,5 @@
 #pragma once
-// Measured or computed antenna patterns: gain and phase over azimuth and elevation.
+// Interpolates measured or computed antenna patterns: gain and phase over azimuth and elevation.
 #include <complex>
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Gain over direction in the antenna's frame: boresight +x, azimuth about z (left, +y, positive), elevation from the
-// xy-plane.
+// Holds gain over direction in the antenna's frame: boresight is +x, azimuth turns about z (left, +y, positive), and
+// elevation is taken from the xy-plane.
 //
 // Between the samples the field sqrt(gain) e^{j phase} is interpolated by bicubics with a continuous slope (cubic
 // Hermite, slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets
@@ -26,20 +26,20 @@ class GainTable {
   GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
             std::vector<double> phase = {});
 
-  // As given.
+  // These return what the constructor was given.
   const std::vector<double>& azimuth() const { return azimuth_; }
   const std::vector<double>& elevation() const { return elevation_; }
   const std::vector<double>& gain() const { return gain_; }
   const std::vector<double>& phase() const { return phase_; }
 
-  // sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
+  // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
   double peak_gain() const;                              // of the samples
   double efficiency() const { return efficiency_; }      // integral of the gain over the sphere / 4 pi
   bool is_dark_behind() const { return dark_behind_; }   // no gain where x < 0
 
  private:
-  // Four samples along one axis and the weights of a point between the middle ones.
+  // Holds four samples along one axis and their weights for a point between the middle ones.
   struct Stencil {
     int index[4];
     double weight[4];
@@ -49,7 +49,7 @@ class GainTable {
   double azimuth_at(int column) const;  // also beyond the ends of a ring
   size_t sample(int row, int column) const;
   std::complex<double> field_at(double azimuth, double elevation) const;
-  bool has_gain(int row, int column) const;  // of the cell above and left of a sample
+  bool has_gain(int row, int column) const;  // of the cell between a sample and the next row and column
   void close_ring();
   double integrate() const;
   bool all_cells_in_front() const;

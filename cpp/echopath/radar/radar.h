@@ -1,5 +1,5 @@
 #pragma once
-// Waveform, antennas and the radar that carries them.
+// Describes the waveform, the antennas and the radar that carries them.
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace echopath {
 
-// A frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep.
+// Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep.
 struct ChirpSequence {
   double start_frequency = 77e9;    // Hz, at the first sample
   double bandwidth = 1e9;           // Hz, sampled
@@ -27,18 +27,18 @@ struct ChirpSequence {
   double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }          // Hz
   double wavelength() const;                                                             // m, at the centre frequency
   double range_resolution() const;                                                       // m, c / 2B
-  double max_range() const;                                                              // m, c fs / 2 slope, or half
+  double max_range() const;                                                              // m, c fs / (2 slope), half if real
   double velocity_resolution(int num_slots) const;                                       // m/s
-  double max_velocity(int num_slots) const;                                              // m/s, unambiguous +-
+  double max_velocity(int num_slots) const;                                              // m/s, unambiguous within +-
 };
 
-// Gain and phase of an antenna toward a direction.
+// Holds the gain and phase of an antenna toward a direction.
 struct AntennaGain {
   double power = 1.0;  // linear
   double phase = 0.0;  // rad, of the field; enters path amplitudes as e^{j phase}, in transmission and reception
 };
 
-// Power gain over direction. Boresight is +x of the antenna's frame.
+// Describes power gain over direction. Boresight is +x of the antenna's frame.
 struct AntennaPattern {
   enum class Kind { kIsotropic, kCosinePower, kTable };
   Kind kind = Kind::kIsotropic;
@@ -47,12 +47,12 @@ struct AntennaPattern {
   std::shared_ptr<const GainTable> table;  // kTable
 
   static AntennaPattern isotropic(double gain = 1.0);
-  // peak_gain <= 0: that of a lossless antenna, 2 (exponent + 1).
+  // A peak_gain <= 0 stands for that of a lossless antenna, 2 (exponent + 1).
   static AntennaPattern cosine_power(double exponent, double peak_gain = 0.0);
   static AntennaPattern of_table(GainTable table);
-  // Linear power gain of patterns that are round about the boresight; a table raises invalid_argument.
+  // Returns the linear power gain of a pattern that is symmetric about the boresight; raises invalid_argument for a table.
   double gain(double cos_boresight) const;
-  AntennaGain toward(const Vec3& direction) const;  // unit, in the antenna's frame
+  AntennaGain toward(const Vec3& direction) const;  // a unit vector in the antenna's frame
   double efficiency() const;      // integral of the gain over the sphere / 4 pi
   bool is_dark_behind() const;    // no gain where x < 0
 };
@@ -64,7 +64,7 @@ struct Antenna {
   Vec3 polarization = Vec3::UnitZ();                   // in the antenna's frame, unit
 };
 
-// In the world, m. At least one antenna.
+// Returns the mean position of at least one antenna in the world, m.
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
 enum class Multiplexing { kTdm };  // one transmitter per slot
@@ -75,12 +75,12 @@ struct Radar {
   double transmit_power = 0.01;    // W per transmitter
   double noise_figure_db = 12.0;
   Multiplexing multiplexing = Multiplexing::kTdm;
-  std::shared_ptr<const Motion> motion;  // world_from_radar(t); none: the radar's frame is the world
+  std::shared_ptr<const Motion> motion;  // world_from_radar(t); null: the radar's frame is the world
 
   void validate() const;
   int num_slots() const { return static_cast<int>(transmitters.size()); }
   Transform world_from_radar(double time) const;
-  // Time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`.
+  // Returns the time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`.
   double chirp_time(int tx, int chirp) const;
   double frame_duration() const;  // s, from the first sample to the last
 };

@@ -8,13 +8,13 @@ namespace echopath {
 namespace {
 
 struct Edge {
-  uint32_t low, high;  // corners
+  uint32_t low, high;  // numbers of the places of both ends
   uint32_t triangle;
   uint32_t side;       // of the triangle
   bool meets(const Edge& other) const { return low == other.low && high == other.high; }
 };
 
-// The number of a place for each vertex.
+// Numbers the places of the vertices: vertices at the same place get the same number.
 std::vector<uint32_t> places_of(const std::vector<Vec3>& vertices) {
   const auto before = [&](uint32_t a, uint32_t b) {
     const Vec3 &p = vertices[a], &q = vertices[b];

@@ -1,5 +1,5 @@
 #pragma once
-// Which triangles meet at the edges of a mesh.
+// Finds the triangles that share an edge of a mesh.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -10,8 +10,9 @@ namespace echopath {
 
 inline constexpr uint32_t kNoTriangle = 0xFFFFFFFFu;
 
-// [F] the triangle across each edge, edge i leading from corner i to corner i + 1; kNoTriangle where none or more than one
-// meets. Corners are one where they lie at the same place, so that seams of files that repeat their vertices do not count.
+// Returns for each triangle [F] the triangle across each of its edges, edge i leading from corner i to corner i + 1;
+// kNoTriangle where none or more than one meets it. Corners at the same place are one, so that files that repeat vertices at
+// seams do not separate triangles.
 std::vector<std::array<uint32_t, 3>> edge_neighbours(const std::vector<Vec3>& vertices,
                                                      const std::vector<Triangle>& triangles);
 

@@ -7,14 +7,14 @@ namespace {
 
 using Middle = std::array<float, 3>;
 
-constexpr uint32_t kTrianglesBetweenLooks = 1 << 14;  // at the job: some milliseconds
+constexpr uint32_t kTrianglesBetweenChecks = 1 << 14;  // larger branches check for cancellation, some milliseconds apart
 
 Middle middle_of(const Corners& corners) {
   const Eigen::Vector3f middle = box_of(corners).center().cast<float>();
   return {middle.x(), middle.y(), middle.z()};
 }
 
-// The axis along which the middles of some triangles are spread furthest.
+// Returns the axis along which the box centres of some triangles are spread furthest.
 size_t longest_axis(const std::vector<Middle>& middles, const uint32_t* begin, const uint32_t* end) {
   Middle low = middles[*begin], high = low;
   for (const uint32_t* index = begin; index != end; ++index) {
@@ -44,7 +44,7 @@ BoxTree::BoxTree(const std::vector<Corners>& triangles, const Job* job) : order_
 }
 
 void BoxTree::halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, const Job* job) {
-  if (job && end - begin >= kTrianglesBetweenLooks) job->throw_if_cancelled();
+  if (job && end - begin >= kTrianglesBetweenChecks) job->throw_if_cancelled();
   const size_t index = branches_.size();
   branches_.push_back({Box(), begin, end, 0});
   if (end - begin <= kLeafSize) return;

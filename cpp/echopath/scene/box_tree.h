@@ -1,5 +1,5 @@
 #pragma once
-// Which triangles may touch which: a binary tree of bounding boxes. Internal to the module.
+// A binary tree of bounding boxes that finds which triangles may touch which. Internal to the module.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -20,19 +20,20 @@ inline Box box_of(const Corners& corners) {
   return box;
 }
 
-// Halves its triangles at the median of their middles, so that neither their sizes nor one of them far away unbalance it:
-// n log n steps, about 110 bytes a triangle. It puts the triangles in an order of its own, and names them by their places.
+// Halves its triangles at the median of their box centres, so that neither large triangles nor distant ones unbalance it. It
+// takes n log n steps and about 110 bytes per triangle. It sorts the triangles in an order of its own and names each by its
+// place in it.
 class BoxTree {
  public:
-  // `triangles` [n]: corners in m, finite; at most 2^31. Raises Cancelled when the job is.
+  // `triangles` [n] holds corners in m, finite, of at most 2^31 triangles. Raises Cancelled when the job is cancelled.
   explicit BoxTree(const std::vector<Corners>& triangles, const Job* job = nullptr);
 
   uint32_t size() const { return static_cast<uint32_t>(order_.size()); }
   const Corners& triangle(uint32_t place) const { return triangles_[place]; }
-  uint32_t given(uint32_t place) const { return order_[place]; }  // its index among those given
+  uint32_t input_index(uint32_t place) const { return order_[place]; }  // index among the constructor's triangles
 
-  // Calls visit(place) for the triangles behind `place` whose boxes `may_meet` takes, by place. Boxes around several are
-  // asked about first: it must take each that holds one it takes.
+  // Calls visit(other) for each triangle behind `place` whose box `may_meet` accepts, in order of place. Boxes around
+  // several triangles are asked about first, so `may_meet` must accept every box that contains one it accepts.
   template <class MayMeet, class Visit>
   void visit_behind(uint32_t place, const MayMeet& may_meet, const Visit& visit) const;
 
@@ -40,8 +41,8 @@ class BoxTree {
   static constexpr uint32_t kLeafSize = 4;
   struct Branch {
     Box box;
-    uint32_t begin = 0, end = 0;  // places
-    uint32_t second_half = 0;     // its branch; the first half's follows this one. 0 for a leaf
+    uint32_t begin = 0, end = 0;  // range of places
+    uint32_t second_half = 0;     // index of the second half, 0 for a leaf; the first half follows this branch
   };
   using Middle = std::array<float, 3>;
   void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, const Job* job);
@@ -49,12 +50,12 @@ class BoxTree {
 
   std::vector<uint32_t> order_;
   std::vector<Corners> triangles_;
-  std::vector<Branch> branches_;  // each before those within it
+  std::vector<Branch> branches_;  // each stands before those within it
 };
 
 template <class MayMeet, class Visit>
 void BoxTree::visit_behind(uint32_t place, const MayMeet& may_meet, const Visit& visit) const {
-  std::array<uint32_t, 64> open;  // one a level is open at a time, beside the one below: at most 31 levels
+  std::array<uint32_t, 64> open;  // a depth-first walk keeps one open branch per level, of at most 31 levels
   size_t num_open = 0;
   open[num_open++] = 0;
   while (num_open > 0) {

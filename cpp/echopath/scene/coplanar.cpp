@@ -15,15 +15,15 @@ namespace {
 
 constexpr int64_t kTrianglesPerBlock = 2048;
 
-// The triangles of a scene at one time, in m about one of their corners, mesh after mesh.
+// Holds the triangles of a scene at one time, mesh after mesh, in m relative to one of their corners.
 struct PosedTriangles {
   std::vector<Corners> corners;
   std::vector<uint32_t> mesh_id;
-  std::vector<size_t> begin = {0};  // of each mesh, and their end
+  std::vector<size_t> begin = {0};  // place of the first triangle of each mesh, and their number
 };
 
-// One triangle laid on another; both by place, the first of the mesh with the lower ID.
-struct Laid {
+// Describes one triangle laid on another. Both are given by place, and the first belongs to the mesh with the lower ID.
+struct OverlapPair {
   uint32_t first_mesh_id, second_mesh_id, first, second;
   FacetOverlap overlap;
   std::pair<uint32_t, uint32_t> meshes() const { return {first_mesh_id, second_mesh_id}; }
@@ -43,7 +43,7 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
     if (id == 0) origin = vertices.front();
     for (const Triangle& t : scene.node_of(id).mesh->triangles()) {
       const Corners corners = {vertices[t[0]] - origin, vertices[t[1]] - origin, vertices[t[2]] - origin};
-      if (area_of(corners) == 0.0) continue;  // a deformation may take it
+      if (area_of(corners) == 0.0) continue;  // a deformation may flatten a triangle
       posed.corners.push_back(corners);
       posed.mesh_id.push_back(id);
     }
@@ -52,7 +52,7 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   return posed;
 }
 
-// For each mesh the first whose triangles are the same to the bit, in the same order: itself where there is no other.
+// Returns for each mesh the first mesh whose triangles are the same to the bit and in the same order, which may be itself.
 std::vector<uint32_t> find_originals(const PosedTriangles& posed) {
   std::unordered_map<std::string_view, uint32_t> first_of;
   std::vector<uint32_t> original;
@@ -64,7 +64,7 @@ std::vector<uint32_t> find_originals(const PosedTriangles& posed) {
   return original;
 }
 
-// What is left when copies are taken out.
+// Returns the triangles of the meshes that are not copies.
 PosedTriangles without_copies(const PosedTriangles& posed, const std::vector<uint32_t>& original) {
   PosedTriangles kept;
   for (size_t k = 0; k < posed.corners.size(); ++k) {
@@ -80,10 +80,10 @@ class OverlapSearch {
   OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
       : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
 
-  // All pairs, in an order that threads do not change.
-  std::vector<Laid> run(Job* job) const {
+  // Returns all pairs, in an order that does not depend on the threads.
+  std::vector<OverlapPair> run(Job* job) const {
     const auto count = static_cast<int64_t>(tree_.size());
-    std::vector<std::vector<Laid>> found(static_cast<size_t>((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock));
+    std::vector<std::vector<OverlapPair>> found(static_cast<size_t>((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock));
     if (job) job->start(static_cast<int64_t>(found.size()));
     parallel_for(static_cast<int64_t>(found.size()), [&](int64_t block) {
       const int64_t end = std::min((block + 1) * kTrianglesPerBlock, count);
@@ -91,24 +91,24 @@ class OverlapSearch {
         search_behind(static_cast<uint32_t>(place), found[static_cast<size_t>(block)]);
       }
     }, job);
-    std::vector<Laid> all;
-    for (const std::vector<Laid>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
+    std::vector<OverlapPair> all;
+    for (const std::vector<OverlapPair>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
     return all;
   }
 
  private:
-  void search_behind(uint32_t place, std::vector<Laid>& found) const {
+  void search_behind(uint32_t place, std::vector<OverlapPair>& found) const {
     const FacetPlane plane(tree_.triangle(place));
     tree_.visit_behind(
         place, [&](const Box& box) { return plane.may_meet(box, max_distance_); },
         [&](uint32_t other) {
           const auto overlap = plane.overlap(tree_.triangle(other), max_distance_);
-          if (overlap) found.push_back(laid(place, other, *overlap));
+          if (overlap) found.push_back(overlap_pair(place, other, *overlap));
         });
   }
 
-  Laid laid(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {
-    const uint32_t mesh_of_one = mesh_id_[tree_.given(one)], mesh_of_two = mesh_id_[tree_.given(two)];
+  OverlapPair overlap_pair(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {
+    const uint32_t mesh_of_one = mesh_id_[tree_.input_index(one)], mesh_of_two = mesh_id_[tree_.input_index(two)];
     if (mesh_of_two < mesh_of_one) return {mesh_of_two, mesh_of_one, two, one, overlap};
     return {mesh_of_one, mesh_of_two, one, two, overlap};
   }
@@ -118,10 +118,10 @@ class OverlapSearch {
   double max_distance_;
 };
 
-// How many triangles the pairs speak of.
-int64_t count_triangles(const Laid* begin, const Laid* end) {
+// Counts the different triangles in a range of pairs.
+int64_t count_triangles(const OverlapPair* begin, const OverlapPair* end) {
   std::vector<uint32_t> places;
-  for (const Laid* pair = begin; pair != end; ++pair) {
+  for (const OverlapPair* pair = begin; pair != end; ++pair) {
     places.push_back(pair->first);
     places.push_back(pair->second);
   }
@@ -129,28 +129,31 @@ int64_t count_triangles(const Laid* begin, const Laid* end) {
   return std::unique(places.begin(), places.end()) - places.begin();
 }
 
-CoplanarOverlap summed(const Laid* begin, const Laid* end) {
+CoplanarOverlap summed(const OverlapPair* begin, const OverlapPair* end) {
   CoplanarOverlap sum{begin->first_mesh_id, begin->second_mesh_id, count_triangles(begin, end)};
-  for (const Laid* pair = begin; pair != end; ++pair) {
+  for (const OverlapPair* pair = begin; pair != end; ++pair) {
     sum.area += pair->overlap.area;
     sum.distance = std::max(sum.distance, pair->overlap.distance);
   }
   return sum;
 }
 
-// Sums over the pairs of each two meshes.
-std::vector<CoplanarOverlap> summed_by_meshes(std::vector<Laid> pairs) {
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Laid& a, const Laid& b) { return a.meshes() < b.meshes(); });
+// Sums the overlaps of all pairs of triangles, for each pair of meshes.
+std::vector<CoplanarOverlap> summed_by_meshes(std::vector<OverlapPair> pairs) {
+  const auto is_before = [](const OverlapPair& a, const OverlapPair& b) { return a.meshes() < b.meshes(); };
+  std::stable_sort(pairs.begin(), pairs.end(), is_before);
   std::vector<CoplanarOverlap> overlaps;
-  for (const Laid *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
-    const Laid* next = std::find_if(begin, end, [begin](const Laid& pair) { return pair.meshes() != begin->meshes(); });
+  for (const OverlapPair *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
+    const auto is_other = [begin](const OverlapPair& pair) { return pair.meshes() != begin->meshes(); };
+    const OverlapPair* next = std::find_if(begin, end, is_other);
     overlaps.push_back(summed(begin, next));
     begin = next;
   }
   return overlaps;
 }
 
-// A mesh and its copy: each triangle lies on its own copy, and two that lie on each other lie on each other's copies.
+// Describes a mesh and its copy: each triangle lies on its own copy, and two that lie on each other lie on each other's
+// copies.
 CoplanarOverlap of_copy(const PosedTriangles& posed, uint32_t original, uint32_t copy, const CoplanarOverlap* on_itself) {
   const size_t begin = posed.begin[copy], end = posed.begin[copy + 1];
   CoplanarOverlap found{original, copy, 2 * static_cast<int64_t>(end - begin)};

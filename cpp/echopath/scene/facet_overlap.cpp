@@ -7,8 +7,8 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kLeastCosine = 0.995;  // of 0.1 rad: a surface with bends as small as max_distance does not lie on itself
-constexpr double kTouchingShare = 0.1;  // of the narrower triangle's height: slivers overlap, too
+constexpr double kLeastCosine = 0.995;  // of 0.1 rad: creases as small as max_distance do not make a surface lie on itself
+constexpr double kTouchingShare = 0.1;  // of the narrower triangle's height, because slivers overlap, too
 
 struct Polygon {
   std::array<Vec3, 9> corners;  // more than the six of two triangles: signs within rounding may change more than twice
@@ -16,13 +16,13 @@ struct Polygon {
   void add(const Vec3& corner) { corners[size++] = corner; }
 };
 
-// Above the longest side, m.
+// Returns the height above the longest side, m.
 double height_of(const Corners& corners) {
   const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
   return ab.cross(ac).norm() / std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()}));
 }
 
-// What of a polygon lies on the inner side of a line: outward . p <= reach.
+// Returns the part of a polygon on the inner side of a line: outward . p <= reach.
 Polygon clipped(const Polygon& polygon, const Vec2& outward, double reach) {
   Polygon kept;
   for (size_t k = 0; k < polygon.size; ++k) {
@@ -49,7 +49,7 @@ double largest_height(const Polygon& polygon) {
   return largest;
 }
 
-// Of three corners all above or all below a plane by more than `distance`.
+// Returns whether all three corners lie above, or all below, a plane by more than `distance`.
 bool is_apart(const Corners& seen, double distance) {
   const auto [low, high] = std::minmax({seen[0].z(), seen[1].z(), seen[2].z()});
   return low > distance || high < -distance;

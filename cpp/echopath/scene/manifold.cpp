@@ -6,7 +6,7 @@
 namespace echopath {
 namespace {
 
-// The side of triangle t from corner k to corner k + 1, numbered 3 t + k; `key` is its undirected edge.
+// Describes the side of triangle t from corner k to corner k + 1, numbered 3 t + k; `key` names its undirected edge.
 struct Side {
   uint64_t key;
   uint32_t id;
@@ -60,7 +60,7 @@ class UnionFind {
 
 uint32_t next_corner(uint32_t side) { return side % 3 == 2 ? side - 2 : side + 1; }
 
-// Corners of one vertex that are connected through manifold edges stay together.
+// Joins the corners of one vertex that are connected through manifold edges.
 UnionFind fans(const std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
   UnionFind corners(3 * triangles.size());
   for_each_edge(sides, [&](auto first, auto last) {

@@ -36,7 +36,7 @@ bool is_degenerate(const std::vector<Vec3>& vertices, const Triangle& triangle) 
   const Vec3 ab = b - a, ac = c - a, bc = c - b;
   const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
   const double height_times_edge = ab.cross(ac).norm();
-  return !(height_times_edge > kMinHeightPerEdge * longest2);  // also takes what is not finite
+  return !(height_times_edge > kMinHeightPerEdge * longest2);  // also where a vertex is not finite
 }
 
 // Renumbers the corners to the vertices in use, which keep their order; returns the old number of each.
@@ -76,7 +76,7 @@ bool has_boundary(const HalfedgeMesh& mesh) {
   return false;
 }
 
-// Of triangles cut to a manifold, where an edge has one or two of them.
+// Returns whether an edge has one triangle only; after cutting to a manifold each edge has one or two.
 bool has_boundary(const std::vector<Triangle>& triangles) {
   std::vector<std::pair<uint32_t, uint32_t>> edges;
   edges.reserve(3 * triangles.size());
@@ -97,7 +97,7 @@ void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
   require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
 }
 
-// m^2, of the winding.
+// Returns the area in m^2, along the normal that follows from the winding.
 Vec3 area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
   return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
 }
@@ -108,7 +108,7 @@ double area_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& t
   return area;
 }
 
-// The plane is that of the first triangle.
+// Compares all vertices with the plane of the first triangle.
 bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   constexpr double kRelative = 1e-6;
   const Vec3 normal = area_vector(vertices, triangles.front()).normalized(), &origin = vertices[triangles.front()[0]];

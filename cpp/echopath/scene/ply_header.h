@@ -1,5 +1,5 @@
 #pragma once
-// The header of a PLY file (Turk, "The PLY polygon file format", 1994); not for users.
+// Reads the header of a PLY file (Turk, "The PLY polygon file format", 1994). Internal to the module.
 #include <cstdint>
 #include <istream>
 #include <string>
@@ -22,7 +22,7 @@ struct PlyElement {
   int64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  // Index of the first property with one of the names, -1 where there is none.
+  // Returns the index of the first property with one of the names, -1 where there is none.
   int find(const std::vector<std::string>& names) const;
 };
 

@@ -21,8 +21,8 @@ static_assert(std::is_same_v<tinyobj::real_t, double>, "coordinates in float los
   throw FileError(path + ", line " + std::to_string(line) + ": " + what);
 }
 
-// Hands a file to the parser line by line, so that the line in work is known; refuses vertices and faces that the
-// parser would read as zeros, and mends what it does not know: continued lines, comments behind values, a bare `g`.
+// Hands a file to the parser line by line, so that errors can name the line. It refuses vertices and faces that the parser
+// would read as zeros, and mends what the parser does not know: continued lines, comments behind values, a bare `g`.
 class ObjLines : public std::streambuf {
  public:
   explicit ObjLines(std::string path) : path_(std::move(path)), file_(path_, std::ios::binary) {
@@ -90,7 +90,7 @@ class ObjLines : public std::streambuf {
   int64_t line_ = 0;
 };
 
-// The parser's callbacks fill a soup. A face belongs to its group, without one to its object; equal names are one
+// Fills a soup by the parser's callbacks. A face belongs to its group or, without one, to its object; equal names are one
 // group.
 class ObjBuilder {
  public:

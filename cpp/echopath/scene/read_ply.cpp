@@ -15,7 +15,7 @@
 namespace echopath {
 namespace {
 
-// The values behind the header, one after the other. A double holds each type of the format exactly.
+// Reads the values behind the header one after the other. A double holds each type of the format exactly.
 class PlyValues {
  public:
   PlyValues(std::string body, PlyFormat format, std::string path, int64_t first_line)

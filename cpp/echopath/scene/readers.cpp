@@ -39,14 +39,14 @@ Soup read(const std::string& path, double unit) {
   return soup;
 }
 
-// Triangles of one group with the vertices they use, in the order of the file.
+// Holds the triangles of one group with the vertices they use, in the order of the file.
 struct Part {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
   std::vector<uint32_t> face;
 };
 
-// `number` [V] is scratch: the vertices' numbers in the part.
+// `number` [V] is scratch for the vertices' numbers in the part.
 Part part_of(const Soup& soup, const std::vector<uint32_t>& members, std::vector<uint32_t>& number) {
   std::vector<uint32_t> used;
   for (const uint32_t t : members) used.insert(used.end(), soup.triangles[t].begin(), soup.triangles[t].end());
@@ -65,7 +65,7 @@ Part part_of(const Soup& soup, const std::vector<uint32_t>& members, std::vector
   return part;
 }
 
-// Null where no triangle has an area.
+// Returns null where no triangle has an area.
 MeshPtr mesh_of(Part part) {
   try {
     return std::make_shared<const Mesh>(std::move(part.vertices), std::move(part.triangles), std::move(part.face));

@@ -11,35 +11,35 @@ namespace echopath {
 namespace {
 
 constexpr double kOutside = 0.02;  // of an edge
-constexpr double kLost = 1.0;      // of an edge: from there no step comes back
+constexpr double kLost = 1.0;      // of an edge: iterations that stray this far are given up
 constexpr int kSteps = 8;
 constexpr double kArrived = 1e-4;  // of an edge
 
-// The length of the way about a point of the surface, in its tangent plane.
-struct Way {
+// Holds the gradient and the Hessian of the path length in the tangent plane at a point of the surface.
+struct PathLength {
   std::array<Vec3, 2> tangents;
-  Eigen::Vector2d slope;
-  Eigen::Matrix2d bend;
+  Eigen::Vector2d gradient;
+  Eigen::Matrix2d hessian;
 };
 
-Way way_over(const SmoothPoint& at, const Vec3& first, const Vec3& second) {
+PathLength path_length_at(const SmoothPoint& at, const Vec3& first, const Vec3& second) {
   const Vec3 lines[2] = {first - at.position, second - at.position};
-  Way way{{at.normal.unitOrthogonal(), {}}, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
-  way.tangents[1] = at.normal.cross(way.tangents[0]);
+  PathLength path_length{{at.normal.unitOrthogonal(), {}}, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  path_length.tangents[1] = at.normal.cross(path_length.tangents[0]);
   for (const Vec3& line : lines) {
     const double distance = line.norm();
     const Vec3 direction = line / distance;
     for (int i = 0; i < 2; ++i) {
-      const Vec3& along = way.tangents[static_cast<size_t>(i)];
-      way.slope[i] -= direction.dot(along);
+      const Vec3& along = path_length.tangents[static_cast<size_t>(i)];
+      path_length.gradient[i] -= direction.dot(along);
       for (int j = 0; j < 2; ++j) {
-        const Vec3& other = way.tangents[static_cast<size_t>(j)];
-        way.bend(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
-                          direction.dot(at.normal) * along.dot(at.curvature * other);
+        const Vec3& other = path_length.tangents[static_cast<size_t>(j)];
+        path_length.hessian(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
+                                     direction.dot(at.normal) * along.dot(at.curvature * other);
       }
     }
   }
-  return way;
+  return path_length;
 }
 
 bool is_inside(double u, double v, double margin) { return u >= -margin && v >= -margin && u + v <= 1.0 + margin; }
@@ -50,7 +50,7 @@ SmoothPoint point_at(const ReflectingTriangle& triangle, double u, double v) {
   return {a + u * (b - a) + v * (c - a), triangle.facet_normal, Mat3::Zero(), 1.0};
 }
 
-// By the image of one point: a plane has one such point.
+// Returns (u, v) of the one reflection point of a plane, by the image of one end.
 Eigen::Vector2d on_plane(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
   const auto& [a, b, c] = triangle.corners;
   const double here = triangle.facet_normal.dot(first - a), there = triangle.facet_normal.dot(second - a);
@@ -59,15 +59,15 @@ Eigen::Vector2d on_plane(const ReflectingTriangle& triangle, const Vec3& first, 
   return edge_coordinates(b - a, c - a, triangle.facet_normal, point - a);
 }
 
-// By Newton's method from the middle.
+// Returns (u, v) of a reflection point of a curved triangle, found by Newton's method from its centre.
 std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
   const auto& [a, b, c] = triangle.corners;
   Eigen::Vector2d place(1.0 / 3.0, 1.0 / 3.0);
   for (int step = 0; step < kSteps; ++step) {
     const SmoothPoint at = point_at(triangle, place[0], place[1]);
-    const Way way = way_over(at, first, second);
-    const Eigen::Vector2d away = -way.bend.inverse() * way.slope;
-    const Vec3 step_there = away[0] * way.tangents[0] + away[1] * way.tangents[1];
+    const PathLength path_length = path_length_at(at, first, second);
+    const Eigen::Vector2d away = -path_length.hessian.inverse() * path_length.gradient;
+    const Vec3 step_there = away[0] * path_length.tangents[0] + away[1] * path_length.tangents[1];
     const Eigen::Vector2d moved = edge_coordinates(b - a, c - a, at.normal, step_there);
     place += moved;
     if (!is_inside(place[0], place[1], kLost)) return std::nullopt;
@@ -95,8 +95,8 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   const Vec3 to_first = first - triangle.centre, to_second = second - triangle.centre;
   const double side = triangle.facet_normal.dot(to_first);
   if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
-  // Where the way is stationary, the sum of both unit vectors lies along the normal. Over the triangle they turn by no more than
-  // its radius over their distances, and the normal by `turn`.
+  // Where the path length is stationary, the sum of the unit vectors to both ends lies along the normal. Over the triangle
+  // these vectors turn by no more than its radius over their distances, and the normal turns by no more than `turn`.
   const double near = to_first.norm() - triangle.radius, far = to_second.norm() - triangle.radius;
   if (near > 0.0 && far > 0.0) {
     const double reach = 2.0 * triangle.turn + triangle.radius * (1.0 / near + 1.0 / far);
@@ -107,12 +107,12 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
       triangle.is_flat() ? std::optional(on_plane(triangle, first, second)) : on_curve(triangle, first, second);
   if (!place || !is_inside((*place)[0], (*place)[1], kOutside)) return std::nullopt;
   const SmoothPoint at = point_at(triangle, (*place)[0], (*place)[1]);
-  const Way way = way_over(at, first, second);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(way.bend);
+  const PathLength path_length = path_length_at(at, first, second);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(path_length.hessian);
   ReflectionPoint found{at.position, {}, {solver.eigenvalues()[0], solver.eigenvalues()[1]}};
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector2d axis = solver.eigenvectors().col(i);
-    found.axes[static_cast<size_t>(i)] = axis[0] * way.tangents[0] + axis[1] * way.tangents[1];
+    found.axes[static_cast<size_t>(i)] = axis[0] * path_length.tangents[0] + axis[1] * path_length.tangents[1];
   }
   return found;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a triangle of a surface mirrors one point into another.
+// Finds the point of a triangle where a wave from one point is reflected to another.
 #include <array>
 #include <optional>
 
@@ -7,29 +7,30 @@
 
 namespace echopath {
 
-// A triangle as the waves see it: with the normals of its corners where it is a part of a curved surface.
+// Describes a reflecting triangle, with the vertex normals of the curved surface that it may be a part of.
 struct ReflectingTriangle {
   std::array<Vec3, 3> corners;  // m
-  std::array<Vec3, 3> normals;  // unit; those of the facet where it is flat
+  std::array<Vec3, 3> normals;  // unit; all equal to facet_normal where it is flat
   Vec3 centre, facet_normal;
-  double radius = 0.0;          // m, of the corners about the centre
+  double radius = 0.0;          // m, largest distance of a corner from the centre
   double turn = 0.0;            // largest |corner normal - facet normal|
 
   bool is_flat() const { return turn == 0.0; }
 };
 
-// normals: unit, of the corners of the curved surface (scene/smooth.h); of no interest beyond its crease guard.
+// `normals` are the unit vertex normals of the curved surface (scene/smooth.h). Where they fail its crease guard, the
+// triangle is flat.
 ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals);
 
 struct ReflectionPoint {
   Vec3 position;
-  // m^-1 along two axes of the surface at right angles, unit: second derivatives of the length of the way.
+  // Second derivatives of the path length, m^-1, along its two principal axes, which are unit vectors in the tangent plane.
   std::array<Vec3, 2> axes;
   std::array<double, 2> bends;
 };
 
-// Where the way from `first` over the triangle to `second` is stationary, both on one side of it. A point counts up to a fiftieth
-// of an edge outside of the triangle, so that none falls between two.
+// Finds the point where the path length from `first` over the triangle to `second` is stationary; both ends must lie on one
+// side of the triangle. Points up to a fiftieth of an edge outside count, so that none is lost between two triangles.
 std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second);
 
 }  // namespace echopath

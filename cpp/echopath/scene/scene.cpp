@@ -12,7 +12,7 @@ namespace {
 void check_name(const std::string& name) {
   require(!name.empty(), "name", "must not be empty", "''");
   require(name.find_first_of("/*?'\"") == std::string::npos, "name", "must be free of / * ? and quotes", name);
-  // Signs that join names where they are keys (label/families.h, label/grouping.h).
+  // These characters join names into keys (label/families.h, label/grouping.h).
   require(name.find_first_of("\x1e\x1f") == std::string::npos, "name", "must be free of the signs 0x1e and 0x1f", name);
   const std::string blanks = " \t\r\n\v\f";
   const bool bare = blanks.find(name.front()) == std::string::npos && blanks.find(name.back()) == std::string::npos;
@@ -42,7 +42,7 @@ bool scales_unevenly(const Mat3& linear) {
 
 void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
   if (begin >= span.begin && end <= span.end) return;
-  // Ends are sums of intervals: forgive their rounding as the motions do.
+  // Ends are sums of intervals, so their rounding is forgiven as the motions do.
   const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
   if (begin >= span.begin - slack && end <= span.end + slack) return;
   std::ostringstream rule, value;

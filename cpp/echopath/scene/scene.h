@@ -1,5 +1,5 @@
 #pragma once
-// A tree of named nodes with placements, motions and meshes; and its pose at a time.
+// A scene is a tree of named nodes with placements, motions and meshes; a pose is its geometry at one time.
 #include <array>
 #include <memory>
 #include <optional>
@@ -28,7 +28,7 @@ struct Node {
   bool smooth = false;                              // the mesh stands for a curved surface (scene/smooth.h)
 };
 
-// What a mesh ID names.
+// Tells where a mesh ID stands in the tree.
 struct SceneMesh {
   int node = 0;      // index into Scene::nodes()
   int object = 0;    // index of the child of the root above it (or itself)
@@ -49,10 +49,11 @@ class Scene {
   std::vector<std::string> mesh_names() const;                       // by mesh ID
   std::optional<int> find(std::string_view full_name) const;         // node index
 
-  // Mesh moves at some time (its node or an ancestor has a motion, or it deforms).
+  // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
   bool is_moving(uint32_t mesh_id) const;
   bool is_anything_moving() const;
-  // Its triangles may change their areas: it deforms, or moves below or with a placement that scales unevenly.
+  // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
+  // scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;
   std::vector<double> breakpoints() const;  // of all motions, ascending
   // Raises invalid_argument naming the node when a motion is not defined on all of [begin, end] (s).
@@ -64,15 +65,15 @@ class Scene {
   std::unordered_map<std::string, int> index_;  // full name -> node
 };
 
-// A glob takes a mesh if it takes its full name or that of an ancestor; '*' crosses '/', '?' is one character.
+// Returns whether a glob matches the full name of a mesh or of one of its ancestors; '*' crosses '/', '?' is one character.
 bool glob_takes(std::string_view glob, std::string_view full_name);
-// Every full name of a mesh and of the groups above it, sorted: what a glob may be meant to take.
+// Returns the full names of all meshes and of the groups above them, sorted; these are the names that a glob can match.
 std::vector<std::string> names_with_ancestors(const std::vector<std::string>& mesh_names);
 
-// Vertices [V] of one mesh in world coordinates; poses nothing else.
+// Returns the vertices [V] of one mesh in world coordinates and poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
 
-// Of each mesh, by mesh ID.
+// Returns world_from_mesh of each mesh, by mesh ID.
 std::vector<Transform> world_from_meshes(const Scene& scene, double time);
 
 }  // namespace echopath

@@ -66,7 +66,7 @@ SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Ve
   const auto tangential = [&](const Vec3& x) -> Vec3 { return x - point.normal.dot(x) * point.normal; };
   const Vec3 edge_u = tangential(corners[1] - corners[0]), edge_v = tangential(corners[2] - corners[0]);
   const Vec3 turn_u = tangential(normals[1] - normals[0]) / length, turn_v = tangential(normals[2] - normals[0]) / length;
-  // Dual vectors of the edges in the tangent plane.
+  // The dual vectors of the edges lie in the tangent plane.
   const double uu = edge_u.squaredNorm(), uv = edge_u.dot(edge_v), vv = edge_v.squaredNorm();
   const double det = uu * vv - uv * uv;
   const Vec3 dual_u = (vv * edge_u - uv * edge_v) / det, dual_v = (uu * edge_v - uv * edge_u) / det;

@@ -1,5 +1,5 @@
 #pragma once
-// What a mesh file holds, before it becomes meshes: shared by the readers, not for users.
+// A soup holds the content of a mesh file before it becomes meshes. Internal to the module.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ struct Soup {
 // convex, else ear by ear. A polygon that crosses itself is cut into a fan.
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners);
 
-// Each raises FileError naming the file, and the line where the format is text.
+// Both raise FileError naming the file, and the line where the format is text.
 Soup read_obj(const std::string& path);
 Soup read_ply(const std::string& path);
 

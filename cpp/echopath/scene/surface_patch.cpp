@@ -5,7 +5,7 @@
 namespace echopath {
 namespace {
 
-// 1 for vertices [V of the surface] that are corners.
+// Marks the vertices [V of the surface] that are corners of the triangles taken.
 std::vector<uint8_t> corners_of(const Mesh& mesh, const std::vector<uint8_t>& takes) {
   std::vector<uint8_t> is_corner(mesh.surface().vertices().size(), 0);
   for (size_t t = 0; t < takes.size(); ++t) {
@@ -15,7 +15,7 @@ std::vector<uint8_t> corners_of(const Mesh& mesh, const std::vector<uint8_t>& ta
   return is_corner;
 }
 
-// Triangles of the surface with a corner among the marked vertices.
+// Returns the triangles of the surface that have a corner among the marked vertices.
 std::vector<Triangle> ring_of(const Mesh& surface, const std::vector<uint8_t>& is_corner) {
   std::vector<Triangle> ring;
   std::copy_if(surface.triangles().begin(), surface.triangles().end(), std::back_inserter(ring), [&](const Triangle& t) {

@@ -3,7 +3,7 @@
 namespace echopath {
 namespace {
 
-// Twice the vector area (Newell): the normal of the mean plane.
+// Returns twice the vector area (Newell), which is normal to the mean plane.
 Vec3 polygon_normal(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners) {
   Vec3 normal = Vec3::Zero();
   const Vec3& origin = vertices[corners[0]];
@@ -21,7 +21,8 @@ bool is_inside(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const
   return turn(a, b, p, normal) >= 0.0 && turn(b, c, p, normal) >= 0.0 && turn(c, a, p, normal) >= 0.0;
 }
 
-// Corner i of the remaining polygon can be cut off: it turns inwards and no other corner lies in its triangle.
+// Returns whether corner i of the remaining polygon can be cut off: it turns inwards and no other corner lies in its
+// triangle.
 bool is_ear(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& rest, size_t i, const Vec3& normal) {
   const size_t n = rest.size();
   const uint32_t before = rest[(i + n - 1) % n], here = rest[i], after = rest[(i + 1) % n];

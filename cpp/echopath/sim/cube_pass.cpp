@@ -26,10 +26,10 @@ void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::sp
   });
 }
 
-// The probe of a frame over the records of one stretch: what is found of their chirps is added up.
+// Probes the records of one stretch of a frame and adds up what is found of their chirps.
 class StretchProbe {
  public:
-  // `frame` may be null: nothing is probed.
+  // A null `frame` means that nothing is probed.
   StretchProbe(SignalProbe* frame, const Stretch& stretch) : frame_(frame) {
     if (!frame_) return;
     own_.seed = frame_->seed;
@@ -40,7 +40,7 @@ class StretchProbe {
   StretchProbe(const StretchProbe&) = delete;
   StretchProbe& operator=(const StretchProbe&) = delete;
 
-  // Of the next record.
+  // Returns the probe for the next record.
   SignalProbe* next() {
     if (!frame_) return nullptr;
     add_last();
@@ -59,7 +59,7 @@ class StretchProbe {
 
   SignalProbe* frame_;
   SignalProbe own_;
-  size_t first_ = 0;  // of the stretch, in those of the frame
+  size_t first_ = 0;  // place of the stretch's chirps in those of the frame
 };
 
 }  // namespace

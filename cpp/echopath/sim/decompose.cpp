@@ -11,13 +11,13 @@ namespace {
 
 using Views = std::vector<std::vector<PartCube>>;
 
-// Combinations of parts that are worth their memory, since each path is then synthesised once for several views.
+// Up to so many combinations of parts are worth their memory, since each path is then synthesised once for several views.
 constexpr size_t kFewGroups = 64;
 constexpr size_t kMostGroups = 1 << 16;
-// Cubes of combinations that are made at once, before they are added to their parts.
+// So many cubes of combinations are made at once, before they are added to their parts.
 constexpr size_t kGroupsAtOnce = 32, kCubesAtOnce = size_t{64} << 20;  // and bytes of them, if more than one
 
-// Views that are filled together.
+// Holds views that are filled together.
 struct ViewSet {
   std::vector<size_t> views;   // their indices
   CombinedPartition combined;  // in that order
@@ -25,7 +25,7 @@ struct ViewSet {
   PathGroups groups() const { return {&combined.group, std::max(1, static_cast<int>(combined.num_groups))}; }
 };
 
-// With one more view, unless that makes many combinations.
+// Returns the set with one more view, unless that makes many combinations.
 std::optional<CombinedPartition> joined(const CombinedPartition& set, const Partition& view, Job* job) {
   const size_t most = std::max(kFewGroups, set.num_groups + view.names.size());
   if (set.num_groups * view.names.size() > kMostGroups) return std::nullopt;
@@ -103,14 +103,14 @@ Views decompose_record(const Paths& paths, const Radar& radar, const std::vector
   return out;
 }
 
-// The part of that name; one that no earlier record has is put before the last.
+// Returns the part of that name; one that no earlier record has is put before the last.
 PartCube& part_named(const std::string& name, std::vector<PartCube>& parts, const Radar& radar) {
   const auto found = std::find_if(parts.begin(), parts.end(), [&](const PartCube& part) { return part.name == name; });
   if (found != parts.end()) return *found;
   return *parts.insert(parts.empty() ? parts.end() : parts.end() - 1, {name, Cube::zeros(radar)});
 }
 
-// What a record adds to the parts of a frame. The first one has them in their order.
+// Adds a record to the parts of a frame. The first one sets their order.
 void add_parts(const Views& record, const Radar& radar, int first_chirp, Views& frame) {
   for (size_t view = 0; view < frame.size(); ++view) {
     std::vector<PartCube>& parts = frame[view];

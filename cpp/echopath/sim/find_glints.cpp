@@ -16,28 +16,28 @@
 namespace echopath {
 namespace {
 
-constexpr double kBeside = 1.5;     // cells: how far from a point of reflection a path may be that tells that it is seen
-constexpr double kSamePoint = 0.5;  // Fresnel zones, the narrower way
+constexpr double kBeside = 1.5;     // cells: a point of reflection is seen where a path lies this near
+constexpr double kSamePoint = 0.5;  // of the narrower Fresnel zone
 
-// Ways of the rays of one stratum over the same flagged mirrors to the same mesh and on.
-struct WayKind {
+// Identifies paths of one stratum that run over the same flagged mirrors to the same mesh and on.
+struct RouteKind {
   uint16_t stratum;
   uint32_t mesh;
   std::vector<uint32_t> before, behind;  // meshes of the mirrors, from antenna to antenna
 
-  bool operator<(const WayKind& other) const {
+  bool operator<(const RouteKind& other) const {
     return std::tie(stratum, mesh, before, behind) < std::tie(other.stratum, other.mesh, other.before, other.behind);
   }
 };
 
-// Its paths, as the launch sees them.
+// Holds a path of a kind and its direction of launch.
 struct SeenPath {
   Vec3 direction;
   int64_t path;
   double amplitude = 0.0;
 };
 
-// With one antenna each, where rays start and end.
+// Returns the radar with one antenna each, where rays start and end.
 Radar radar_of_rays(const Radar& radar) {
   Radar one = radar;
   for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
@@ -77,22 +77,22 @@ class GlintSearch {
   }
 
  private:
-  using Kinds = std::map<WayKind, std::vector<SeenPath>>;
+  using Kinds = std::map<RouteKind, std::vector<SeenPath>>;
 
   void sort_paths(Job* job) {
     constexpr int64_t kTogether = 1 << 16;
     for (int64_t path = 0; path < paths_.num_paths(); ++path) {
       if (job && path % kTogether == 0) job->throw_if_cancelled();
-      std::optional<WayKind> kind = kind_of(path);
+      std::optional<RouteKind> kind = kind_of(path);
       if (kind) kinds_[std::move(*kind)].push_back({direction_of_launch(path), path});
     }
   }
 
-  // None of paths that are diffuse, reversed or over other mirrors than flagged ones.
-  std::optional<WayKind> kind_of(int64_t path) const {
+  // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
+  std::optional<RouteKind> kind_of(int64_t path) const {
     const auto p = static_cast<size_t>(path);
     if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
-    WayKind kind{paths_.stratum[p], 0, {}, {}};
+    RouteKind kind{paths_.stratum[p], 0, {}, {}};
     int surfaces = 0;
     for (int k = 0; k < paths_.num_bounces[p]; ++k) {
       const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
@@ -112,7 +112,7 @@ class GlintSearch {
     return (a + first.u * (b - a) + first.v * (c - a) - paths_.frame.transmitter).normalized();
   }
 
-  // Without a filter: what one launch cell sends.
+  // Computes amplitudes without a filter, which are what one launch cell sends.
   void weigh_paths(Job* job) {
     std::vector<int64_t> indices;
     for (const auto& [kind, seen] : kinds_) {
@@ -140,10 +140,10 @@ class GlintSearch {
     return out;
   }
 
-  // Of its largest triangle: the others lie in it to a tenth of a millimetre.
+  // Returns the plane of the largest triangle; the others lie in it to a tenth of a millimetre.
   Plane plane_of(uint32_t mirror) const {
     const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
-    Plane largest{Vec3::Zero(), Vec3::Zero()};  // its normal as long as twice the area
+    Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
     for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
       const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
       const Vec3 normal = (b - a).cross(c - a);
@@ -153,7 +153,7 @@ class GlintSearch {
     return largest;
   }
 
-  std::vector<Glint> glints_of(const WayKind& kind, const std::vector<SeenPath>& seen) const {
+  std::vector<Glint> glints_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
     std::vector<Plane> before;
     for (const uint32_t mirror : kind.before) before.push_back(plane_of(mirror));
     Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;
@@ -190,7 +190,7 @@ class GlintSearch {
 
   double cell_of(size_t stratum) const { return 1.0 / std::sqrt(paths_.frame.lattice_density(stratum)); }  // rad
 
-  // The path beside a glint, if there is one.
+  // Returns the path beside a glint, or null.
   static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
     const auto found = std::min_element(seen.begin(), seen.end(),

@@ -12,12 +12,12 @@
 namespace echopath {
 namespace {
 
-// Of the looks: directions and random phases that no other has.
+// Returns a seed that gives each look directions and random phases of its own.
 uint64_t seed_of_look(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
 
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
-// Takes out what a trace at another time could have had, too.
+// Takes out the paths that a trace at another time could have had, too.
 void take_out(const Radar& radar, double time, Paths& found, Job* job, KeptGeometry* kept) {
   if (found.num_paths() == 0) return;
   std::vector<uint8_t> keep = still_there(found, radar, time, job, kept);

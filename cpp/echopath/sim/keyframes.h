@@ -1,5 +1,5 @@
 #pragma once
-// A frame in several stretches of chirps, each with a record of its own time: where one trace does not serve the whole
+// Splits a frame into stretches of chirps, each with a record of its own time, where one trace does not serve the whole
 // frame.
 #include <vector>
 
@@ -21,7 +21,7 @@ enum class Retrace {
 
 struct KeyframeSettings {
   Retrace retrace = Retrace::kNever;
-  int keyframes = 0;  // stretches of the frame, 1 to num_chirps; 0: what validity asks for
+  int keyframes = 0;  // stretches of the frame, 1 to num_chirps; 0: as many as validity asks for
 };
 
 struct Stretch {
@@ -31,22 +31,23 @@ struct Stretch {
   Radar radar;              // with the chirps of the stretch
 };
 
-// `count` stretches of nearly equal length. Raises invalid_argument unless 1 <= count <= num_chirps.
+// Returns `count` stretches of nearly equal length. Raises invalid_argument unless 1 <= count <= num_chirps.
 std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int count);
 
-// The number of stretches to use: that of the settings, or what validity asks for (Validity::keyframes).
+// Returns the number of stretches to use: that of the settings, or what validity asks for (Validity::keyframes).
 int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings,
                   SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
 
-// The records of the stretches of a frame. Their frames start with the stretch.
+// Makes the records of the stretches of a frame. The frame of a record starts with its stretch.
 class StretchRecords {
  public:
-  // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to kMostLooks
-  // stretches, with as many rays as the record has: what neither the trace nor a look before could have had is a record of its own,
-  // with phases of its own. So each piece of surface stands in one of the records, the same material points with the same phases
-  // throughout. All must outlive it; a selection of paths gets no new surface. Raises invalid_argument for kAlways with a selection.
+  // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to
+  // kMostLooks stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look could have
+  // found become a record with phases of its own. So each piece of surface stands in one of the records, with the same
+  // material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface. Raises
+  // invalid_argument for kAlways with a selection.
   StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace, Job* job = nullptr);
-  // Records whose echoes add up to those of the stretch, at least one.
+  // Returns records, at least one, whose echoes add up to those of the stretch.
   std::vector<Paths> of(const Stretch& stretch);
 
  private:
@@ -56,7 +57,7 @@ class StretchRecords {
   Retrace retrace_;
   Job* job_;
   KeptGeometry kept_;
-  std::vector<Paths> found_;  // by the looks
+  std::vector<Paths> found_;  // paths on new surface
 };
 inline constexpr int kMostLooks = 32;
 

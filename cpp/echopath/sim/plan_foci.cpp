@@ -10,35 +10,35 @@
 namespace echopath {
 namespace {
 
-// Up to where a focus has a glint alone: Fresnel zones, and cells of its stratum, whose second-order footprints reach that far
-// and would count it once more.
+// A focus has a glint to itself up to so many Fresnel zones and so many cells of its stratum, whose second-order footprints
+// reach that far and would count the glint once more.
 constexpr double kZones = 2.0, kCells = 1.5;
 constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
 constexpr size_t kMostFoci = 12;       // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
 constexpr double kMostRays = 0.5;      // of the stratum's rays, for all its foci
-constexpr double kLeastGain = 1.5;     // of a focus, over the density of rays without it
+constexpr double kLeastGain = 1.5;     // of the density of rays in a focus, over that without it
 
-// A stratum of the trace to come.
+// Describes a stratum of the trace to come.
 struct StratumPlan {
   std::string name;
-  double rays = 0.0;         // with those of its foci
+  double rays = 0.0;         // including those of its foci
   double solid_angle = 0.0;  // sr
-  double cell = 0.0;         // rad, side of the launch cells that foci leave it
+  double cell = 0.0;         // rad, side of the stratum's own launch cells when foci have their rays
   KnownEcho echo;
-  double of_glints = 0.0, of_foci = 0.0;  // W, of glints one by one, of all and of those in a focus
+  double of_glints = 0.0, of_foci = 0.0;  // W, powers of all glints added up, and of those in a focus
   double power() const { return std::max(echo.power, of_glints); }
   std::vector<LaunchFocus> foci;
 };
 
-// The cone about a glint in which rays are to lie closer. Its share is relative to other foci of the stratum.
+// Returns the cone about a glint in which rays are to lie closer. Its share is relative to other foci of the stratum.
 LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) {
   LaunchFocus focus;
   focus.of = plan.name;
   focus.axis = glint.direction;
   focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell) / kFocusCore, kWidest));
-  // Zones that are narrower than the cells of all rays together stay unresolved with any.
+  // Zones narrower than the cells of all those rays together stay unresolved anyway.
   const double finest = kTwoPi * focus.versine / (kMostRays * std::max(plan.rays, 1.0));
   focus.share = focus.versine / std::max(glint.narrow * glint.narrow, finest) * std::sqrt(power);
   return focus;
@@ -47,12 +47,12 @@ LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) 
 double radius_of(const LaunchFocus& focus) { return half_angle_of(focus.versine); }
 double angle_between(const Vec3& a, const Vec3& b) { return 2.0 * std::asin(0.5 * (a - b).norm()); }
 
-// Whether the glint in the middle of `other` lies where `focus` fades, with its first zone.
+// Returns whether the glint in the middle of `other`, with its first zone, lies where `focus` fades.
 bool cuts(const LaunchFocus& focus, const LaunchFocus& other) {
   return angle_between(focus.axis, other.axis) < radius_of(focus) + 0.5 * kFocusCore * radius_of(other);
 }
 
-// The cone that holds both, with the closer rays of the two.
+// Returns the cone that holds both, with the closer rays of the two.
 LaunchFocus around(const LaunchFocus& a, const LaunchFocus& b) {
   const double away = angle_between(a.axis, b.axis), first = radius_of(a), second = radius_of(b);
   LaunchFocus both = first >= second ? a : b;
@@ -66,7 +66,7 @@ LaunchFocus around(const LaunchFocus& a, const LaunchFocus& b) {
   return both;
 }
 
-// A glint that another focus would cut shares one with it, if that is still small.
+// Adds a glint. One that another focus would cut shares a focus with it, if that is still small.
 void add_glint(const Glint& glint, StratumPlan& plan) {
   // By stationary phase a surface that is smaller than its zone, or that focuses, would send more than there is.
   const double power = std::min(glint.power, plan.echo.high);
@@ -83,7 +83,7 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
   else *shared = around(*shared, focus);
 }
 
-// Those that would have rays hardly closer than without them go.
+// Shares rays among the foci and drops those whose rays would lie hardly closer than without them.
 void give_rays(StratumPlan& plan) {
   const double part = std::sqrt(plan.of_foci / std::max(plan.power(), 1e-300));
   const double given = kMostRays * std::min(1.0, part) * plan.rays, density = plan.rays / plan.solid_angle;

@@ -1,5 +1,5 @@
 #pragma once
-// Which points of reflection get rays of their own, and how many.
+// Decides which points of reflection get rays of their own, and how many.
 #include <vector>
 
 #include "echopath/sim/find_glints.h"
@@ -7,17 +7,17 @@
 
 namespace echopath {
 
-// The echo of a stratum as far as it is known.
+// Holds what is known of the echo of a stratum.
 struct KnownEcho {
   double power = 0.0;  // W
   double high = 0.0;   // W, end of its interval
 };
 
-// Sets foci about the glints of each stratum that its rays would be too far apart for, and takes their rays from its share in
-// `guide.shares`, which counts in rays: half of it at most, by the part of the stratum's field that the foci hold, so that what is
-// no point of reflection, such as an edge, keeps what it needs. Among foci, rays go by the number of Fresnel zones and by
-// the root of the glint's power. frame: of the trace in which the glints were found; echoes: by index of its strata, of those
-// that are no foci; glints: strongest first.
+// Sets foci about the glints of each stratum that its rays would be too far apart for, and takes their rays from its share
+// in `guide.shares`, which counts in rays. Foci get at most half of it, by the part of the stratum's field that they hold,
+// so that echoes without a point of reflection, such as those of edges, keep what they need. Among foci, rays go by the
+// number of Fresnel zones and by the root of the glint's power. `frame` is that of the trace in which the glints were found;
+// `echoes` are by index of its strata, of those that are no foci; `glints` come strongest first.
 void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints, LaunchGuide& guide);
 
 }  // namespace echopath

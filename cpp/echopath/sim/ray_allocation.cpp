@@ -16,9 +16,9 @@ constexpr double kDynamicRange = 1e-6;  // of the strongest echo
 constexpr double kLeastGrowth = 1.0 / 16.0;
 constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
-constexpr double kImageWeight = 0.5;    // beside that of the aim
+constexpr double kImageWeight = 0.5;    // times weight_of_aim
 constexpr double kServedFirst = 0.75;   // of the rays
-constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
+constexpr double kGlintFieldShare = 0.1;  // of all rays, at least, for a field of view with a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
 
@@ -26,7 +26,7 @@ double sum_of(const RayShares& shares) {
   return std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const auto& share) { return sum + share.second; });
 }
 
-// Of the echoes of each, with its foci.
+// Returns the received power of each stratum with its foci.
 std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
   const size_t num_strata = paths.frame.strata.size();
   std::vector<uint32_t> group(paths.stratum.size());
@@ -44,13 +44,14 @@ double strongest_of(const std::vector<ReceivedPower>& powers) {
   return strongest;
 }
 
-// Half the interval relative to the power, in dB; what lies below the floor counts as if it were as strong as that.
+// Returns half the interval relative to the power, in dB; a power below the floor counts as if it were as strong as the
+// floor.
 double missing_db(const ReceivedPower& power, double least) {
   const double level = std::max(power.power, least), half = std::max(power.high - power.power, power.power - power.low);
   return level > 0 ? 10.0 * std::log10(1.0 + half / level) : 0.0;
 }
 
-// By node: whether something below it moves.
+// Marks the object nodes below which something moves.
 std::vector<bool> moving_objects(const Scene& scene) {
   std::vector<bool> moves(scene.nodes().size());
   for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
@@ -65,14 +66,14 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   need.echo = {power.power, power.high};
   need.weight = weight_of_aim(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
   double growth = power.high > 0 ? std::clamp(missing / target_db, kLeastGrowth, kMostGrowth) : kUnseenGrowth;
-  // The field of view sees many surfaces, of which the strongest would speak for all: it keeps what it has.
+  // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMostGrowth;
   need.rays = growth * num_rays;
   return need;
 }
 
-// The field of view keeps the rays that it has, but where its echo is not resolved and a glint makes it.
+// Raises the rays of the field of view where its echo is not resolved and a glint makes it.
 void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
   const int field = static_cast<int>(frame.strata.size()) - 1;
   const std::string& name = frame.strata.back().name;
@@ -82,7 +83,7 @@ void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const s
   if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
 }
 
-// By index of the strata.
+// Returns the echoes by index of the strata.
 std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
   std::vector<KnownEcho> echoes(frame.strata.size());
   size_t next = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Rays where the error is: what a trace of few rays says about how many each stratum needs.
+// Puts rays where the error is: a trace of few rays tells how many each stratum needs.
 #include <string>
 #include <vector>
 
@@ -10,17 +10,17 @@
 
 namespace echopath {
 
-// How many rays the echo of a stratum (of one object, or of one image of it) asks for.
+// Tells how many rays the echo of a stratum (of one object, or of one image of it) needs.
 struct RayNeed {
   std::string stratum;     // its name
   double rays = 0.0;
   KnownEcho echo;
-  bool is_resolved = true;  // to the target, or below the floor
-  double weight = 1.0;     // of images, below that of objects
-  bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need any number more
+  bool is_resolved = true;  // its error meets the target, or it lies below the floor
+  double weight = 1.0;     // lower for images than for objects
+  bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need more
 };
 
-// Which echoes matter.
+// Tells which echoes matter.
 enum class EchoFloor {
   kNoise,      // those that may stand above the noise of a cell of the range-Doppler map
   kStrongest,  // those down to 60 dB below the strongest
@@ -33,24 +33,25 @@ struct RayNeeds {
   double num_rays() const;
 };
 
-// Every stratum whose echo may stand above the floor asks for as many rays as bring its interval
-// (power/received_power.h) to `target_db`, those of objects that move to a quarter of it: the interval of a coherent echo falls
-// about with the rays, that of a diffuse one with their root, so that both ask in proportion to what they miss, within a factor
-// of kMostGrowth. What is known better gives rays back, down to a sixteenth; what no ray has met keeps a quarter. Raises Cancelled.
+// Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
+// to `target_db`, for objects that move to a quarter of it. The interval of a coherent echo falls about with the rays, that
+// of a diffuse one with their root; both get rays in proportion to the error over the target, within a factor of
+// kMostGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends nothing back keeps a
+// quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
 inline constexpr double kMostGrowth = 32.0;
 
-// Shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three quarters of the rays:
-// so the most objects get what they need. The others share what is left by their weights.
+// Returns shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three quarters
+// of the rays, so that the most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
-// Shares of a trace of that many rays by what one of fewer rays says, with foci about its glints (plan_foci.h). Raises
-// Cancelled.
+// Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints
+// (plan_foci.h). Raises Cancelled.
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
 
-// A trace whose rays are shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h): a
-// pilot of an eighth of settings.num_rays tells, and is thrown away. Without a pilot, as `trace` shares them, where
-// settings.guide says how, or where rays are few. Raises as `trace`.
+// Traces with rays shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h). A pilot
+// trace of an eighth of settings.num_rays tells the needs and is thrown away. Where settings.guide gives the shares, or rays
+// are few, there is no pilot, and rays are shared as in `trace`. Raises as `trace`.
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kPhaseError = 1e-3;      // rad, of the spherical wave fronts of both antennas together
 constexpr double kAmplitudeError = 1e-4;  // relative, of their spreading
-constexpr double kSmallestSine = 1e-3;    // between line of sight and polarization
+constexpr double kSmallestSine = 1e-3;    // of the angle between line of sight and polarization
 
 struct Target {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
 };
 
-// Bounding sphere about the middle of the bounding box, in world coordinates.
+// Returns the bounding sphere about the middle of the bounding box, in world coordinates.
 Target target_of(const Scene& scene) {
   require(!scene.meshes().empty(), "scene", "must have a mesh, meshes", scene.meshes().size());
   const PosedScene pose(scene, 0.0);
@@ -42,7 +42,7 @@ double far_distance(const Target& target, double wavenumber) {
   return std::max({flat, target.radius / kAmplitudeError, kTwoPi / wavenumber});
 }
 
-// Unit vector across the unit vector `toward` the antenna.
+// Returns a unit vector across the line of sight; the unit vector `toward` points to the antenna.
 Vec3 across(const RcsPolarization& polarization, const Vec3& toward) {
   const TransverseBasis basis = transverse_basis(toward);
   if (polarization.kind == RcsPolarization::Kind::kHorizontal) return basis.horizontal;
@@ -64,13 +64,13 @@ Antenna far_antenna(const Target& target, const Vec3& direction, double distance
   return antenna;
 }
 
-// The channels of one pair of directions that share a transmit polarisation, and so a trace.
+// Holds the channels of one pair of directions that share a transmit polarisation, and so a trace.
 struct Shot {
   Radar radar;                   // a receiver for each channel
   std::vector<size_t> channels;  // indices into the results
 };
 
-// At time 0 and one frequency: a frame too short for anything to move.
+// Returns a radar for time 0 and one frequency, whose frame is too short for anything to move.
 Radar far_radar(double frequency, const Antenna& transmitter) {
   Radar radar;
   radar.waveform.start_frequency = frequency;
@@ -120,7 +120,7 @@ Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings,
                          : trace(scene, radar, tracing, job, kept);
 }
 
-// `scale`: m^2 per W at the antenna port for 1 W transmitted.
+// `scale` is in m^2 per W at the antenna port for 1 W transmitted.
 RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, Job* job) {
   const ReceivedPower power = received_power(paths, job, {0, receiver});
   return {scale * power.power,   scale * power.standard_error, scale * power.coherent,     scale * power.coherent_error,
@@ -150,7 +150,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   const Target target = target_of(scene);
   const double wavenumber = kTwoPi * settings.frequency / kSpeedOfLight;
   const double distance = far_distance(target, wavenumber);
-  // (4 pi)^3 R^4 / lambda^2 for Q^2 = 1 W
+  // The scale is (4 pi)^3 R^4 / lambda^2 for Q^2 = 1 W.
   const double scale = std::pow(4.0 * kPi, 3) * std::pow(distance, 4) * std::pow(wavenumber / kTwoPi, 2);
   std::vector<Shot> shots;
   for (size_t i = 0; i < directions.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// Radar cross sections: what a target alone returns to antennas far away.
+// Computes radar cross sections: what a target alone returns to antennas far away.
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace echopath {
 
-// Unit or any other length; both point from the target to the antenna.
+// Both vectors may have any length and point from the target to the antenna.
 struct RcsDirections {
   Vec3 incidence = Vec3::UnitX();    // toward the transmitter
-  Vec3 observation = Vec3::UnitX();  // toward the receiver; equal to `incidence`: monostatic
+  Vec3 observation = Vec3::UnitX();  // toward the receiver; equal to `incidence` if monostatic
 };
 
-// Polarisation of an antenna across its line of sight.
+// Describes the polarisation of an antenna across its line of sight.
 struct RcsPolarization {
   enum class Kind {
     kVector,
@@ -35,7 +35,7 @@ struct RcsChannel {
 struct RcsSettings {
   double frequency = 77e9;                       // Hz
   std::vector<RcsChannel> channels = {RcsChannel{}};
-  PolarizationModel model = PolarizationModel::kScalar;  // kScalar knows nothing of what is received cross-polarised
+  PolarizationModel model = PolarizationModel::kScalar;  // kScalar has no cross-polarised reception
   int64_t num_rays = 1 << 17;                    // per pair of directions and transmit polarisation
   int max_bounces = 4;                           // 1 to 64
   uint64_t seed = 1;
@@ -49,8 +49,8 @@ struct RcsSettings {
   void validate() const;
 };
 
-// All in m^2, with the standard errors of power/received_power.h: NaN for one batch. Coherent echoes add as fields;
-// diffuse ones, whose phases are random, as powers: their mean over realisations of the roughness. With batches the
+// Holds cross sections in m^2 with the standard errors of power/received_power.h: NaN for one batch. Coherent echoes add as
+// fields; diffuse ones, whose phases are random, as powers: their mean over realisations of the roughness. With batches the
 // coherent part is free of bias by noise, which can take it below zero where it is not resolved.
 struct RadarCrossSection {
   double total = 0.0, standard_error = 0.0;
@@ -59,12 +59,12 @@ struct RadarCrossSection {
   double error_db = 0.0;  // dB, what was reached where there is a target; else 0
 };
 
-// sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic
+// Computes sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic
 // antennas at a distance R at which the wave fronts are flat over the scene's bounding sphere to 1e-3 rad and their
 // amplitude to 1e-4. Returns [pair * channels + channel]. Each pair and transmit polarisation costs a trace of its own,
 // which the channels of that polarisation share.
-// Raises invalid_argument for bad settings, a zero direction, one along a polarization vector, a scene without meshes,
-// or one with mirrors: they stand for planes without end, which have no cross section.
+// Raises invalid_argument for bad settings, a zero direction, a direction along a polarization vector, a scene without
+// meshes and one with mirrors: they stand for planes without end, which have no cross section.
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
                                    const RcsSettings& settings, Job* job = nullptr);
 

@@ -15,15 +15,16 @@ namespace {
 
 constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
 constexpr int64_t kEchoesInFlight = 1 << 17;   // paths x channels; as many are handed over meanwhile
-constexpr int64_t kNodesOfAPath = 32;          // that these echoes may have each before there are fewer of them
-// What a block has at its nodes stays in the second-level cache. No power of two: rows of nodes would share the sets of the first.
+constexpr int64_t kNodesOfAPath = 32;          // with more nodes per path, fewer echoes are in flight
+// The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
+// the first.
 constexpr int64_t kLargestBlock = 1000;
 
-// Echoes with nodes in every chirp: few at a time, whose memory the next take over; a page that is touched for the first time costs
-// as much as a path does at all its nodes.
+// Echoes with nodes in every chirp are replayed few at a time, and the next take over their memory: a page that is touched
+// for the first time costs as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
-constexpr int64_t kValuesInFlight = 150000;  // no power of two, likewise
-constexpr int64_t kLeastBlock = 64;  // as many vectors of echoes, once they are joined, as fill the registers
+constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
+constexpr int64_t kLeastBlock = 64;  // fills the registers with vectors of joined echoes
 
 int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);
@@ -32,9 +33,9 @@ int64_t block_size(int64_t num_channels, int64_t num_nodes) {
   return std::min(most, std::max(kLeastBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_nodes)));
 }
 
-constexpr int64_t kPathsOfTask = 1 << 13;  // whose grids are found
+constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds
 
-// Indices of the paths by the grid that they begin with (PathGrids), in their order.
+// Sorts the indices of the paths by the grid that they begin with (PathGrids), in their order.
 class PathsByGrid {
  public:
   PathsByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
@@ -64,7 +65,7 @@ class PathsByGrid {
     for (const uint8_t grid : here) ++place_[static_cast<size_t>(task)][grid];
   }
 
-  // Makes counts of the tasks the places where each begins to write.
+  // Turns the counts of the tasks into the places where each begins to write.
   std::vector<std::vector<int64_t>> lists_of_counts() {
     std::vector<size_t> sizes(num_grids_);
     for (std::vector<size_t>& places : place_) {
@@ -90,7 +91,7 @@ class PathsByGrid {
   std::vector<std::vector<int64_t>> lists_;
 };
 
-// Paths less those that were left, in their order.
+// Returns the paths less those that were left, in their order.
 std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
   rest.reserve(paths.size());
@@ -108,24 +109,24 @@ std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<
 
 struct ReplayStream::Block {
   std::vector<Echoes> channels;
-  std::vector<int64_t> paths;    // of each echo, the first
+  std::vector<int64_t> paths;    // [echo] its path, or the first of those joined in it
   int64_t num_paths = 0;         // of all echoes
   std::vector<UnfollowedPath> left;
 };
 
-// Blocks that are replayed together.
+// Holds blocks that are replayed together.
 struct ReplayStream::Window {
   int first_channel = 0;
   size_t num_channels = 0;
   std::vector<Block> blocks;
 };
 
-// The way to the sink.
-class ReplayStream::HandOver {
+// Hands windows to the sink, each while the next is replayed.
+class ReplayStream::WindowPipeline {
  public:
-  HandOver(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
+  WindowPipeline(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
 
-  // The last window goes to the sink while `replay` makes the next, with whatever threads either leaves idle.
+  // Hands the last window to the sink while `replay` makes the next, each with whatever threads the other leaves idle.
   void beside(const std::function<void(Window& next)>& replay) {
     Window next;
     run_both([&] { finish(); }, [&] { replay(next); });
@@ -156,7 +157,7 @@ class ReplayStream::HandOver {
 };
 
 void ReplayStream::run(const Sink& sink) const {
-  HandOver out(*this, sink);
+  WindowPipeline out(*this, sink);
   const PathGrids grids = replayer_.path_grids();
   std::vector<std::vector<int64_t>> by_grid = PathsByGrid(grids, num_paths_, job_).take();
   add_still(by_grid.front(), out);
@@ -165,12 +166,13 @@ void ReplayStream::run(const Sink& sink) const {
   out.finish();
 }
 
-void ReplayStream::add_still(const std::vector<int64_t>& paths, HandOver& out) const {
+void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const {
   run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
 }
 
-// Each path goes on at the polynomial that its meshes need; where that was not enough, at the next, or its amplitude in every chirp.
-void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, HandOver& out) const {
+// Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
+// every chirp.
+void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const {
   std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
@@ -186,8 +188,8 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
   }
 }
 
-// The scene as posed at the chirps of one transmitter is all that is held.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, HandOver& out) const {
+// Holds only the scene as posed at the chirps of one transmitter.
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const {
   const auto is_empty = [](const std::vector<int64_t>& paths) { return paths.empty(); };
   if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
   const int num_receivers = num_channels() / num_transmitters_;
@@ -199,8 +201,8 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, 
   }
 }
 
-// Paths that no polynomial follows.
-void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, HandOver& out) const {
+// Replays the paths that no polynomial follows.
+void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const {
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const PosedGrid samples = replayer_.pose(replayer_.grids().samples(transmitter));
@@ -208,9 +210,9 @@ void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitte
              [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
 }
 
-// Blocks are replayed in parallel, a fixed number at a time. Returns the paths that `replay` left.
+// Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
 std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                                 HandOver& out) const {
+                                                 WindowPipeline& out) const {
   const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = static_cast<int64_t>(paths.size());
   std::vector<UnfollowedPath> all_left;
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
@@ -224,7 +226,7 @@ std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>&
   return all_left;
 }
 
-// Returns what is left of these paths.
+// Replays a window of blocks. Returns the paths that are left.
 std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
                                                     const Extent& extent, const Replay& replay, Window& window) const {
   const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
@@ -274,7 +276,7 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
 
 namespace {
 
-// Values of all chirps of echoes [begin, end): few echoes at a time, whose nodes stay in the first-level cache.
+// Evaluates all chirps of echoes [begin, end), which are few, so that their nodes stay in the first-level cache.
 void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_chirps) {
   constexpr int kChirpsAtOnce = 4;
   EchoStates states[kChirpsAtOnce];
@@ -304,7 +306,7 @@ int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings
 
 namespace {
 
-// Differences of one block of one channel to its values at the given chirps.
+// Compares one block of one channel with its values at the given chirps.
 class ErrorOfBlock {
  public:
   ErrorOfBlock(const Replayer& replayer, const Paths& paths, const Radar& radar, int channel)

@@ -1,5 +1,5 @@
 #pragma once
-// Blocks of paths on their way through replay.
+// Sends blocks of paths through replay to synthesis.
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,9 +14,10 @@ class PathWatcher {
  public:
   virtual ~PathWatcher() = default;
   virtual bool watches(int channel) const = 0;
-  // Of one of the blocks in flight, below ReplayStream::kBlocksInFlight; many at a time.
+  // Sees one of the blocks in flight; `block` is below ReplayStream::kBlocksInFlight. It is called for many blocks at a
+  // time.
   virtual void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) = 0;
-  // All blocks in flight have been seen.
+  // Is called when all blocks in flight have been seen.
   virtual void end_blocks() = 0;
 };
 
@@ -25,15 +26,15 @@ class ReplayStream {
  public:
   static constexpr int64_t kBlocksInFlight = 16;  // fixed: results must not depend on the number of threads
 
-  // What some blocks are the echoes of.
+  // Tells which paths the echoes of some blocks belong to.
   struct EchoPaths {
-    std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those that were joined
+    std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those joined in it
     int64_t count;                   // of all paths
   };
-  // Blocks of one channel, which may be changed. Each path comes once.
+  // Takes the blocks of one channel, which it may change. Each path comes once.
   using Sink = std::function<void(int channel, std::span<Echoes> blocks, const EchoPaths& paths)>;
 
-  // Paths and radar must outlive the stream. Raises what Replayer does.
+  // `paths` and `radar` must outlive the stream. Raises as Replayer.
   ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
       : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
         replayer_(paths, radar, settings), job_(job) {}
@@ -57,19 +58,19 @@ class ReplayStream {
                                                    std::vector<UnfollowedPath>& left)>;
   struct Block;
   struct Window;
-  class HandOver;
-  void add_still(const std::vector<int64_t>& paths, HandOver& out) const;
-  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, HandOver& out) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, HandOver& out) const;
-  void add_samples(const std::vector<int64_t>& paths, int transmitter, HandOver& out) const;
-  // Channels that `replay` makes echoes of, in how many rows, and whether it joins paths itself where it is told which.
+  class WindowPipeline;
+  void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
+  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const;
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const;
+  void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const;
+  // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on request.
   struct Extent {
     int first_channel, num_channels;
     int64_t num_rows;
     bool joins = false;
   };
   std::vector<UnfollowedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                     HandOver& out) const;
+                                     WindowPipeline& out) const;
   std::vector<UnfollowedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
                                         const Replay& replay, Window& window) const;
   bool is_watched(const Extent& extent) const;
@@ -84,16 +85,17 @@ class ReplayStream {
 };
 
 // Replays all paths at every chirp and for every channel to the echoes that synthesis takes, to see what that costs alone.
-// Returns the number of path-chirps, static paths once.
+// Returns the number of path-chirps, where static paths count once.
 int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
 
-// Largest differences between replay with these settings and evaluation at the middle of chirps.
+// Holds the largest differences between replay with these settings and evaluation at the middle of chirps.
 struct ReplayError {
   double phase = 0.0;      // rad, at the start frequency
   double amplitude = 0.0;  // relative to the largest amplitude of the path in these chirps
 };
 
-// In `chirps` (indices), over all paths and channels, each path where it follows its tolerances. Raises Cancelled.
+// Returns the errors in `chirps` (indices) over all paths and channels, each path at the level that meets its tolerances.
+// Raises Cancelled.
 ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
                          Job* job = nullptr);
 

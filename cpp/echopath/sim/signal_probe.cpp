@@ -24,17 +24,17 @@ constexpr int kSamples = ProbedChirp::kSamples;
 constexpr int kMostChirps = 2;  // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
-constexpr size_t kSumsOfShare = 4;             // side by side: one would wait for itself
+constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
 
-// Sums of kSamples samples; also offsets of these in samples from the first of the chirp.
+// Holds sums of kSamples samples, or the offsets of these in samples from the first of the chirp.
 using SampleSums = std::array<double, kSamples>;
 
-// Samples of each row, real parts first.
+// Holds the samples of a row, real parts first.
 struct SampleRow {
   SampleSums re{}, im{};
 };
 
-// Carriers side by side.
+// At most so many carriers are computed side by side.
 constexpr int kMostLanes = 8;
 template <int kLanes>
 struct VectorOfLanes;
@@ -49,8 +49,8 @@ struct VectorOfLanes<8> {
   typedef double Unaligned __attribute__((vector_size(64), aligned(8), may_alias));
 };
 
-// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced: one phasor for the
-// first and one for the step between them.
+// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
+// phasor for the first and one for the step between them.
 template <int kLanes>
 ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
                                double* sums) {
@@ -80,19 +80,19 @@ ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const 
   }
 }
 
-// A number below `count` for the k-th draw of a pass that begins with a chirp of the frame.
+// Returns a number below `count` that depends on nothing but the arguments.
 int draw(uint64_t seed, int64_t index, int dimension, int count) {
   const double unit = uniform2(seed, Stream::kProbe, static_cast<uint64_t>(index), static_cast<uint32_t>(dimension))[0];
   return std::min(count - 1, static_cast<int>(unit * count));
 }
 
-// Of some echoes, in kLanes sums side by side.
+// Holds sums over some echoes, in kLanes sums side by side.
 struct PowerSums {
   static constexpr int kLanes = 8;
   double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
 };
 
-// Powers of echoes, as many as fill whole lanes: those behind the last are 0.
+// Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
 ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
   for (int p = 0; p < count; ++p) power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
   PowerSums sums;
@@ -107,7 +107,7 @@ ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __r
   *out = sums;
 }
 
-// Of dark paths: 0 at all nodes.
+// Returns whether the amplitude of an echo is 0 at all nodes.
 bool is_dark(const Echoes& echoes, int64_t echo) {
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;
@@ -115,7 +115,7 @@ bool is_dark(const Echoes& echoes, int64_t echo) {
   return true;
 }
 
-// An echo as the polynomials have it.
+// Holds an echo as the polynomials have it.
 struct DrawnEcho {
   int64_t path;
   double delay;                    // s
@@ -128,7 +128,7 @@ DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
 }
 
-// power: room for EchoStates::kCapacity of them, W.
+// `power` has room for EchoStates::kCapacity powers, W.
 PowerSums powers_of(EchoStates& states, int count, double* power) {
   const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
   std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
@@ -137,7 +137,7 @@ PowerSums powers_of(EchoStates& states, int count, double* power) {
   return sums;
 }
 
-// At most kEchoesOfChirp: the strongest half and an even choice of the others.
+// Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
 void thin_out(std::vector<DrawnEcho>& echoes) {
   if (echoes.size() <= kEchoesOfChirp) return;
   std::stable_sort(echoes.begin(), echoes.end(),
@@ -149,10 +149,10 @@ void thin_out(std::vector<DrawnEcho>& echoes) {
 
 }  // namespace
 
-// The few strongest of the echoes that are shown to it, strongest first.
+// Keeps the few strongest of the echoes that are shown to it, strongest first.
 class PassProbe::Strongest {
  public:
-  // largest: of these, W.
+  // `largest` is the largest of these powers, W.
   void show(const double* power, double largest, int64_t first, int count) {
     if (largest <= best_.back().first) return;
     for (int p = 0; p < count; ++p) {
@@ -174,7 +174,7 @@ class PassProbe::Strongest {
   std::array<std::pair<double, int64_t>, kStrongest> best_{};
 };
 
-// Carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
+// Holds carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
 struct PassProbe::Tones {
   explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
     for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMostLanes);
@@ -227,24 +227,24 @@ struct PassProbe::Tones {
   }
 };
 
-// Of one block.
-struct PassProbe::Seen {
-  explicit Seen(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
+// Holds what was seen of one block, or of all so far.
+struct PassProbe::EchoTally {
+  explicit EchoTally(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
   std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
-  std::vector<double> power;    // W of these, [share, kSumsOfShare] whose sum it is
+  std::vector<double> power;    // W of the latter, [share, kSumsOfShare]; the sums side by side add up
   double power_sum = 0.0, strongest = 0.0;  // W
   double amplitude_sum = 0.0;
   std::vector<DrawnEcho> drawn;
 };
 
-// A chirp of a channel, and what was seen of it so far.
-struct PassProbe::Aim {
-  explicit Aim(size_t num_shares) : seen(num_shares) {}
+// Holds a chirp of a channel that is probed, and what was seen of it so far.
+struct PassProbe::ChirpTarget {
+  explicit ChirpTarget(size_t num_shares) : tally(num_shares) {}
   int channel = 0, chirp = 0;
   int num_samples = 0;  // that differ; the others repeat them
   SampleSums sample{};  // evenly spaced, from the first of the chirp
-  Seen seen;
-  std::array<std::optional<Seen>, ReplayStream::kBlocksInFlight> of_block;
+  EchoTally tally;
+  std::array<std::optional<EchoTally>, ReplayStream::kBlocksInFlight> of_block;
 };
 
 void ProbedChirp::add(const ProbedChirp& other) {
@@ -269,38 +269,38 @@ PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& rep
   const int num_chirps = std::min(kMostChirps, replayer.num_channels());
   for (int i = 0; i < num_chirps; ++i) {
     const int64_t index = int64_t{probe.first_chirp} * kMostChirps + i;
-    Aim& aim = aims_.emplace_back(num_shares());
-    aim.channel = draw(seed_, index, 0, replayer.num_channels());
-    aim.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
-    draw_samples(seed_, index, radar.waveform.num_samples, aim);
+    ChirpTarget& target = targets_.emplace_back(num_shares());
+    target.channel = draw(seed_, index, 0, replayer.num_channels());
+    target.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
+    draw_samples(seed_, index, radar.waveform.num_samples, target);
   }
 }
 
-// Steps of half the longest to the longest: samples far apart see what neighbours would see together.
-void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Aim& aim) {
-  aim.num_samples = std::min(kSamples, num_samples);
+// Takes steps of half the longest to the longest, because neighbouring samples would all see the same.
+void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, ChirpTarget& target) {
+  target.num_samples = std::min(kSamples, num_samples);
   const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
   const int step = shortest + draw(seed, index, 2, longest - shortest + 1);
-  const int first = draw(seed, index, 3, num_samples - (aim.num_samples - 1) * step);
-  for (int s = 0; s < kSamples; ++s) aim.sample[static_cast<size_t>(s)] = first + s * step;
+  const int first = draw(seed, index, 3, num_samples - (target.num_samples - 1) * step);
+  for (int s = 0; s < kSamples; ++s) target.sample[static_cast<size_t>(s)] = first + s * step;
 }
 
 PassProbe::~PassProbe() = default;
 
 bool PassProbe::watches(int channel) const {
-  return std::any_of(aims_.begin(), aims_.end(), [&](const Aim& aim) { return aim.channel == channel; });
+  return std::any_of(targets_.begin(), targets_.end(), [&](const ChirpTarget& target) { return target.channel == channel; });
 }
 
 void PassProbe::see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) {
-  for (Aim& aim : aims_) {
-    if (aim.channel == channel) look(aim, echoes, paths, aim.of_block[block].emplace(num_shares()));
+  for (ChirpTarget& target : targets_) {
+    if (target.channel == channel) tally_block(target, echoes, paths, target.of_block[block].emplace(num_shares()));
   }
 }
 
 void PassProbe::end_blocks() {
-  for (Aim& aim : aims_) {
-    for (std::optional<Seen>& some : aim.of_block) {
-      if (some) add(*some, aim.seen);
+  for (ChirpTarget& target : targets_) {
+    for (std::optional<EchoTally>& some : target.of_block) {
+      if (some) add(*some, target.tally);
       some.reset();
     }
   }
@@ -308,7 +308,7 @@ void PassProbe::end_blocks() {
 
 size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.num_batches) + 1; }
 
-void PassProbe::add(const Seen& some, Seen& all) {
+void PassProbe::add(const EchoTally& some, EchoTally& all) {
   for (size_t row = 0; row < all.rows.size(); ++row) {
     for (size_t s = 0; s < kSamples; ++s) {
       all.rows[row].re[s] += some.rows[row].re[s];
@@ -322,50 +322,51 @@ void PassProbe::add(const Seen& some, Seen& all) {
   all.drawn.insert(all.drawn.end(), some.drawn.begin(), some.drawn.end());
 }
 
-void PassProbe::look(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, Seen& seen) const {
+void PassProbe::tally_block(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            EchoTally& tally) const {
   constexpr int kCapacity = EchoStates::kCapacity;
   EchoStates states;
   alignas(64) double power[kCapacity];
   uint32_t row[kCapacity];
   Strongest strongest;
-  Tones tones(seen.rows.size());
+  Tones tones(tally.rows.size());
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
-    evaluate_states(block, aim.chirp, begin, count, states);
+    evaluate_states(block, target.chirp, begin, count, states);
     const PowerSums sums = powers_of(states, count, power);
-    seen.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), seen.amplitude_sum);
-    seen.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), seen.power_sum);
+    tally.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), tally.amplitude_sum);
+    tally.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), tally.power_sum);
     strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);
-    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, seen);
-    add_samples(aim, block, begin, states, {row, static_cast<size_t>(count)}, tones, seen);
+    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, tally);
+    add_samples(target, block, begin, states, {row, static_cast<size_t>(count)}, tones, tally);
   }
-  tones.give(seen.rows);
-  if (!block.sampling.is_static()) draw_echoes(aim, block, paths, strongest, seen);
+  tones.give(tally.rows);
+  if (!block.sampling.is_static()) draw_echoes(target, block, paths, strongest, tally);
 }
 
-// The row of each path. `power`: W of each.
-void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, Seen& seen) const {
+// Finds the row of each path. `power` is that of each, W.
+void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, EchoTally& tally) const {
   const auto images = static_cast<uint32_t>(num_shares() - 1);
-  double strongest = seen.strongest;
+  double strongest = tally.strongest;
   for (size_t i = 0; i < paths.size(); ++i) {
     const auto path = static_cast<size_t>(paths[i]);
     const uint8_t batch = paths_.batch[path];
     const uint32_t share = batch == kNoBatch ? images : 2u * batch + ((paths_.flags[path] & kSecondHalf) != 0 ? 1u : 0u);
     const bool is_rough = paths_.diffuse[path] != 0;
     row[i] = is_rough ? images + 1 : share;
-    seen.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
+    tally.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
     if (share != images) strongest = std::max(strongest, power[i]);
   }
-  seen.strongest = strongest;
+  tally.strongest = strongest;
 }
 
-void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, const EchoStates& states,
-                            std::span<const uint32_t> row, Tones& tones, Seen& seen) const {
+void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
+                            std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const {
   const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
     for (int i = 0; i < count; ++i) {
-      SampleRow& to = seen.rows[row[static_cast<size_t>(i)]];
-      per_sample_->add_samples(block, aim.chirp, begin + i, 1, aim.sample, to.re, to.im);
+      SampleRow& to = tally.rows[row[static_cast<size_t>(i)]];
+      per_sample_->add_samples(block, target.chirp, begin + i, 1, target.sample, to.re, to.im);
     }
     return;
   }
@@ -373,11 +374,11 @@ void PassProbe::add_samples(const Aim& aim, const Echoes& block, int64_t begin, 
   carriers.count = count;
   carriers.group = row.data();
   signal_kernels().modulate(model_, states, count, carriers);
-  tones.add(carriers, aim.sample[0], aim.sample[1] - aim.sample[0]);
+  tones.add(carriers, target.sample[0], target.sample[1] - target.sample[0]);
 }
 
-void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const int64_t> paths, const Strongest& strongest,
-                            Seen& seen) const {
+void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            const Strongest& strongest, EchoTally& tally) const {
   std::vector<int64_t> echoes;
   strongest.append_to(echoes);
   for (size_t i = 0; i < kRandom && block.num_echoes > 0; ++i) {
@@ -386,53 +387,53 @@ void PassProbe::draw_echoes(const Aim& aim, const Echoes& block, std::span<const
   std::sort(echoes.begin(), echoes.end());
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
-    if (!is_dark(block, echo)) seen.drawn.push_back(state_of(block, aim.chirp, echo, paths[static_cast<size_t>(echo)]));
+    if (!is_dark(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
   }
 }
 
 void PassProbe::finish(SignalProbe& probe, Job* job) {
   const int num_receivers = static_cast<int>(radar_.receivers.size());
-  for (Aim& aim : aims_) {
+  for (ChirpTarget& target : targets_) {
     ProbedChirp& chirp = probe.chirps.emplace_back();
-    chirp.tx = aim.channel / num_receivers;
-    chirp.rx = aim.channel % num_receivers;
-    chirp.chirp = probe.first_chirp + aim.chirp;
-    chirp.amplitude_sum = aim.seen.amplitude_sum;
-    sum_up(aim, chirp);
-    thin_out(aim.seen.drawn);
-    compare_echoes(aim, chirp, job);
+    chirp.tx = target.channel / num_receivers;
+    chirp.rx = target.channel % num_receivers;
+    chirp.chirp = probe.first_chirp + target.chirp;
+    chirp.amplitude_sum = target.tally.amplitude_sum;
+    sum_up(target, chirp);
+    thin_out(target.tally.drawn);
+    compare_echoes(target, chirp, job);
   }
 }
 
-void PassProbe::sum_up(const Aim& aim, ProbedChirp& chirp) const {
-  const Seen& seen = aim.seen;
-  chirp.power_sum = seen.power_sum;
-  chirp.strongest = seen.strongest;
+void PassProbe::sum_up(const ChirpTarget& target, ProbedChirp& chirp) const {
+  const EchoTally& tally = target.tally;
+  chirp.power_sum = tally.power_sum;
+  chirp.strongest = tally.strongest;
   chirp.shares.resize(num_shares());
   for (size_t s = 0; s < kSamples; ++s) {
-    const size_t from = s % static_cast<size_t>(aim.num_samples);
-    chirp.sample[s] = static_cast<int>(aim.sample[from]);
-    for (const SampleRow& row : seen.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
+    const size_t from = s % static_cast<size_t>(target.num_samples);
+    chirp.sample[s] = static_cast<int>(target.sample[from]);
+    for (const SampleRow& row : tally.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
     if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
     for (size_t share = 0; share < num_shares(); ++share) {
-      chirp.shares[share].field[s] = {seen.rows[share].re[from], seen.rows[share].im[from]};
+      chirp.shares[share].field[s] = {tally.rows[share].re[from], tally.rows[share].im[from]};
     }
   }
   for (size_t share = 0; share < num_shares(); ++share) {
-    const auto first = seen.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
+    const auto first = tally.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
     chirp.shares[share].power = std::accumulate(first, first + kSumsOfShare, 0.0);
   }
 }
 
-void PassProbe::compare_echoes(const Aim& aim, ProbedChirp& chirp, Job* job) const {
-  const std::vector<DrawnEcho>& drawn = aim.seen.drawn;
+void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Job* job) const {
+  const std::vector<DrawnEcho>& drawn = target.tally.drawn;
   if (drawn.empty()) return;
   std::vector<int64_t> paths;
   for (const DrawnEcho& echo : drawn) paths.push_back(echo.path);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, aim.chirp), lengths, amplitudes, job);
-  const size_t first = static_cast<size_t>(aim.channel) * paths.size();
+  replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, target.chirp), lengths, amplitudes, job);
+  const size_t first = static_cast<size_t>(target.channel) * paths.size();
   const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
   double power = 0.0, of_phase = 0.0, of_amplitude = 0.0;
   for (size_t i = 0; i < paths.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// A trace with as many rays as an error asks for.
+// Traces with as many rays as a target error needs.
 #include "echopath/sim/ray_allocation.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
@@ -8,8 +8,8 @@ namespace echopath {
 
 constexpr int64_t kFirstRays = int64_t{1} << 14;
 constexpr int64_t kMaxRays = int64_t{1} << 24;
-constexpr int64_t kMaxDefaultRays = 1000000;  // where neither rays nor a target were asked for
-constexpr int kErrorBatches = 8;              // where standard errors were
+constexpr int64_t kMaxDefaultRays = 1000000;  // where neither rays nor a target are given
+constexpr int kErrorBatches = 8;              // where standard errors are asked for
 
 struct ErrorTarget {
   double error_db = 0.3;        // dB, half the 95 % interval of each echo
@@ -19,13 +19,12 @@ struct ErrorTarget {
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };
 
-// Traces with settings.num_rays and then, as long as the echo of some stratum above the floor is known to less than the
-// target, with at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays. The error
-// is half the 95 % interval of the worst of them (power/received_power.h), of the footprint's bias and chance together.
-// Each trace is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the
-// square root only; all traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the
-// outcome. Stops at once where no ray meets anything. Raises as trace. All traces share one geometry: `kept`, as in `trace`,
-// or their own.
+// Traces with settings.num_rays and then, as long as the echo of some stratum above the floor misses the target, with at
+// least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays. The error is half the 95 %
+// interval of the worst of them (power/received_power.h), of the footprint's bias and chance together. Each trace is a fresh
+// one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root only; all
+// traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the outcome. It stops at once
+// where no ray meets anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or their own.
 Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
                      Job* job = nullptr, KeptGeometry* kept = nullptr);
 

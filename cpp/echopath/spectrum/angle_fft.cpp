@@ -18,12 +18,12 @@ using Complex = std::complex<double>;
 constexpr int kMaxZeroPad = 64;
 constexpr int64_t kRangesPerTask = 8;  // neighbouring range bins share cache lines
 
-// One axis of the grid: its transform and the direction cosines of its bins.
+// Holds one axis of the grid: its transform and the direction cosines of its bins.
 struct Axis {
   Fft fft;
   int64_t num_points;
   std::vector<double> cosine;  // [bins]
-  std::vector<Complex> phasor;  // [bins] from the grid's origin to the array's centre
+  std::vector<Complex> phasor;  // [bins] takes the phase from the grid's origin to the array's centre
 
   Axis(int points, int zero_pad, double spacing, double offset, double wavelength)
       : fft(points > 1 ? points * zero_pad : 1, FftDirection::kBackward), num_points(points) {
@@ -33,11 +33,11 @@ struct Axis {
     }
   }
   int64_t size() const { return fft.size(); }
-  // Bin of the transform that holds direction cosine i.
+  // Returns the bin of the transform that holds direction cosine i.
   int64_t bin(int64_t i) const { return (i + size() - size() / 2) % size(); }
 };
 
-// The transforms of one array, from elements to directions.
+// Transforms fields at the elements of one array to directions.
 class GridTransform {
  public:
   GridTransform(const VirtualArray& array, const AngleFftOptions& options)
@@ -49,7 +49,7 @@ class GridTransform {
   const Axis& columns() const { return columns_; }
   const Axis& rows() const { return rows_; }
 
-  // element [elements] -> spectrum [rows, columns]; buffers of the sizes of the axes
+  // Takes element [elements] to spectrum [rows, columns]; the buffers have the sizes of the axes.
   void operator()(const Eigen::Ref<const Eigen::VectorXcd>& element, std::vector<Complex>& spectrum, FftBuffer& row,
                   FftBuffer& column) const {
     const int64_t width = columns_.size();

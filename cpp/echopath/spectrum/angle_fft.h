@@ -1,5 +1,5 @@
 #pragma once
-// Angle spectra of uniform arrays by Fourier transforms over the rows and columns of their grid.
+// Computes angle spectra of uniform arrays by Fourier transforms over the rows and columns of their grid.
 #include <complex>
 #include <vector>
 
@@ -13,14 +13,14 @@ namespace echopath {
 
 struct AngleFftOptions {
   Window window;     // over columns and rows, symmetric (steering.h)
-  int zero_pad = 4;  // 1 to 64, of each axis that has more than one point
+  int zero_pad = 4;  // 1 to 64, for each axis that has more than one point
   Overlaps overlaps = Overlaps::kAverage;
-  bool compensate = true;  // the phase between TDM slots
+  bool compensate = true;  // take out the phase between TDM slots
 };
 
 struct AngleSpectrum {
-  // Direction cosine along the grid's column axis (row axis): sin(azimuth) cos(elevation) and sin(elevation) for
-  // antennas in the y-z plane. Ascending from -wavelength / (2 spacing); {0} for one column (row).
+  // Direction cosines along the grid's column axis and row axis: sin(azimuth) cos(elevation) and sin(elevation) for antennas
+  // in the y-z plane. They ascend from -wavelength / (2 spacing); {0} for one column (row).
   std::vector<double> sin_azimuth;    // [A]
   std::vector<double> sin_elevation;  // [E]
   std::vector<double> velocity;       // [V] m/s, receding positive
@@ -28,14 +28,15 @@ struct AngleSpectrum {
   std::vector<std::complex<double>> values;  // [E, A, V, R] sqrt(W), phase as at the array's centre
 };
 
-// arcsin of each direction cosine, rad: the angle from broadside; NaN beyond +-1, where no wave comes from.
+// Returns the arcsin of each direction cosine, rad: the angle from broadside. It is NaN beyond +-1, where no wave comes
+// from.
 std::vector<double> angles_of(const std::vector<double>& direction_cosine);
 
-// sum_n w_n s_n e^{+j k x_n.u} / sum_n w_n over the elements n of the radar's virtual array, on the grid of direction
-// cosines u of a Fourier transform: the |value|^2 of a far point is its received power in W, averaged over channels.
+// Computes sum_n w_n s_n e^{+j k x_n.u} / sum_n w_n over the elements n of the radar's virtual array, on the grid of
+// direction cosines u of a Fourier transform. |value|^2 of a far point is its received power in W, averaged over channels.
 // Noise of power P in each channel's cell leaves P sum_n (w_n^2 / c_n) / (sum_n w_n)^2, with c_n channels averaged in
 // element n: P / N for N elements without a window. Points of the grid without an element count as zeros of weight 0.
-// Parallel over cells; independent of threads.
+// Runs in parallel over cells; the result does not depend on the number of threads.
 // Raises invalid_argument when the map is not the radar's, the array is no grid of equal steps (use `beamform`) or an
 // option is out of range.
 AngleSpectrum angle_fft(const RangeDoppler& map, const Radar& radar, const AngleFftOptions& options = {},

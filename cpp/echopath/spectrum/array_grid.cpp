@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxPointsPerElement = 16;
 constexpr size_t kMaxCandidates = 64;  // axes tried where the horizontal and the upward one do not fit
 
-// Points along one axis as whole steps: coordinate = offset + index * spacing.
+// Describes points along one axis as whole steps: coordinate = offset + index * spacing.
 struct Steps {
   std::vector<int> index;  // [N]
   double spacing = 0.0, offset = 0.0, deviation = 0.0;
@@ -25,8 +25,8 @@ std::vector<double> distinct(std::vector<double> values, double tolerance) {
   return values;
 }
 
-// The step near `spacing` of which the ascending distances from the first value are whole multiples: each distance
-// that is counted makes it more precise for the next.
+// Returns the step near `spacing` of which the ascending distances from the first value are whole multiples. Each distance
+// that is counted makes the step more precise for the next.
 double refined_spacing(const std::vector<double>& ascending, double spacing) {
   double products = 0.0, squares = 0.0;
   for (const double value : ascending) {
@@ -53,7 +53,7 @@ Steps in_steps(const std::vector<double>& coordinate, double first, double spaci
   return steps;
 }
 
-// The largest step that fits: the smallest difference of two coordinates, or a whole part of it.
+// Returns the largest step that fits: the smallest difference of two coordinates, or a whole part of it.
 std::optional<Steps> fit_steps(const std::vector<double>& coordinate, double tolerance, double min_spacing) {
   const std::vector<double> levels = distinct(coordinate, tolerance);
   if (levels.size() == 1) return Steps{std::vector<int>(coordinate.size()), 0.0, levels[0], 0.0, 1};
@@ -73,7 +73,7 @@ std::vector<double> along(const std::vector<Vec3>& points, const Vec3& axis) {
   return coordinate;
 }
 
-// The axis or its opposite: the one whose first component in this order that is not zero is positive.
+// Returns the axis or its opposite, so that the first component in this order that is not zero is positive.
 Vec3 oriented(const Vec3& axis, std::initializer_list<int> order) {
   constexpr double kAlong = 1e-9;
   for (const int k : order) {
@@ -84,7 +84,7 @@ Vec3 oriented(const Vec3& axis, std::initializer_list<int> order) {
 Vec3 to_the_left(const Vec3& axis) { return oriented(axis, {1, 0, 2}); }
 Vec3 upwards(const Vec3& axis) { return oriented(axis, {2, 0, 1}); }
 
-// A horizontal unit vector perpendicular to `axis`, +y for an upright one.
+// Returns a horizontal unit vector perpendicular to `axis`, +y for an upright one.
 Vec3 horizontal_normal(const Vec3& axis) {
   const Vec3 normal = Vec3::UnitZ().cross(axis);
   constexpr double kUpright = 0.01;
@@ -110,7 +110,7 @@ std::optional<GridFit> fit_axes(const std::vector<Vec3>& points, const Vec3& col
   return fit;
 }
 
-// An axis in the plane of `normal` and the one perpendicular to it, the more horizontal first.
+// Fits an axis in the plane of `normal` and the one perpendicular to it, the more horizontal first.
 std::optional<GridFit> fit_plane(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& normal, double tolerance,
                                  double min_spacing) {
   const Vec3 other = normal.cross(axis);
@@ -131,14 +131,14 @@ Vec3 farthest(const std::vector<Vec3>& offsets) {
                            [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
 }
 
-// Parts of the offsets perpendicular to a unit vector.
+// Returns the parts of the offsets perpendicular to a unit vector.
 std::vector<Vec3> perpendicular(const std::vector<Vec3>& offsets, const Vec3& axis) {
   std::vector<Vec3> parts;
   for (const Vec3& offset : offsets) parts.push_back(offset - axis.dot(offset) * axis);
   return parts;
 }
 
-// Of the axes from the first point to the nearest others the one whose grid has the fewest points.
+// Tries the axes from the first point to the nearest others and takes the one whose grid has the fewest points.
 std::optional<GridFit> fit_some_axis(const std::vector<Vec3>& points, std::vector<Vec3> offsets, const Vec3& normal,
                                      double tolerance, double min_spacing) {
   const auto is_shorter = [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); };

@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kColumns = BeamKernel::kColumns;
 constexpr int kElements = 4;         // added per pass over the columns
-constexpr int kFewColumns = 4;       // fewer are not worth a block
+constexpr int kFewColumns = 4;       // fewer do not fill a block
 
-// out += sum of four elements, each times its weight.
+// Adds four elements, each times its weight, to `out`.
 ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_im, const double* re, const double* im,
                                   double* out_re, double* out_im) {
   const double a0 = weight_re[0], a1 = weight_re[1], a2 = weight_re[2], a3 = weight_re[3];

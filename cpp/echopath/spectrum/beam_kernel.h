@@ -1,5 +1,5 @@
 #pragma once
-// Many beams over many snapshots: a complex matrix product whose squares are added up, in plain loops.
+// Forms many beams over many snapshots: a complex matrix product whose squares are added up, in plain loops.
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace echopath {
 
-enum class Combine { kSum, kPeak };  // of the powers of several snapshots: their sum, or the largest
+enum class Combine { kSum, kPeak };  // sum or largest of the powers of several snapshots
 
-// Beams that receive plane waves: steering^H times a vector over the elements.
+// Forms beams that receive plane waves: steering^H times a vector over the elements.
 class BeamKernel {
  public:
   static constexpr int kColumns = 32;  // handled together
@@ -22,12 +22,12 @@ class BeamKernel {
   // Combines power [directions, kColumns] with |steering^H columns|^2 of each of at most kColumns columns [elements].
   void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, Combine combine, std::vector<double>& power) const;
 
-  // |steering^H column|^2 [directions], combined over all columns. Raises Cancelled.
+  // Returns |steering^H column|^2 [directions], combined over all columns. Raises Cancelled.
   Eigen::VectorXd power(const Eigen::MatrixXcd& columns, Combine combine = Combine::kSum, const Job* job = nullptr) const;
 
  private:
   Eigen::MatrixXcd steering_;
-  int64_t padded_;               // elements, a multiple of those added per pass
+  int64_t padded_;               // elements, rounded up to a multiple of those added per pass
   std::vector<double> re_, im_;  // [directions, padded] of steering^H
 };
 

@@ -41,7 +41,7 @@ CellBeam::CellBeam(const Eigen::VectorXd& weights, const MatrixXcd& own) : snaps
 CellBeam::CellBeam(const MatrixXcd& covariance, const MatrixXcd& own, double loading) {
   const double mean_power = covariance.trace().real() / static_cast<double>(covariance.rows());
   if (!(mean_power > 0.0)) return;
-  // In units of the mean power: squares of weak signals would come near the smallest numbers.
+  // The covariance is in units of the mean power, because squares of weak signals would come near the smallest numbers.
   MatrixXcd loaded = covariance / mean_power;
   loaded.diagonal().array() += loading;
   const Eigen::LLT<MatrixXcd> factor(loaded);
@@ -115,7 +115,7 @@ MatrixXcd BeamSource::neighbourhood(int64_t velocity, int64_t range, int fold) c
   MatrixXcd snapshots(reader_.num_elements(), (2 * around + 1) * count);
   for (int64_t step = -around; step <= around; ++step) {
     const int64_t v = velocity + step;
-    const int turn = v < 0 ? -1 : (v >= num_velocities ? 1 : 0);  // beyond the end of the axis it is the next fold
+    const int turn = v < 0 ? -1 : (v >= num_velocities ? 1 : 0);  // beyond the axis is the next fold
     reader_.read(v - turn * num_velocities, first, count, snapshots.middleCols((step + around) * count, count), fold + turn);
   }
   return snapshots;

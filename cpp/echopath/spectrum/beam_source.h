@@ -1,5 +1,5 @@
 #pragma once
-// Beams from the cells of a map.
+// Forms beams from the cells of a map.
 #include <Eigen/Core>
 #include <vector>
 
@@ -8,24 +8,24 @@
 
 namespace echopath {
 
-// What beams of one array see of a set of snapshots, in any direction.
+// Computes the power that beams of one array receive from a set of snapshots, in any direction.
 class CellBeam {
  public:
-  // Bartlett. weights [elements], own [elements, snapshots].
+  // Sets up Bartlett beams from weights [elements] and the snapshots `own` [elements, snapshots].
   CellBeam(const Eigen::VectorXd& weights, const Eigen::MatrixXcd& own);
-  // Capon. covariance [elements, elements] Hermitian, to be loaded; 0: there is no power.
+  // Sets up Capon beams. `covariance` [elements, elements] is Hermitian and is loaded here; 0 means that there is no power.
   CellBeam(const Eigen::MatrixXcd& covariance, const Eigen::MatrixXcd& own, double loading);
 
-  // Power [directions] of the beams, combined over the snapshots. Raises Cancelled.
+  // Returns the power [directions] of the beams, combined over the snapshots. Raises Cancelled.
   Eigen::VectorXd power(const BeamKernel& beams, Combine combine = Combine::kSum, const Job* job = nullptr) const;
 
  private:
-  // Bartlett: weighted snapshots x. Capon: R^-1 x, and a square root W of R^-1 = W W^H: the power is
-  // |a^H R^-1 x|^2 / (a^H R^-1 a)^2.
+  // Bartlett keeps the weighted snapshots x. Capon keeps R^-1 x and a square root W of R^-1 = W W^H; its power is |a^H R^-1
+  // x|^2 / (a^H R^-1 a)^2.
   Eigen::MatrixXcd snapshots_, root_;
 };
 
-// Keeps a reference to the map.
+// Reads snapshots from a map, to which it keeps a reference.
 class BeamSource {
  public:
   BeamSource(const RangeDoppler& map, const Radar& radar, const BeamformOptions& options);
@@ -34,11 +34,12 @@ class BeamSource {
   const VirtualArray& array() const { return array_; }
   int64_t num_velocities() const { return reader_.num_velocities(); }
 
-  // Of one cell; `fold` as in ElementReader::read.
+  // Returns the beam of one cell; `fold` as in ElementReader::read.
   CellBeam cell(int64_t velocity, int64_t range, int fold = 0) const;
-  // Of all velocities of one range.
+  // Returns the beam of one range over all its velocities.
   CellBeam all_velocities(int64_t range) const;
-  // Bartlett: the snapshots of ranges [first, first + count) of one velocity times the weights, [elements, count].
+  // Returns for Bartlett the snapshots of ranges [first, first + count) of one velocity times the weights, [elements,
+  // count].
   Eigen::MatrixXcd weighted(int64_t velocity, int64_t first, int64_t count) const;
 
  private:

@@ -14,7 +14,7 @@ constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
 constexpr int kMaxNeighbours = 64;
 constexpr double kMinLoading = 1e-9, kMaxLoading = 1e3;
 
-// Neighbouring ranges of one velocity, and where their powers go.
+// Describes neighbouring ranges of one velocity, and where their powers are written.
 struct Strip {
   int64_t velocity, first, count, out;
 };
@@ -53,7 +53,7 @@ Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Stri
   return power;
 }
 
-// [directions, num_cells]
+// Returns the powers [directions, num_cells].
 std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, BeamMethod method,
                            const std::vector<Strip>& strips, int64_t num_cells, Job* job) {
   const BeamKernel beams(steering_vectors(source.array(), angles.directions()));

@@ -1,5 +1,5 @@
 #pragma once
-// Beams of any array toward any directions: Bartlett (delay and sum) and Capon (minimum variance, distortionless).
+// Forms beams of any array toward any directions: Bartlett (delay and sum) and Capon (minimum variance, distortionless).
 #include <array>
 #include <cstdint>
 #include <string>
@@ -20,10 +20,10 @@ struct BeamformOptions {
   BeamMethod method = BeamMethod::kBartlett;
   Window window{WindowKind::kRect};  // kBartlett: over the rows and columns of a grid (steering.h)
   Overlaps overlaps = Overlaps::kAverage;
-  bool compensate = true;            // the phase between TDM slots
+  bool compensate = true;            // take out the phase between TDM slots
   // kCapon: added to the diagonal of the covariance, relative to the mean power of the elements, 1e-9 to 1e3
   double diagonal_loading = 1e-2;
-  // kCapon: cells on each side whose vectors are averaged in the covariance, 0 to 64; velocities go round
+  // kCapon: cells on each side whose snapshots are averaged in the covariance, 0 to 64; the velocity axis wraps around
   int velocity_neighbours = 1, range_neighbours = 2;
   // kCapon: also average the covariance with that of the mirrored array, which tells apart two echoes of one phase
   // history; needs an array that is symmetric about its centre
@@ -32,30 +32,31 @@ struct BeamformOptions {
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };
 
-// (velocity, range) indices of a cell.
+// Holds the (velocity, range) indices of a cell.
 using Cell = std::array<int64_t, 2>;
 
 struct BeamPower {
   std::vector<double> azimuth, elevation;  // [A], [E] rad
-  std::vector<double> velocity, range;     // axes [V] m/s and [R] m; those of each cell, [N], where cells were given
+  std::vector<double> velocity, range;     // axes [V] m/s and [R] m, or [N] those of the cells given
   bool is_of_cells = false;
-  std::vector<double> power;               // W, [E, A, V, R], of cells [E, A, N]
+  std::vector<double> power;               // W, [E, A, V, R], or [E, A, N] for cells
 };
 
-// Power that beams toward a grid of directions pass, in all cells of a map or in those given.
+// Computes the power that beams toward a grid of directions pass, in all cells of a map or in those given.
 //
-// Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency; patterns
-// of the antennas are left aside. Both methods let an echo from the steered direction pass unchanged: a far point gives
-// its received power in W, averaged over channels, at its own direction.
+// Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency; the patterns
+// of the antennas are left aside. Both methods pass an echo from the steered direction unchanged: a far point gives its
+// received power in W, averaged over channels, at its own direction.
 //   Bartlett: |sum_n w_n x_n e^{+j k x_n.u}|^2 with sum w_n = 1. Noise of power P in each channel's cell gives what it
 //     gives in `angle_fft`: P / N for N elements without a window.
 //   Capon: |w^H x|^2 with w = R^-1 a / (a^H R^-1 a) and R the mean of x x^H over the cell and its neighbours, loaded
-//     (Capon 1969). One echo of power S in noise gives S + P / N at its direction, less elsewhere than Bartlett. It
-//     resolves echoes closer than a beam when they differ in phase from snapshot to snapshot (other velocities or
-//     ranges); its peaks are narrow: steps of the grid wider than them miss power, `estimate_angles` does not.
-// Parallel over cells; independent of threads. Capon costs elements^3 + directions x elements^2 per cell.
-// Raises invalid_argument when the map is not the radar's, on angles or options out of range, a window without a grid,
-// and out_of_range on cells that the map does not have.
+//     (Capon 1969). One echo of power S in noise gives S + P / N at its direction, and less elsewhere than Bartlett. It
+//     resolves echoes closer than a beam when their phases differ from snapshot to snapshot (other velocities or ranges).
+//     Its peaks are narrow: a grid with wider steps misses power, `estimate_angles` does not.
+// Runs in parallel over cells; the result does not depend on the threads. Capon costs elements^3 + directions x elements^2
+// per cell.
+// Raises invalid_argument when the map is not the radar's, for angles or options out of range and for a window without a
+// grid; raises out_of_range for cells that the map does not have.
 BeamPower beamform(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                    const BeamformOptions& options = {}, Job* job = nullptr);
 BeamPower beamform(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells, const AngleGrid& angles,

@@ -18,7 +18,7 @@ struct HalfWidths {
   int guard = 0, training = 0;
 };
 
-// Along one axis. Guard cells without room for training cells beyond them are of no use.
+// Returns the half widths along one axis. Guard cells without room for training cells beyond them are of no use.
 HalfWidths half_widths(std::optional<int> guard, std::optional<int> training, int lobe, int wanted, int64_t num_cells) {
   HalfWidths widths{guard.value_or(lobe), training.value_or(0)};
   if (!training) {
@@ -29,7 +29,7 @@ HalfWidths half_widths(std::optional<int> guard, std::optional<int> training, in
   return widths;
 }
 
-// Factors cost a tenth of a second, of large windows several seconds; the frames of a data set share them.
+// Computing factors takes a tenth of a second, for large windows several seconds; the frames of a data set share them.
 CfarFactors kept_factors(const CfarDesign& design, Job* job) {
   static std::mutex mutex;
   static std::deque<std::pair<CfarDesign, CfarFactors>> kept;
@@ -55,7 +55,7 @@ class Detector {
  public:
   Detector(const CfarResult& result, TrainingPower& training) : result_(result), training_(training) {}
 
-  // Cells of a row above their thresholds.
+  // Returns the cells of a row above their thresholds.
   std::vector<Found> row(int64_t velocity) const {
     return result_.design.method == CfarMethod::kCellAveraging ? averaged(velocity) : ordered(velocity);
   }

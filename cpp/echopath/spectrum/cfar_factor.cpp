@@ -15,11 +15,11 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxChannels = 4096;
-constexpr Eigen::Index kFewDegrees = 400;  // of freedom, in windows whose factors are computed for every column
+constexpr Eigen::Index kFewDegrees = 400;  // of freedom: up to these the factors of every column are computed
 constexpr int kMaxCells = 2000;            // of a window, counted without padding: beyond, a step takes too long to cancel
 constexpr int kManyDraws = 8192, kFewDraws = 512;
 
-// log of the probability that a sum of n unit exponential powers exceeds x: e^-x sum_{k < n} x^k / k!
+// Returns the log of the probability that a sum of n unit exponential powers exceeds x: e^-x sum_{k < n} x^k / k!
 double log_tail(int n, double x) {
   double term = 1.0, sum = 1.0, scale = 0.0;
   for (int k = 1; k < n; ++k) {
@@ -33,12 +33,13 @@ double log_tail(int n, double x) {
   return std::log(sum) + scale - x;
 }
 
-// -d log_tail / dx, which is density / tail
+// Returns -d log_tail / dx, which is density / tail.
 double hazard(int n, double x) {
   return std::exp((n - 1) * std::log(x) - std::lgamma(n) - x - log_tail(n, x));
 }
 
-// The x > 0 where a decreasing function falls through `value`; secants of logarithms, in which it is nearly straight.
+// Returns the x > 0 where a decreasing function falls through `value`, by secants of logarithms, in which it is nearly
+// straight.
 double solve_decreasing(const std::function<double(double)>& function, double value) {
   const auto excess = [&](double log_x) { return std::log(std::max(function(std::exp(log_x)), 1e-300) / value); };
   double low = -30.0, high = 0.0, at_low = excess(low), at_high = excess(high);
@@ -50,7 +51,7 @@ double solve_decreasing(const std::function<double(double)>& function, double va
   for (int side = 0, round = 0; round < 200 && high - low > 1e-13; ++round) {
     const double x = (low * at_high - high * at_low) / (at_high - at_low), at = excess(x);
     if (at == 0.0 || x <= low || x >= high) return std::exp(x);
-    // Illinois: an end that stays twice counts half, so that both ends close in.
+    // By the Illinois rule an end that stays twice counts half, so that both ends close in.
     if (at > 0.0) {
       low = x;
       at_low = at;
@@ -65,8 +66,8 @@ double solve_decreasing(const std::function<double(double)>& function, double va
   return std::exp(0.5 * (low + high));
 }
 
-// The form of the training cells in a basis in which it is tridiagonal and the cell under test is the first vector: what
-// both are together then stays tridiagonal.
+// Holds the form of the training cells in a basis in which it is tridiagonal and the cell under test is the first vector; a
+// sum of the two forms then stays tridiagonal.
 struct TridiagonalForm {
   Eigen::VectorXd diagonal, beside;
 
@@ -81,7 +82,7 @@ struct TridiagonalForm {
     beside = solver.subDiagonal();
   }
 
-  // Ascending, of weight times the power of the cell - alpha times the sum of training powers.
+  // Returns the eigenvalues, ascending, of weight times the power of the cell - alpha times the sum of training powers.
   std::vector<double> eigenvalues(double weight, double alpha) const {
     Eigen::VectorXd middle = -alpha * diagonal;
     middle[0] += weight;
@@ -91,12 +92,12 @@ struct TridiagonalForm {
   }
 };
 
-// What training cells and a cell under test are together, for a cell at `column`.
+// Holds the joint form of the training cells and the cell under test, for a cell at `column`.
 struct ColumnForm {
   TridiagonalForm even;
-  std::vector<double> odd;  // eigenvalues of what the cell does not touch
+  std::vector<double> odd;  // eigenvalues of the part that the cell under test has no share in
 
-  // Raises Cancelled between the steps, each some tenths of a second for the largest windows.
+  // Raises Cancelled between the steps, each of which takes some tenths of a second for the largest windows.
   ColumnForm(const TrainingNoise& noise, int column, Job* job)
       : even(noise.quadratic_form(column, TrainingNoise::Rows::kEven), noise.cell(column)) {
     if (job) job->throw_if_cancelled();
@@ -109,7 +110,7 @@ struct ColumnForm {
   }
 };
 
-// Eigenvalues of the covariance of the training cells.
+// Returns the eigenvalues of the covariance of the training cells.
 std::vector<double> covariance_eigenvalues(const ColumnForm& form) {
   std::vector<double> values = form.even.eigenvalues(0.0, 1.0);
   for (double& value : values) value = std::max(-value, 0.0);
@@ -117,15 +118,15 @@ std::vector<double> covariance_eigenvalues(const ColumnForm& form) {
   return values;
 }
 
-// Multiplier of the sum of training powers for a cell that is independent of them.
+// Returns the multiplier of the sum of training powers for a cell that is independent of them.
 double alone_multiplier(const std::vector<double>& eigenvalues, const CfarDesign& design) {
   return solve_decreasing([&](double alpha) {
     return false_alarm_probability(alpha, eigenvalues, design.noise.num_channels);
   }, design.false_alarm_rate);
 }
 
-// The same for a cell that is correlated with them: the probability that an indefinite form of Gaussian numbers is positive,
-// by its eigenvalues, of which one is positive (Turin 1960).
+// Returns the same for a cell that is correlated with them: the probability that an indefinite form of Gaussian numbers is
+// positive follows from its eigenvalues, of which one is positive (Turin 1960).
 double coupled_multiplier(const ColumnForm& form, const CfarDesign& design, Job* job) {
   return solve_decreasing([&](double alpha) {
     if (job) job->throw_if_cancelled();
@@ -138,8 +139,9 @@ double coupled_multiplier(const ColumnForm& form, const CfarDesign& design, Job*
   }, design.false_alarm_rate);
 }
 
-// Columns whose factors are computed, ascending, 0 and the middle among them: all of a small window. Of a large one those
-// within twice the guard cells of the end, where training cells change sides, then twice as far each time.
+// Returns the columns whose factors are computed, ascending and with 0 and the middle. A small window has all of them; a
+// large one has those within twice the guard cells of the end, where training cells change sides, then twice as far each
+// time.
 std::vector<int> computed_columns(const CfarWindow& cells, Eigen::Index num_degrees) {
   const int last = cells.reach_range(), dense = num_degrees <= kFewDegrees ? last : 2 * cells.guard_range;
   std::vector<int> columns;
@@ -149,7 +151,7 @@ std::vector<int> computed_columns(const CfarWindow& cells, Eigen::Index num_degr
   return columns;
 }
 
-// [last column + 1], straight lines between the columns.
+// Returns values [last column + 1] on straight lines between the columns.
 std::vector<double> interpolated(const std::vector<int>& columns, const std::vector<double>& values) {
   std::vector<double> all = {values.front()};
   for (size_t k = 1; k < columns.size(); ++k) {
@@ -159,7 +161,7 @@ std::vector<double> interpolated(const std::vector<int>& columns, const std::vec
   return all;
 }
 
-// Factors of cell averaging, [reach_range + 1].
+// Returns the factors of cell averaging, [reach_range + 1].
 std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNoise& noise, Job* job) {
   const std::vector<int> columns =
       computed_columns(design.cells, noise.velocity_factor().cols() * noise.range_factor().cols());
@@ -172,7 +174,8 @@ std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNo
   return interpolated(columns, factors);
 }
 
-// Of the ordered statistic, and of the mean, for a cell in the middle that is independent of the training cells.
+// Holds the multipliers of the ordered statistic and of the mean, for a cell in the middle that is independent of the
+// training cells.
 struct Multipliers {
   double ordered = 0.0, mean = 0.0;
 };
@@ -194,7 +197,8 @@ Multipliers independent_multipliers(const CfarDesign& design, const TrainingNois
   return {ordered, number * of_sum};
 }
 
-// Of the mean of `count` independent cells of unit power, its quantile that order statistics estimate.
+// Returns the quantile of the mean power of `num_channels` channels that the order statistic estimates, for unit noise
+// power.
 double expected_statistic(const CfarDesign& design) {
   if (design.method == CfarMethod::kCellAveraging) return 1.0;
   const int channels = design.noise.num_channels;
@@ -234,8 +238,8 @@ void CfarDesign::validate() const {
 }
 
 double false_alarm_probability(double alpha, const std::vector<double>& eigenvalues, int num_channels) {
-  // e^{-s T} has the mean prod (1 + s e)^-n; the terms of the tail's sum are its Taylor coefficients a_k at s = alpha
-  // in -alpha, all positive: k a_k = n sum_m p_m a_{k-m} with power sums p_m of q = alpha e / (1 + alpha e).
+  // e^{-s T} has the mean prod (1 + s e)^-n. The terms of the tail's sum are its Taylor coefficients a_k at s = alpha in
+  // -alpha, which are all positive: k a_k = n sum_m p_m a_{k-m} with power sums p_m of q = alpha e / (1 + alpha e).
   double log_first = 0.0;
   std::vector<double> ratio(eigenvalues.size());
   for (size_t i = 0; i < eigenvalues.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which cells of a map tell the noise of a cell under test.
+// Selects the training cells, from which the noise of a cell under test is estimated.
 #include <array>
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Half widths in cells: a rectangle of `guard` cells about the cell under test is left out, `training` cells around it
-// are taken. The velocity axis is a circle; at the ends of the range axis the training cells that would lie outside are
+// Half widths are in cells: a rectangle of `guard` cells about the cell under test is left out, and `training` cells around
+// it are taken. The velocity axis wraps around; at the ends of the range axis the training cells that would lie outside are
 // taken on the other side, so that their number is the same everywhere.
 struct CfarWindow {
   int guard_velocity = 0, guard_range = 0;
@@ -30,12 +30,12 @@ struct CellSpan {
   int64_t first = 0, count = 0;
 };
 
-// Training cells beside a cell at `range`: in its own row and those within guard_velocity of it, one span on each side;
-// in the rows beyond, one span.
+// inner_spans returns the training cells of a cell at `range` in its own row and those within guard_velocity of it, one span
+// on each side; outer_span returns those in a row beyond, in one span.
 std::array<CellSpan, 2> inner_spans(const CfarWindow& window, int64_t range, int64_t num_ranges);
 CellSpan outer_span(const CfarWindow& window, int64_t range, int64_t num_ranges);
 
-// Cells from a tone to the first null of its main lobe, rounded up: what guard cells must cover.
+// Returns the cells from a tone to the first null of its main lobe, rounded up, which guard cells must cover.
 int main_lobe_cells(const Window& window, int num_samples, int zero_pad);
 
 }  // namespace echopath

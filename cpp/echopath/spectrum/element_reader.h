@@ -1,5 +1,5 @@
 #pragma once
-// Cells of a range-Doppler map as vectors over the elements of its virtual array.
+// Reads cells of a range-Doppler map as vectors over the elements of its virtual array.
 #include <Eigen/Core>
 #include <complex>
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace echopath {
 
-// What becomes of channels that share an element.
+// Tells whether channels that share an element are averaged or only the first is used.
 enum class Overlaps { kAverage, kFirst };
 
-// Keeps references to the map and the array.
+// Reads snapshots. It keeps references to the map and the array.
 class ElementReader {
  public:
-  // compensate: take out the phase between TDM slots, unless that is done already
+  // `compensate` takes out the phase between TDM slots, unless that has been done already.
   ElementReader(const RangeDoppler& map, const VirtualArray& array, const ChirpSequence& waveform, Overlaps overlaps,
                 bool compensate);
   int64_t num_elements() const { return static_cast<int64_t>(first_.size()) - 1; }
   int64_t num_velocities() const { return num_velocities_; }
   int64_t num_ranges() const { return num_ranges_; }
 
-  // Ranges [first, first + count) of one velocity -> values [elements, count], sqrt(W). For a target at
-  // v + 2 fold v_max the phase between slots is another one (tdm.h); fold has no effect without compensation.
+  // Reads ranges [first, first + count) of one velocity into values [elements, count], sqrt(W). A target at v + 2 fold v_max
+  // has another phase between slots (tdm.h); `fold` has no effect without compensation.
   void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, int fold = 0) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxPeaks = 64;
 constexpr int kRefinements = 10;       // rounds; each narrows the stencil
-constexpr double kNarrowing = 0.35;    // of the stencil per round: 3e-5 of a step of the grid at the end
+constexpr double kNarrowing = 0.35;    // factor of the stencil per round: 3e-5 of a step of the grid at the end
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -24,7 +24,7 @@ struct CellPeaks {
   std::vector<Peak> peaks;  // strongest first
 };
 
-// The search of one cell.
+// Searches the peaks of one cell.
 class PeakSearch {
  public:
   PeakSearch(const BeamSource& source, const AngleGrid& angles, const EstimateOptions& options)
@@ -36,7 +36,7 @@ class PeakSearch {
       const int fold = k % 2 == 0 ? -k / 2 : (k + 1) / 2;  // 0, 1, -1, 2, ...: a tie goes to the slowest
       CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], fold))};
       if (found.peaks.empty()) continue;
-      // A relative margin: hypotheses that the array cannot tell apart differ by rounding.
+      // The margin is relative, because hypotheses that the array cannot tell apart differ by rounding.
       constexpr double kMargin = 1.0 + 1e-9;
       if (best.peaks.empty() || found.peaks[0].power > kMargin * best.peaks[0].power) best = std::move(found);
     }
@@ -60,7 +60,7 @@ class PeakSearch {
     return strongest(std::move(found));
   }
 
-  // Above zero, no neighbour is higher, and none before it is as high.
+  // Returns whether a direction has power, no neighbour is higher, and none before it is as high.
   bool is_top(const Eigen::VectorXd& power, int64_t d) const {
     if (!(power[d] > 0.0)) return false;
     const int64_t row = d / num_azimuths(), column = d % num_azimuths();
@@ -92,13 +92,14 @@ class PeakSearch {
     return std::max(i > 0 ? axis[i] - axis[i - 1] : 0.0, i < last ? axis[i + 1] - axis[i] : 0.0);
   }
 
-  // The highest of the peak, its neighbours at +-step along one angle, and the top of the parabola through the three.
+  // Moves to the highest of the peak, its neighbours at +-step along one angle, and the top of the parabola through the
+  // three.
   void climb(const CellBeam& beam, Peak& peak, double Peak::*angle, double step, const std::vector<double>& axis) const {
     if (step <= 0.0) return;
     const double centre = peak.*angle, low = at(beam, peak, angle, centre - step, axis).power;
     const double high = at(beam, peak, angle, centre + step, axis).power;
-    const double bend = low - 2.0 * peak.power + high;
-    const double offset = bend < 0.0 ? 0.5 * step * (low - high) / bend : 0.0;
+    const double second_difference = low - 2.0 * peak.power + high;
+    const double offset = second_difference < 0.0 ? 0.5 * step * (low - high) / second_difference : 0.0;
     for (const double shift : {-step, step, std::clamp(offset, -step, step)}) {
       const Peak candidate = at(beam, peak, angle, centre + shift, axis);
       if (candidate.power > peak.power) peak = candidate;

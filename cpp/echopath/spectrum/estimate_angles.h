@@ -1,5 +1,5 @@
 #pragma once
-// Where the echoes of chosen range-Doppler cells come from: the step from detections to points in space.
+// Estimates where the echoes of chosen range-Doppler cells come from: the step from detections to points in space.
 #include <cstdint>
 #include <vector>
 
@@ -12,10 +12,10 @@ namespace echopath {
 
 struct EstimateOptions {
   BeamformOptions beams;
-  int max_peaks = 1;           // of a cell, at least 1
-  double peak_range_db = 10.0;  // dB below the strongest peak of a cell, within which others count
-  // Hypotheses of the velocity, v + 2 k v_max for |k| <= folds, of which the one with the strongest peak is taken: TDM
-  // slots tell them apart. At most half the number of transmitters less one.
+  int max_peaks = 1;           // per cell, at least 1
+  double peak_range_db = 10.0;  // dB below the strongest peak of a cell, within which others are kept
+  // The velocity may be v + 2 k v_max for |k| <= folds; the k with the strongest peak is taken, since TDM slots tell them
+  // apart. At most half the number of transmitters less one.
   int folds = 0;
 
   void validate(int num_slots) const;
@@ -27,12 +27,12 @@ struct AngleEstimates {
   std::vector<Vec3> points;   // [N] m, in the radar's frame
 };
 
-// Directions of the strongest peaks of beam power in each cell, strongest first, made finer than the grid by parabolas
-// through the power of beams about them; angles stay within the grid. A cell without power has no peak. A point is at
+// Finds the directions of the strongest peaks of beam power in each cell, strongest first. Parabolas through the power of
+// beams about a peak refine it beyond the grid; angles stay within the grid. A cell without power has no peak. A point is at
 // its cell's range from the middle of the mean transmitter and the mean receiver.
 // An array without vertical extent cannot tell elevations apart: give it one elevation.
-// Parallel over cells; independent of threads. Raises as `beamform`.
-inline constexpr double kSearchStep = kPi;  // of default_angles for a search: as the array asks for
+// Runs in parallel over cells; the result does not depend on the number of threads. Raises as `beamform`.
+inline constexpr double kSearchStep = kPi;  // largest_step of default_angles for a search: the array sets the step
 AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
                                const AngleGrid& angles, const EstimateOptions& options = {}, Job* job = nullptr);
 

@@ -44,7 +44,7 @@ class PeakFinder {
   }
 
  private:
-  // Place in a channel's map; none beyond the ends of a range axis that is no circle.
+  // Returns the index in a channel's map; none beyond the ends of a range axis that does not wrap around.
   std::optional<int64_t> index(int64_t velocity, int64_t range) const {
     if (!ranges_are_a_circle_ && (range < 0 || range >= num_ranges_)) return {};
     return (velocity + num_velocities_) % num_velocities_ * num_ranges_ + (range + num_ranges_) % num_ranges_;
@@ -72,7 +72,7 @@ class PeakFinder {
   const ToneOffset velocity_, range_;
 };
 
-// Within [first, first + span)
+// Returns the value moved by whole spans into [first, first + span).
 double folded(double value, double first, double span) { return value - span * std::floor((value - first) / span); }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
 
-// A point's power over its sum over the velocities.
+// Returns the ratio of a point's power to its sum over the velocities.
 double share_of_sum(const RangeDoppler& map, int num_chirps) {
   const double bandwidth = equivalent_noise_bandwidth(window_samples(map.window, num_chirps));
   return num_chirps / (bandwidth * static_cast<double>(map.velocity.size()));
@@ -31,7 +31,7 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
 
 using Powers = std::vector<double>;  // [directions, kRangesPerTask]
 
-// The map of one choice of velocities, by strips of ranges.
+// Computes the map of one choice of velocities, by strips of ranges.
 struct Picture {
   const BeamSource& source;
   const BeamKernel& beams;

@@ -25,7 +25,7 @@ struct Taper {
   }
 };
 
-// [rows, samples] -> [rows, range]
+// Transforms [rows, samples] to [rows, range].
 std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows,
                                                   const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
@@ -42,9 +42,9 @@ std::vector<std::complex<double>> range_transform(const std::complex<double>* cu
   return profiles;
 }
 
-// A strip of neighbouring columns of one map, in[chirp * num_ranges + column] -> out[velocity * num_ranges + column], zero
-// velocity in the middle. All columns of a row at once: rows are often a power of two apart and share their cache sets, so
-// that a line would be gone before the next column asks for it.
+// Transforms a strip of neighbouring columns of one map, in[chirp * num_ranges + column] -> out[velocity * num_ranges +
+// column], with zero velocity in the middle. It takes all columns of a row at once: rows are often a power of two apart and
+// share their cache sets, so that a cache line would be gone before the next column asks for it.
 void transform_strip(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges,
                      int64_t num_columns, std::complex<double>* out) {
   std::vector<FftBuffer> columns;
@@ -61,7 +61,7 @@ void transform_strip(const Fft& fft, const Taper& taper, const std::complex<doub
   }
 }
 
-// [maps, chirps, range] -> [maps, velocity, range]
+// Transforms [maps, chirps, range] to [maps, velocity, range].
 std::vector<std::complex<double>> doppler_transform(const std::vector<std::complex<double>>& profiles, int64_t num_maps,
                                                     const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);

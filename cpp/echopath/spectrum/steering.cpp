@@ -11,7 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kStepsPerBeam = 4.0;            // of wavelength / extent
+constexpr double kStepsPerBeam = 4.0;            // per wavelength / extent
 constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
@@ -22,7 +22,7 @@ void require_axis(const std::vector<double>& axis, const char* name, double limi
   }
 }
 
-// Equal steps about 0 within what a grid with `spacing` (0: none) and an aperture `extent` in m can tell apart.
+// Returns equal steps about 0 that a grid with `spacing` (0: none) and an aperture `extent` in m can tell apart.
 std::vector<double> default_axis(double limit, double spacing, double extent, double wavelength, double largest_step) {
   if (extent < kArrayTolerance * wavelength) return {0.0};
   if (spacing > 0.0) limit = std::min(limit, std::asin(std::min(1.0, 0.5 * wavelength / spacing)));

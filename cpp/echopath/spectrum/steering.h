@@ -1,5 +1,5 @@
 #pragma once
-// Directions, and what a plane wave from them looks like to the elements of a virtual array.
+// Defines directions, and the plane waves from them at the elements of a virtual array.
 #include <Eigen/Core>
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// A grid of directions in the radar's frame: azimuth about z from +x to the left (+y), elevation up from the xy-plane.
+// Holds directions in the radar's frame: azimuth about z from +x to the left (+y), elevation up from the xy-plane.
 struct AngleGrid {
   std::vector<double> azimuth;    // [A] rad, ascending, in [-pi, pi]
   std::vector<double> elevation;  // [E] rad, ascending, in [-pi/2, pi/2]
@@ -20,16 +20,17 @@ struct AngleGrid {
 
 Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 
-// The directions that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within the
-// unambiguous field wavelength / (2 spacing) of its grid, in steps of a quarter of wavelength / extent, or of
+// Returns the directions that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within
+// the unambiguous field wavelength / (2 spacing) of its grid, in steps of a quarter of wavelength / extent, or of
 // `largest_step` rad where that is less; only 0 where the array has no extent (horizontal, vertical).
 inline constexpr double kPictureStep = kPi / 180.0;
 AngleGrid default_angles(const VirtualArray& array, double largest_step = kPictureStep);
 
-// e^{-j k (x - centre).u} [elements, directions]: far field, exact positions, wavelength at the centre frequency.
+// Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
+// wavelength.
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions);
 
-// Weights [elements] of a window over the rows and the columns of the array's grid, their sum 1. Windows here are
+// Returns weights [elements] of a window over the rows and the columns of the array's grid, whose sum is 1. Here windows are
 // symmetric and nowhere zero: cosines are sampled half-way between the steps.
 // Raises invalid_argument for windows other than rect without a grid.
 std::vector<double> element_weights(const VirtualArray& array, const Window& window);

@@ -10,16 +10,17 @@
 
 namespace echopath {
 
-// e^{-j 2 pi f_D m Td} with f_D = 2 v / wavelength, [tx, V]: takes out what a velocity v adds until slot m.
+// Returns e^{-j 2 pi f_D m Td} with f_D = 2 v / wavelength, [tx, V], which takes out the phase that a velocity v adds until
+// slot m.
 std::vector<std::complex<double>> slot_phasors(const ChirpSequence& waveform, int num_slots,
                                                const std::vector<double>& velocity);
 
-// The map with the phase between slots taken out, each cell by its velocity. A target between two cells keeps at most
-// pi (M - 1) / (M Nc) of it, for M transmitters and Nc chirps.
+// Returns the map with the phase between slots taken out, each cell by its velocity. A target between two cells keeps at
+// most pi (M - 1) / (M Nc) of it, for M transmitters and Nc chirps.
 // M slots divide the unambiguous velocity by M: v_max = wavelength / (4 M Td). For a target at v + 2 fold v_max, which
-// appears at v, the phase is wrong by 2 pi fold m / M unless its `fold` is given; the velocities of the result are
-// those assumed, v + 2 fold v_max.
-// Raises invalid_argument unless the map is the radar's, not compensated before, and |fold| <= 1000.
+// appears at v, the phase is wrong by 2 pi fold m / M unless its `fold` is given; the velocities of the result are those
+// assumed, v + 2 fold v_max.
+// Raises invalid_argument unless the map is the radar's, has not been compensated before, and |fold| <= 1000.
 RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold = 0, Job* job = nullptr);
 
 // Raises invalid_argument unless the map's channels are the radar's and its arrays fit each other.

@@ -14,7 +14,7 @@ constexpr double kLargest = 0.75;  // cells: noise may make the neighbour of the
 
 double node(int i) { return kLargest * (2.0 * i / (kNodes - 1) - 1.0); }
 
-// Lagrange's polynomial through four points (x, y) at `at`.
+// Evaluates Lagrange's polynomial through four points (x, y) at `at`.
 double cubic(const double* x, const double (&y)[4], double at) {
   double sum = 0.0;
   for (int i = 0; i < 4; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// Where a tone lies between the cells of a windowed transform.
+// Finds where a tone lies between the cells of a windowed transform.
 #include <complex>
 #include <vector>
 
@@ -7,14 +7,14 @@ namespace echopath {
 
 class ToneOffset {
  public:
-  // `samples` of the window, transform padded to zero_pad times their number.
+  // `samples` are those of the window; the transform is padded to zero_pad times their number.
   ToneOffset(const std::vector<double>& samples, int zero_pad);
 
-  // Turns the field of the cell above (below: its conjugate) into phase with that of the cell.
+  // The field of the cell above times this, or of the cell below times its conjugate, is in phase with that of the cell.
   std::complex<double> phasor() const { return phasor_; }
-  // Offset in cells from in-phase ratios of the neighbours above and below; within +-kLargest.
+  // Returns the offset in cells, within +-kLargest, from the in-phase ratios of the neighbours above and below to the cell.
   double offset(double above, double below) const;
-  // Power that a tone at this offset shows in the cell, relative to its own.
+  // Returns the power of a tone at this offset in the cell, relative to the tone's own.
   double power(double offset) const;
 
  private:
@@ -23,7 +23,7 @@ class ToneOffset {
   std::vector<double> samples_;
   double step_;                       // of a cell, in bins
   std::complex<double> phasor_;
-  std::vector<double> difference_;    // of the ratios, at kNodes offsets
+  std::vector<double> difference_;    // of the two ratios, at kNodes offsets
 };
 
 }  // namespace echopath

@@ -33,7 +33,7 @@ std::vector<TrainingDraw> TrainingDraws::draw(int count, Job* job) const {
   return draws;
 }
 
-// Columns: real and imaginary parts of every channel.
+// The columns are the real and imaginary parts of every channel.
 Eigen::MatrixXd TrainingDraws::white_numbers(int64_t index) const {
   Eigen::MatrixXd numbers(root_.rows(), 2 * design_.noise.num_channels);
   for (Eigen::Index c = 0; c < numbers.cols(); c += 2) {

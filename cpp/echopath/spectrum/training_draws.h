@@ -1,5 +1,5 @@
 #pragma once
-// Draws of the training cells of a CFAR window, as they are where false alarms happen.
+// Draws the powers of the training cells of a CFAR window from the distribution in which false alarms happen.
 #include <Eigen/Cholesky>
 #include <vector>
 
@@ -10,18 +10,18 @@ namespace echopath {
 
 struct TrainingDraw {
   double statistic = 0.0;   // the order()-th training power in ascending order, for cells of unit mean power per channel
-  double log_weight = 0.0;  // of the draw, to be multiplied by e^this in a mean over the noise
+  double log_weight = 0.0;  // a mean over the noise weighs the draw by e^this
 };
 
-// Draws from the distribution of the noise tilted by e^{-tilt times the sum of the training powers}. That is Gaussian
-// again, of covariance (1 + tilt B)^-1 with B the quadratic form; weights undo the tilt exactly. A false alarm needs low
-// training cells: there the tilt puts the draws, and weight times probability hardly varies.
+// Draws from the distribution of the noise tilted by e^{-tilt times the sum of the training powers}. That is Gaussian again,
+// of covariance (1 + tilt B)^-1 with B the quadratic form; weights undo the tilt exactly. A false alarm needs low training
+// cells: the tilt puts the draws there, so that weight times probability hardly varies.
 class TrainingDraws {
  public:
-  // All must outlive it. form: noise.quadratic_form(reach_range), eigenvalues: its own.
+  // All arguments must outlive it. `form` is noise.quadratic_form(reach_range), and `eigenvalues` are those of `form`.
   TrainingDraws(const CfarDesign& design, const TrainingNoise& noise, const Eigen::MatrixXd& form,
                 const std::vector<double>& eigenvalues, double tilt);
-  // Draws 0 to count - 1, always the same; independent of threads. Raises Cancelled.
+  // Returns draws 0 to count - 1, which are always the same and do not depend on the number of threads. Raises Cancelled.
   std::vector<TrainingDraw> draw(int count, Job* job) const;
 
  private:

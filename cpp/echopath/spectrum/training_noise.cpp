@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kNegligible = 1e-6;  // of the largest eigenvalue: power of a degree of freedom that changes nothing
+constexpr double kNegligible = 1e-6;  // of the largest row sum: degrees of freedom with less power change nothing
 
-// Correlation matrix of `num_cells` neighbours.
+// Returns the correlation matrix of `num_cells` neighbours.
 MatrixXd correlation_of(const std::vector<double>& samples, int zero_pad, int num_cells) {
   const std::vector<double> correlation = noise_correlation(samples, zero_pad, num_cells);
   MatrixXd matrix(num_cells, num_cells);
@@ -23,7 +23,7 @@ MatrixXd correlation_of(const std::vector<double>& samples, int zero_pad, int nu
   return matrix;
 }
 
-// F with F F^T = a correlation matrix within the space that orthonormal columns span.
+// Returns F with F F^T = a correlation matrix, within the space that orthonormal columns span.
 MatrixXd factor_of(const MatrixXd& correlation, const MatrixXd& columns) {
   if (columns.cols() == 0) return columns;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(columns.transpose() * correlation * columns);
@@ -34,7 +34,7 @@ MatrixXd factor_of(const MatrixXd& correlation, const MatrixXd& columns) {
   return columns * solver.eigenvectors().rightCols(rank) * values.tail(rank).cwiseSqrt().asDiagonal();
 }
 
-// Orthonormal columns of an odd number of cells that are even (sign 1) or odd (-1) about the middle.
+// Returns orthonormal columns of an odd number of cells that are even (sign 1) or odd (-1) about the middle.
 MatrixXd symmetric_columns(int num_cells, double sign) {
   const int middle = num_cells / 2;
   MatrixXd columns = MatrixXd::Zero(num_cells, sign > 0.0 ? middle + 1 : middle);
@@ -46,7 +46,7 @@ MatrixXd symmetric_columns(int num_cells, double sign) {
   return columns;
 }
 
-// sum of f f^T over rows [first, first + count) of a factor
+// Returns the sum of f f^T over rows [first, first + count) of a factor.
 MatrixXd form_of(const MatrixXd& factor, CellSpan rows) {
   const auto block = factor.middleRows(rows.first, rows.count);
   return block.transpose() * block;

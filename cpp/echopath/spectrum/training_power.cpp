@@ -8,8 +8,8 @@
 namespace echopath {
 namespace {
 
-// sum[i] = values[i] + ... + values[i + width - 1] for i in [0, num_sums), by doubling: sums of 1, 2, 4, ... numbers in
-// `level` [count], which holds the values at first.
+// Adds values[i] + ... + values[i + width - 1] to sum[i] for i in [0, num_sums), by doubling: `level` [count], which holds
+// the values at first, holds sums of 1, 2, 4, ... numbers in turn.
 ECHOPATH_INLINE void add_levels(double* level, int64_t count, int64_t width, int64_t num_sums, double* sum) {
   int64_t done = 0;
   for (int64_t size = 1; size <= width; size *= 2) {
@@ -97,7 +97,7 @@ bool TrainingPower::visit_spans(int64_t velocity, int64_t range, Visit visit) co
 }
 
 bool TrainingPower::is_order_below(int64_t velocity, int64_t range, int64_t order, double limit) const {
-  int64_t may_be_above = window_.num_training() - order;  // and no more
+  int64_t may_be_above = window_.num_training() - order;  // at most this many
   return visit_spans(velocity, range, [&](const double* values, int64_t count) {
     int64_t below = 0;
     run_simd<count_below>(values, count, limit, &below);

@@ -1,5 +1,5 @@
 #pragma once
-// What the training cells of every cell of a power map say.
+// Evaluates the training cells of every cell of a power map.
 #include <cstdint>
 #include <vector>
 
@@ -7,21 +7,21 @@
 
 namespace echopath {
 
-// A map of powers [V, R] and the window that slides over it; velocity is a circle.
+// Slides a window over a map of powers [V, R], whose velocity axis wraps around.
 class TrainingPower {
  public:
   // Both must outlive it; `power` holds num_velocities x num_ranges values.
   TrainingPower(const std::vector<double>& power, int64_t num_velocities, int64_t num_ranges, const CfarWindow& window);
 
-  // Sums over each row of the map, which `sums` needs: call once for each velocity, in any order.
+  // Prepares the sums over a row of the map that `sums` needs. Call it once for each velocity, in any order.
   void prepare_row(int64_t velocity);
-  // sum [R] of the training cells of each cell of a row; only additions, so that a strong echo leaves no rounding behind.
-  // All rows must be prepared.
+  // Writes the sum [R] of the training cells of each cell of a row. It only adds, so that a strong echo leaves no rounding
+  // behind. All rows must be prepared.
   void sums(int64_t velocity, double* sum) const;
 
-  // Whether at least `order` training cells are below `limit`, that is the order-th of them in ascending order.
+  // Returns whether at least `order` training cells are below `limit`, that is, whether the order-th in ascending order is.
   bool is_order_below(int64_t velocity, int64_t range, int64_t order, double limit) const;
-  // The order-th training cell in ascending order, counted from 1.
+  // Returns the order-th training cell in ascending order, counted from 1.
   double ordered(int64_t velocity, int64_t range, int64_t order) const;
 
  private:

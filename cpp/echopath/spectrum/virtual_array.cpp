@@ -38,7 +38,7 @@ std::vector<VirtualElement> merged(const std::vector<Vec3>& positions, double to
   return elements;
 }
 
-// Elements by row and column; those at one point of the grid become one.
+// Sorts elements by row and column and merges those at one point of the grid.
 void sort_by_grid(VirtualArray& array) {
   const auto cell = [](const VirtualElement& element) { return std::pair(element.row, element.column); };
   std::stable_sort(array.elements.begin(), array.elements.end(),

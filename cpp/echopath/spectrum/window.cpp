@@ -11,10 +11,10 @@
 namespace echopath {
 namespace {
 
-// In the order of WindowKind.
+// The names are in the order of WindowKind.
 const std::vector<std::string> kNames = {"rect", "hann", "hamming", "blackman_harris", "chebyshev"};
 
-// sum_k (-1)^k coefficients[k] cos(2 pi k (i + shift) / n)
+// Returns sum_k (-1)^k coefficients[k] cos(2 pi k (i + shift) / n).
 std::vector<double> cosine_window(int n, double shift, const std::vector<double>& coefficients) {
   std::vector<double> samples(n);
   for (int i = 0; i < n; ++i) {
@@ -32,8 +32,7 @@ double chebyshev_polynomial(int order, double x) {
   return x < 0.0 && order % 2 != 0 ? -magnitude : magnitude;
 }
 
-// Dolph 1946: the spectrum at bin k is T_{n-1}(x0 cos(pi k / n)); the samples are its inverse transform about the
-// centre.
+// Dolph 1946: the spectrum at bin k is T_{n-1}(x0 cos(pi k / n)); the samples are its inverse transform about the centre.
 std::vector<double> chebyshev_window(int n, double sidelobe_db) {
   const double x0 = std::cosh(std::acosh(std::pow(10.0, sidelobe_db / 20.0)) / (n - 1));
   std::vector<double> spectrum((n - 1) / 2 + 1), samples(n), cosine(2 * n);
@@ -55,7 +54,7 @@ std::vector<double> chebyshev_window(int n, double sidelobe_db) {
   return samples;
 }
 
-// shift: of cosine windows, in steps; 0 makes them periodic, 1/2 symmetric.
+// `shift` is that of cosine windows, in steps: 0 makes them periodic, 1/2 symmetric.
 std::vector<double> samples_of(const Window& window, int n, double shift) {
   require(n >= 1, "n", "must be at least 1", n);
   if (n == 1) return {1.0};

@@ -1,6 +1,6 @@
 #pragma once
-// Tapering windows and their figures of merit (Harris, "On the use of windows for harmonic analysis with the discrete
-// Fourier transform", 1978).
+// Computes tapering windows and their figures of merit (Harris, "On the use of windows for harmonic analysis with the
+// discrete Fourier transform", 1978).
 #include <complex>
 #include <string>
 #include <vector>
@@ -13,26 +13,26 @@ struct Window {
   WindowKind kind = WindowKind::kHann;
   double sidelobe_db = 80.0;  // kChebyshev only: level of all sidelobes below the main lobe, dB, positive
 
-  // "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
+  // Takes "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
   static Window named(const std::string& name, double sidelobe_db = 80.0);
   std::string name() const;
   bool operator==(const Window&) const = default;
 };
 
-// Samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin grid
-// sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal
-// sidelobes require.
-// Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
+// Returns the samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin
+// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal
+// sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 
-// The same for few samples in space: cosine windows are sampled at i + 1/2 instead of i, hence symmetric and nowhere 0.
+// Returns samples for few points in space: cosine windows are sampled at i + 1/2 instead of i, hence symmetric and nowhere
+// 0.
 std::vector<double> centred_window_samples(const Window& window, int n);
 
 double coherent_gain(const std::vector<double>& samples);               // sum w / n
 double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
 double scalloping_loss_db(const std::vector<double>& samples);          // loss of a tone half-way between bins, dB
 double main_lobe_half_width(const std::vector<double>& samples);        // from a tone to its first null, bins, to 1/64
-// Response to a tone `bins` away, 1 at 0; real where samples are symmetric about their middle (n - 1) / 2.
+// Returns the response to a tone `bins` away, 1 at 0; it is real where samples are symmetric about their middle (n - 1) / 2.
 std::complex<double> tone_response(const std::vector<double>& samples, double bins);
 
 }  // namespace echopath

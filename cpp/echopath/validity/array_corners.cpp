@@ -10,7 +10,7 @@ namespace {
 constexpr double kOnePlace = 1e-9;  // m
 constexpr double kTie = 1e-9;       // of the extents: nearer than this, the antenna of lower index counts
 
-// Positions along their principal axes, each axis from -1 to 1; axes without extent are 0.
+// Returns positions along their principal axes, each scaled to -1 to 1; axes without extent are 0.
 std::vector<Vec3> normalised(const std::vector<Antenna>& antennas) {
   Vec3 mean = Vec3::Zero();
   for (const Antenna& antenna : antennas) mean += antenna.position / static_cast<double>(antennas.size());

@@ -14,7 +14,7 @@ constexpr double kChecksPerTurn = 8.0;
 constexpr double kSmallTurn = 0.25 * kPi;     // rad: what turns no farther is followed by the base
 constexpr double kChecksPerBreakpoint = 2.0;
 
-// Of the motions of a mesh, of those above it and of the radar.
+// Counts the breakpoints of the motions of a mesh, of those above it and of the radar.
 int64_t breakpoints_within(const Scene& scene, const Radar& radar, uint32_t mesh_id, const TimeSpan& frame) {
   int64_t count = 0;
   const auto add = [&](const std::vector<double>& times) {

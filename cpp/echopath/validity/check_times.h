@@ -1,5 +1,5 @@
 #pragma once
-// At which times of a frame its paths are to be checked, so that no period of a motion hides what becomes of them.
+// Chooses the times of a frame at which its paths are checked, so that no period of a motion hides what becomes of them.
 #include <vector>
 
 #include "echopath/radar/radar.h"
@@ -8,23 +8,23 @@
 namespace echopath {
 
 inline constexpr int kBaseCheckTimes = 5;    // both ends and three places between, for whatever moves
-inline constexpr int kMostCheckTimes = 256;  // for what turns faster than they follow, a warning is due
+inline constexpr int kMostCheckTimes = 256;  // a warning is due for what turns too fast for so many
 
-// The first of them are checked for everything, the others for meshes that need them: prefixes of a sequence by the golden
-// ratio are spread evenly, and lie at no fraction of a frame or of a turn.
+// Holds the times of a check. Everything is checked at the first of them, and meshes that need them at the others: prefixes
+// of a sequence by the golden ratio are spread evenly, and lie at no fraction of a frame or of a turn.
 struct CheckTimes {
   std::vector<double> times;        // s
-  int num_base = 0;                 // that everything needs
-  std::vector<int> of_mesh;         // [meshes], how many of them a mesh needs
+  int num_base = 0;                 // at which everything is checked
+  std::vector<int> of_mesh;         // [meshes] how many of them a mesh needs
   std::vector<double> turn;         // [meshes] rad, how far it turns within the frame at most (Motion::turn_rate)
-  std::vector<uint32_t> too_fast;   // IDs of meshes that would need more than there may be
+  std::vector<uint32_t> too_fast;   // IDs of meshes that would need more than kMostCheckTimes
 };
 
-// Both ends of the frame that starts at `start` (s) and, where something moves, places between: more for what turns far, by eight
-// for each turn, and for what has breakpoints.
+// Returns the beginning of the frame that starts at `start` (s), and where something moves its end and times between: eight
+// more for each turn of what turns far, and two more for each breakpoint.
 CheckTimes check_times(const Scene& scene, const Radar& radar, double start);
 
-// Those that were asked for, for everything.
+// Returns the given times, at all of which everything is checked.
 CheckTimes given_check_times(const Scene& scene, const Radar& radar, double start, std::vector<double> times);
 
 }  // namespace echopath

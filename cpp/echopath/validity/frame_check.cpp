@@ -22,7 +22,7 @@ void merge(const LengthError& at, LengthError& worst) {
   worst.largest = std::max(worst.largest, at.largest);
 }
 
-// The worse of two times.
+// Keeps the worse of two times.
 void merge(const PathState& at, PathState& worst) {
   merge(at.frozen, worst.frozen);
   merge(at.stepped, worst.stepped);
@@ -35,7 +35,7 @@ void merge(const PathState& at, PathState& worst) {
 
 bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
 
-// Of a mesh at one time, in the world.
+// Returns centre and radius of a ball about a mesh at one time, in the world.
 std::pair<Vec3, double> ball_of(const PosedScene& pose, uint32_t mesh_id) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
@@ -46,7 +46,7 @@ std::pair<Vec3, double> ball_of(const PosedScene& pose, uint32_t mesh_id) {
 
 FrameCheck::Scratch::Scratch(int longest) : probe(longest) {}
 
-// One time of the frame.
+// Holds one time of the frame.
 struct FrameCheck::View {
   std::shared_ptr<const EmbreeScene> geometry;
   PosedScene pose;
@@ -59,7 +59,7 @@ struct FrameCheck::View {
         probe(check.preparer_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
-// A ball that a mesh does not leave within the frame, relative to the mean transmitter of the trace.
+// Describes a ball that a mesh does not leave within the frame, relative to the mean transmitter of the trace.
 struct FrameCheck::Sweep {
   Vec3 centre;
   double radius;

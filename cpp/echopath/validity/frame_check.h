@@ -1,5 +1,5 @@
 #pragma once
-// Recorded paths checked at several times of a frame: the worst that becomes of each, and its power.
+// Checks recorded paths at several times of a frame: finds the worst that becomes of each, and its power.
 #include <complex>
 #include <memory>
 #include <vector>
@@ -11,17 +11,17 @@
 
 namespace echopath {
 
-// Between the first antennas, at one time.
+// Holds the echo of a path between the first antennas, at one time.
 struct Echo {
   std::complex<double> amplitude;  // sqrt(W)
   double length = 0.0;             // m
   bool is_lost = false;            // something blocks a leg, or a point of reflection has left its surface
 };
 
-// Of one path, over the times that were checked.
+// Holds what was found of one path over the times that were checked.
 struct PathFinding {
   double power = 0.0;  // W, sum of |amplitude|^2 over the trace time and those times
-  int num_powers = 0;  // in that sum
+  int num_powers = 0;  // terms in that sum
   PathState state;     // worst
   double mean_power() const { return num_powers > 0 ? power / num_powers : 0.0; }
 };
@@ -31,34 +31,34 @@ class FrameCheck {
   struct Scratch {
     ProbeScratch probe;
     std::vector<LegMemo> known;  // by time, of the paths that were checked with this scratch
-    explicit Scratch(int longest);  // hits of a path
+    explicit Scratch(int longest);  // most hits of a path
   };
 
-  // Amplitudes are those between the first antennas of `radar`. Paths and radar must outlive it. Raises invalid_argument when a
-  // motion does not cover a time, Cancelled.
+  // Amplitudes are those between the first antennas of `radar`. Paths and radar must outlive it. Raises invalid_argument
+  // when a motion does not cover a time; raises Cancelled.
   FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular = SpecularPoints::kMaterial,
              Job* job = nullptr);
   ~FrameCheck();
 
   const CheckTimes& times() const { return times_; }
-  LocalPaths preparer(std::span<const int64_t> indices) const { return preparer_(indices); }
-  // How many of the times a path needs, from the first: what it touches, or what may come in its way, tells.
+  LocalPaths prepare(std::span<const int64_t> indices) const { return preparer_(indices); }
+  // Returns how many of the times a path needs, counted from the first, by what it touches and what may come in its way.
   int times_of(const LocalPath& path) const;
 
   // Poses the scene at the times [first, first + count), for `check`. No other call may run meanwhile.
   void pose(size_t first, size_t count, Job* job = nullptr);
-  // Echoes at the trace time, [P]. Thread-safe, as all that follows.
+  // Returns the echoes [P] at the trace time. Thread-safe, as all that follows.
   std::vector<Echo> at_trace(std::span<const int64_t> paths) const;
-  // At the posed times, [P, time]. local: the same paths; traced: their echoes at the trace time, which are those of what stands
-  // still.
+  // Returns the echoes [P, time] at the posed times. `local` holds the same paths; `traced` holds their echoes at the trace
+  // time, which paths on which nothing moves keep.
   std::vector<Echo> at_posed_times(std::span<const int64_t> paths, const LocalPaths& local, std::span<const Echo> traced) const;
   size_t num_posed_times() const { return views_.size(); }
-  // Adds what becomes of a path at the posed times that it needs; echoes: of the trace time, and of the posed times (`is_lost` is
-  // found here). Returns how many times it needed.
+  // Adds what becomes of a path at the posed times that it needs. `traced` is its echo at the trace time, and `posed` those
+  // at the posed times, whose `is_lost` is set here. Returns how many times it needed.
   size_t check(const LocalPath& path, int num_times, const Echo& traced, std::span<Echo> posed, Scratch& scratch,
                PathFinding& found) const;
 
-  // How far the length is off where specular hits stand as chosen.
+  // Returns how far the length is off where specular hits stand as chosen.
   const LengthError& error_of(const PathState& state) const {
     return specular_ == SpecularPoints::kFermat ? state.stepped : state.frozen;
   }
@@ -74,7 +74,7 @@ class FrameCheck {
   bool is_still(const LocalPath& path) const;
   std::vector<Echo> echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const;
   void find_sweeps();
-  // At one of the posed times, brought there from the time that stood in its place.
+  // Returns the geometry at one of the posed times, updated from the time that stood in its place.
   std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
 
   const Paths& paths_;
@@ -89,7 +89,7 @@ class FrameCheck {
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
   std::shared_ptr<EmbreeScene> traced_;
-  std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // of the posed times; brought from one to the next
+  std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // [posed times], updated from time to time
   std::unique_ptr<const View> trace_view_;
   std::vector<std::unique_ptr<const View>> views_;  // posed
   // The first antennas and all meshes at the time of the trace, and at the posed times.

@@ -13,7 +13,7 @@ constexpr double kLost = 1.0;          // rad: a step that leaves more has not c
 constexpr double kTurned = 2.0;       // factor
 constexpr double kOnePlace = 1e-9;    // m
 
-// In the order of the record.
+// Returns the bits of hits in the order of the record.
 uint64_t recorded_order(const LocalPath& path, uint64_t bits) {
   if (!path.is_reversed) return bits;
   uint64_t out = 0;
@@ -21,7 +21,7 @@ uint64_t recorded_order(const LocalPath& path, uint64_t bits) {
   return out;
 }
 
-// The same leg arrives at the other of its ends.
+// In the other direction the same leg arrives at the other of its ends.
 void store_shadows(const LocalPath& path, const LegShadows& shadows, PathState& state) {
   state.left |= recorded_order(path, shadows.off_mirror);
   if (!path.is_reversed) {
@@ -33,15 +33,15 @@ void store_shadows(const LocalPath& path, const LegShadows& shadows, PathState& 
   state.blocked = recorded_order(path, shadows.blocked >> 1 | uint64_t{shadows.is_end_blocked} << (path.count - 1));
 }
 
-// Which legs of a path are meant.
+// Tells which legs of a path are meant.
 enum class Part : uint64_t { kStart, kInner, kEnd };
 struct Run {
   int first, last;  // hits, in the order of the trace
   Part part;
 };
 
-// All on which the legs of a run depend but the hits themselves: the order in which they are passed, whether the last material
-// point is posed with its triangle, and of inner ones which of them are images.
+// Returns all on which the legs of a run depend but the hits themselves: the order in which they are passed, whether the
+// last material point is posed with its triangle, and for inner legs which of the hits are images.
 constexpr int kMostHits = 58;  // hits of a run whose events fit beside the rest
 uint64_t kind_of(const LocalPath& path, const Run& run) {
   const bool has_cell = path.diffuse == 0 && run.last >= path.last_material;
@@ -54,7 +54,7 @@ LegShadows shifted(const LegShadows& shadows, int by) {
   return {shift(shadows.blocked), shadows.is_end_blocked, shift(shadows.off_mirror)};
 }
 
-// Bits are kept as if the run began with hit 0: it may stand anywhere in the next path.
+// Bits are kept as if the run began with hit 0, because it may stand anywhere in the next path.
 template <class Find>
 LegShadows known_part(const LocalPath& path, const Run& run, LegMemo& known, Find find) {
   const int count = run.last - run.first + 1;
@@ -71,20 +71,22 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
   return out;
 }
 
-// Signed cosines of incidence and departure [2 * hits]; images keep theirs.
+// Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs.
 void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end, std::vector<double>& out) {
   int previous = path.first_material;
-  const auto arrive = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
-  const auto depart = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel); };
-  arrive(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
+  const auto set_arrival = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
+  const auto set_departure = [&](int k, const Vec3& travel) {
+    out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel);
+  };
+  set_arrival(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
   for (int k = previous + 1; k <= path.last_material; ++k) {
     if (path.is_image(k)) continue;
     const UnfoldedLeg leg = inner_leg(hits, previous, k);
-    depart(previous, leg.departure);
-    arrive(k, leg.arrival);
+    set_departure(previous, leg.departure);
+    set_arrival(k, leg.arrival);
     previous = k;
   }
-  depart(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
+  set_departure(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch, LegMem
   return state;
 }
 
-// What one antenna sees of the points of reflection.
+// Holds what one antenna sees of the points of reflection.
 struct FrameProbe::Slides {
   uint64_t left = 0;                  // bits in the order of the trace
   double frozen = 0.0, stepped = 0.0;  // m, errors of the length
@@ -132,8 +134,8 @@ FrameProbe::Slides FrameProbe::slides_from(const LocalPath& path, const Vec3& st
   return found;
 }
 
-// Fills scratch.stepped with hits one Newton step farther and scratch.found with what the meshes have there; sets the bits of
-// hits that have left their surface. Returns those that lie beyond the triangles around their hit.
+// Fills scratch.stepped with hits one Newton step farther and scratch.found with what the meshes have there; sets the bits
+// of hits that have left their surface. Returns the bits of those that lie beyond the triangles around their hit.
 uint64_t FrameProbe::find_stepped(const LocalPath& path, ProbeScratch& scratch, uint64_t& left) const {
   std::copy_n(scratch.hits.begin(), path.count, scratch.stepped.begin());
   std::copy_n(scratch.hits.begin(), path.count, scratch.found.begin());
@@ -148,7 +150,7 @@ uint64_t FrameProbe::find_stepped(const LocalPath& path, ProbeScratch& scratch, 
   return far;
 }
 
-// Poses the point of the hit's mesh over which `point` lies; false where the way there leaves the surface.
+// Poses the point of the hit's mesh over which `point` lies; returns false where the way there leaves the surface.
 bool FrameProbe::move_hit(const LocalHit& hit, const Vec3& point, PosedHit& out, bool& is_near) const {
   const Vec3 in_mesh = rim_.linear(hit.mesh_id).inverse() * (point - rim_.translation(hit.mesh_id));
   const auto spot = walk_.find(hit.mesh_id, hit.triangle_id, pose_.local_vertices(hit.mesh_id), in_mesh);
@@ -184,7 +186,7 @@ LegShadows FrameProbe::shadows_of_images(const LocalPath& path, const PosedHit* 
   return tester.shadows();
 }
 
-// Legs before, between and behind the material points: what becomes of them follows from their own hits.
+// Tests the legs before, between and behind the material points; the result of each part follows from its own hits.
 LegShadows FrameProbe::shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const {
   const int first = path.first_material, last = path.last_material;
   LegShadows all;
@@ -214,7 +216,7 @@ void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vect
   fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
 }
 
-// Antennas at both rims by turns: an end changes with its own antenna only.
+// Takes the antennas at both rims by turns, because the cosines at an end change with its own antenna only.
 void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
   if (path.first_material < 0) return;
   scratch.cosines.assign(static_cast<size_t>(2 * path.count), 0.0);

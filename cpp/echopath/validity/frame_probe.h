@@ -1,6 +1,6 @@
 #pragma once
-// What has become of recorded paths at one instant of a frame: how far their frozen points of reflection are off, which legs
-// something blocks, how the surfaces have turned.
+// Finds what has become of recorded paths at one instant of a frame: how far their frozen points of reflection are off,
+// which legs something blocks, how the surfaces have turned.
 #include <memory>
 
 #include "echopath/replay/posed/local_paths.h"
@@ -10,14 +10,14 @@
 
 namespace echopath {
 
-// How far a length is off, m. The true one is that over the points of the mesh one Newton step farther, less what e
+// Tells how far a length is off, m. The true length is that over the points of the mesh one Newton step farther, less what e
 // (specular_slide.h) estimates of the rest.
 struct LengthError {
   double motion = 0.0;   // for the trace's own antennas, carried along by the radar's motion
   double largest = 0.0;  // over them and the rim of the array
 };
 
-// Hits are counted in the order of the record, TX -> RX.
+// Describes a path at one instant. Hits are counted in the order of the record, TX -> RX.
 struct PathState {
   LengthError frozen;           // over the hits where they were recorded (SpecularPoints::kMaterial)
   LengthError stepped;          // one Newton step from there (SpecularPoints::kFermat)
@@ -28,7 +28,7 @@ struct PathState {
   double cosine_change = 0.0;   // largest change of a cosine of incidence or departure
 };
 
-// `radar` with the trace's antennas, carried along by its motion (first), and the rim of its array.
+// Returns `radar` with the trace's antennas, carried along by its motion, first, and then those at the rim of its array.
 Radar probe_radar(const Paths& paths, const Radar& radar);
 
 struct ProbeScratch {
@@ -48,9 +48,10 @@ class FrameProbe {
              const SurfaceWalk& walk, double wavenumber)
       : preparer_(preparer), pose_(pose), rim_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
 
-  // Signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
+  // Writes the signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
   void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
-  // scratch.reference: the cosines at the trace time. known: of this probe alone. Thread-safe.
+  // Checks a path. scratch.reference holds the cosines at the trace time; `known` is used with this probe alone.
+  // Thread-safe.
   PathState check(const LocalPath& path, ProbeScratch& scratch, LegMemo& known) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// What stands in the way of legs, found once for all paths that share them: one ray makes a path over each pair of the mirror
-// chains to its hits, so most legs are those of other paths, too.
+// Remembers what stands in the way of legs, so that it is found once for all paths that share them: one ray makes a path
+// over each pair of the mirror chains to its hits, so most legs are those of other paths, too.
 #include <vector>
 
 #include "echopath/replay/evaluate/segment_ids.h"
@@ -8,10 +8,11 @@
 
 namespace echopath {
 
-// Of one instant; for one thread at a time.
+// Serves one instant, and one thread at a time.
 class LegMemo {
  public:
-  // What `find` returned for the same `count` hits under the same `kind`, or returns now. The hits must stay where they are.
+  // Returns what `find` returns for these `count` hits under this `kind`, and calls it once for the same ones. The hits must
+  // stay where they are.
   template <class Find>
   LegShadows operator()(const Hit* hits, int count, uint64_t kind, Find find) {
     uint32_t& id = ids_(hits, count, kind);

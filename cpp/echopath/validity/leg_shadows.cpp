@@ -11,24 +11,25 @@ constexpr double kOnMirrorRelative = 1e-5;
 
 }  // namespace
 
-// Of a chain of legs: an antenna, or a point of a surface with a normal and, where it is curved, the point of its facet.
+// Describes an end of a chain of legs: an antenna, or a point of a surface with a normal and, where it is curved, the point
+// of its facet.
 struct LegTester::End {
   Vec3 point;
   Vec3 normal = Vec3::Zero();
   const Vec3* facet = nullptr;
 
-  // From where the surface does not hide `toward` itself: the curved point of a hollow facet lies behind it.
+  // Returns a point from where the surface does not hide `toward` itself: the curved point of a hollow facet lies behind it.
   const Vec3& seen_from(const Vec3& toward) const {
     return facet && normal.dot(toward - point) * normal.dot(point - *facet) < 0 ? *facet : point;
   }
 };
 
-// At the flat triangle, where the trace found it.
+// Returns the end at the flat triangle, where the trace found it.
 LegTester::End LegTester::facet_of(const PosedHit& hit) {
   return hit.is_smooth ? End{hit.facet, hit.edge_u.cross(hit.edge_v).normalized()} : surface_of(hit);
 }
 
-// On the curved surface, where the trace left it.
+// Returns the end on the curved surface, where the trace left it.
 LegTester::End LegTester::surface_of(const PosedHit& hit) { return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr}; }
 
 void LegTester::block(int leg) {
@@ -43,12 +44,12 @@ bool LegTester::is_known_blocked(int first, int last) const {
   return false;
 }
 
-// Off the surface on the side of `toward`; an antenna stays.
+// Lifts a point off the surface on the side of `toward`; an antenna stays.
 Vec3 LegTester::lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const {
   return geometry_.lifted(point, normal.dot(toward - point) >= 0 ? normal : Vec3(-normal));
 }
 
-// Off all the mirrors [first, last) that meet in the point.
+// Lifts a point of reflection off all the mirrors [first, last) that meet in it.
 Vec3 LegTester::lifted_image(int image, int first, int last, const Vec3& toward) const {
   Vec3 point = image_points_[image];
   for (int k = first; k < last; ++k) {
@@ -57,7 +58,8 @@ Vec3 LegTester::lifted_image(int image, int first, int last, const Vec3& toward)
   return point;
 }
 
-// Points of reflection on the mirrors [first, last), from the end backwards; false where one lies on no straight line.
+// Finds the points of reflection on the mirrors [first, last), from the end backwards; returns false where one lies on no
+// straight line.
 bool LegTester::place_images(const Vec3& from, int first, int last, const Vec3& to) {
   const auto height = [&](int k, const Vec3& point) { return hits_[k].normal.dot(point - hits_[k].point); };
   Vec3 image = from;
@@ -80,7 +82,7 @@ bool LegTester::place_images(const Vec3& from, int first, int last, const Vec3& 
   return true;
 }
 
-// `image`: the mirror on which `to` should lie, -1: none. A leg over a mirror asks what it meets first.
+// `image` is the mirror on which `to` should lie, -1 for none. For a leg to a mirror, what it meets first is asked for.
 bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   if (image < 0) return geometry_.occluded(from, to);
   const double length = (to - from).norm();
@@ -96,7 +98,7 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   return false;
 }
 
-// Legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.
+// Tests the legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.
 void LegTester::test(const End& from, int first, int last, const End& to) {
   if (is_known_blocked(first, last) || !place_images(from.point, first, last, to.point)) return;
   for (int leg = first; leg <= last; ++leg) {
@@ -109,7 +111,7 @@ void LegTester::test(const End& from, int first, int last, const End& to) {
   }
 }
 
-// The trace found a smooth hit on its flat triangle, or looked back from the curved surface: one free way suffices.
+// The trace found a smooth hit on its flat triangle, or looked back from the curved surface, so one of the two must be free.
 void LegTester::test_arrival(const End& from, int first, int last) {
   const PosedHit& hit = hits_[last];
   const LegShadows before = shadows_;

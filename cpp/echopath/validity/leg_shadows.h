@@ -1,5 +1,5 @@
 #pragma once
-// Which legs of a path something stands in the way of, at one instant.
+// Finds the legs of a path that something stands in the way of, at one instant.
 #include <cstdint>
 
 #include "echopath/replay/posed/path_geometry.h"
@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-// In the order of the path's hits.
+// Holds what was found of the legs, in the order of the path's hits.
 struct LegShadows {
   uint64_t blocked = 0;        // bit per hit: the leg that arrives there is blocked
   bool is_end_blocked = false;  // the leg from the last hit
@@ -20,18 +20,19 @@ struct LegShadows {
   }
 };
 
-// Tests of one path against the triangles of `geometry`, whose origin is that of the posed hits. Legs over flagged mirrors are
-// tested where the image puts them at this instant; a leg once found blocked is not tested again.
+// Tests the legs of one path against the triangles of `geometry`, whose origin is that of the posed hits. Legs over flagged
+// mirrors are tested where the image puts them at this instant; a leg once found blocked is not tested again.
 class LegTester {
  public:
   LegTester(const EmbreeScene& geometry, const LocalPath& path, const PosedHit* hits)
       : geometry_(geometry), path_(path), hits_(hits) {}
 
-  // Legs from an antenna to the first hit that is no image, between such hits, and from the last of them to an antenna.
+  // Test the legs from an antenna to the first hit that is no image, between such hits, and from the last of them to an
+  // antenna.
   void test_start(const Vec3& antenna);
   void test_inner();
   void test_end(const Vec3& antenna);
-  // Of a path over images alone.
+  // Tests the legs of a path over images alone.
   void test_images(const Vec3& start, const Vec3& end);
   const LegShadows& shadows() const { return shadows_; }
 

@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-// One instant long, between one transmitter and one receiver of the probe.
+// Returns a radar that is one instant long, between one transmitter and one receiver of the probe.
 Radar instant_radar(const Paths& record, const Radar& radar, size_t antenna) {
   Radar probe = probe_radar(record, radar);
   probe.transmitters = {probe.transmitters[std::min(antenna, probe.transmitters.size() - 1)]};

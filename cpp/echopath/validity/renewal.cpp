@@ -19,7 +19,7 @@ enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
 
 bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
 
-// What became of a block of paths; hits of those that moved, in the order of the record.
+// Holds what became of a block of paths, and the hits of those that moved, in the order of the record.
 struct BlockOutcome {
   std::vector<Outcome> of_path;
   std::vector<Hit> moved_hits;
@@ -79,7 +79,7 @@ class Renewer {
     return (path.is_reversed ? scene_at_.transmitters : scene_at_.receivers).front().position;
   }
 
-  // Newton steps from the recorded points of reflection to Fermat's.
+  // Takes Newton steps from the recorded points of reflection to Fermat's.
   Outcome find_reflections(const LocalPath& path, Scratch& scratch) const {
     for (int step = 0; step < kMaxSteps; ++step) {
       if (!scratch.slide.solve(path, scratch.posed.data(), start_of(path))) return Outcome::kLost;
@@ -138,10 +138,10 @@ class Renewer {
   PosedScene scene_at_;
 };
 
-// The paths that are still there, those that moved with hits of their own behind those of the record.
+// Collects the paths that are still there; those that moved get hits of their own behind those of the record.
 void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Renewal& renewal, Job* job) {
   std::vector<uint8_t> keep;
-  std::vector<int64_t> moved_offsets;  // of the paths that stay, -1: where they were
+  std::vector<int64_t> moved_offsets;  // of the paths that stay, -1 where they keep their hits
   auto hits = record.hits;
   std::shared_ptr<std::vector<Hit>> grown;
   for (const BlockOutcome& block : blocks) {

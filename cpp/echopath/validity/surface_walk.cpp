@@ -13,7 +13,7 @@ constexpr double kOverEdge = -0.05;    // barycentric: how far outside of a face
 constexpr double kOnePlane = 1e-5;     // 1 - cosine between facets of one plane: 0.26 degrees
 constexpr int kMaxSteps = 128;         // triangles on the way
 
-// Barycentric coordinates of the point's projection, by corner.
+// Returns the barycentric coordinates of the point's projection, by corner.
 Vec3 barycentric(const std::array<Vec3, 3>& corners, const Vec3& normal, const Vec3& point) {
   const Vec3 along = point - corners[0], edge_u = corners[1] - corners[0], edge_v = corners[2] - corners[0];
   const double scale = normal.squaredNorm();
@@ -37,7 +37,7 @@ bool share_corner(const Triangle& a, const Triangle& b, const std::vector<Vec3>&
 struct SurfaceWalk::Surface {
   const std::vector<Triangle>& triangles;
   std::vector<std::array<uint32_t, 3>> neighbours;
-  const std::vector<Vec3>& normals;  // of vertices, at rest; empty where facets are meant
+  const std::vector<Vec3>& normals;  // of vertices, at rest; empty for meshes of facets
 
   std::array<Vec3, 3> corners(uint32_t t, const std::vector<Vec3>& vertices) const {
     return {vertices[triangles[t][0]], vertices[triangles[t][1]], vertices[triangles[t][2]]};
@@ -55,7 +55,7 @@ struct SurfaceWalk::Surface {
   Crossing cross_toward(uint32_t at, const Vec3& weights, const std::vector<Vec3>& vertices) const;
 };
 
-// Over the edge that the point lies farthest behind, among those over which the surface goes on.
+// Crosses the edge that the point lies farthest behind, among those over which the surface goes on.
 Crossing SurfaceWalk::Surface::cross_toward(uint32_t at, const Vec3& weights, const std::vector<Vec3>& vertices) const {
   const auto behind = [&](int side) { return weights[(side + 2) % 3]; };  // edge i faces corner i + 2
   std::array<int, 3> sides = {0, 1, 2};

@@ -1,5 +1,5 @@
 #pragma once
-// From a triangle over its neighbours to where a point lies over the surface.
+// Walks from a triangle over its neighbours to where a point lies over the surface.
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,7 +12,7 @@ namespace echopath {
 
 class SurfaceWalk {
  public:
-  // smooth_normals: unit vertex normals by mesh ID, empty where facets are meant. Both must outlive it.
+  // smooth_normals: unit vertex normals by mesh ID, empty for meshes of facets. Both must outlive it.
   SurfaceWalk(const Scene& scene, const std::vector<std::vector<Vec3>>& smooth_normals);
   ~SurfaceWalk();
 
@@ -20,8 +20,8 @@ class SurfaceWalk {
     Hit hit;
     bool is_near = true;  // in the triangle itself, in one that has a corner of it, or in its plane
   };
-  // Where `point` lies over the mesh as its `vertices` stand (mesh frame), going from `triangle` over edges on which the
-  // surface goes on: in one plane, or smoothly. Empty where it ends before: at a rim or a crease. Thread-safe.
+  // Finds where `point` lies over the mesh as its `vertices` stand (mesh frame), going from `triangle` over edges on which
+  // the surface goes on: in one plane, or smoothly. Returns none where it ends before, at a rim or a crease. Thread-safe.
   std::optional<Spot> find(uint32_t mesh_id, uint32_t triangle, const std::vector<Vec3>& vertices, const Vec3& point) const;
 
  private:

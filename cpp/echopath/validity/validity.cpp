@@ -22,9 +22,9 @@ constexpr int64_t kBlocksInFlight = 64;      // fixed: sums must not depend on t
 constexpr size_t kTimesAtOnce = kBaseCheckTimes;
 constexpr int64_t kLookRays = 1 << 17;       // for new surface, over all times and antennas
 constexpr int64_t kLeastLookRays = 1 << 12;  // of one look
-constexpr uint64_t kLookSeed = 0x6c6f6f6b;   // beside that of the trace: its lattice may not be the trace's
+constexpr uint64_t kLookSeed = 0x6c6f6f6b;   // combined with the trace's seed, so that the lattice differs from the trace's
 
-// Sums of power over paths, W.
+// Holds sums of power over paths, W.
 struct Sums {
   double power = 0.0, squared = 0.0, slid = 0.0, left = 0.0, blocked = 0.0, turned = 0.0;
 
@@ -50,7 +50,7 @@ struct Sums {
   }
 };
 
-// Physical-optics paths add up as fields, the others as powers.
+// Sums physical-optics paths, which add up as fields, apart from the others, which add up as powers.
 struct KindSums {
   Sums field, power;
   BandSum together;  // of the physical-optics paths at the trace time
@@ -60,20 +60,20 @@ struct KindSums {
     sum.add(field, field_scale);
     return sum;
   }
-  // From the sum of |a|^2 of the physical-optics paths to the power of their sum, mean over the band.
+  // Returns the ratio of the power of the sum of the physical-optics paths, averaged over the band, to their sum of |a|^2.
   double field_scale() const { return field.power > 0 ? together.power() / field.power : 1.0; }
 };
 
 bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_material >= 0; }
 
-// Paths to be checked and for how many of their kind each stands.
+// Holds the paths to be checked, and how many of its kind each stands for.
 struct Sample {
   std::vector<int64_t> paths;
   std::vector<float> weights;
 };
 
-// Of each object and number of bounces about every n-th path, so that no more than kPathsChecked are looked at; all that add up as
-// fields, which would alias.
+// Takes about every n-th path of each object and number of bounces, so that no more than kPathsChecked are checked, but all
+// paths that add up as fields, which would alias.
 class Sampling {
  public:
   explicit Sampling(const Paths& paths) : paths_(paths), count_(paths.scene->nodes().size() * kKinds) {
@@ -87,7 +87,7 @@ class Sampling {
       const int64_t step = all || is_coherent(path) ? 1 : (count_[kind] + kPathsChecked - 1) / kPathsChecked;
       if (seen[kind]++ % step != 0) continue;
       sample.paths.push_back(path);
-      // What stands for how many: the last one of a kind may stand for fewer.
+      // Each path stands for `step` paths, but the last one of a kind may stand for fewer.
       sample.weights.push_back(static_cast<float>(std::min(step, count_[kind] - seen[kind] + 1)));
     }
     return sample;
@@ -107,9 +107,9 @@ class Sampling {
   std::vector<int64_t> count_;
 };
 
-class Certificate {
+class ValidityCheck {
  public:
-  Certificate(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
+  ValidityCheck(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
       : paths_(paths), radar_(radar), check_(paths, radar, std::move(times), settings.specular, job),
         sample_(Sampling(paths)(settings.arrays)), band_(radar.waveform), keeps_arrays_(settings.arrays), job_(job) {
     report_.num_paths = paths.num_paths();
@@ -123,23 +123,23 @@ class Certificate {
     findings_.resize(sample_.paths.size());
     for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
     sum_findings();
-    look_at_surface();
+    search_new_surface();
     make_objects();
     return std::move(report_);
   }
 
  private:
-  // What is kept of a path between the times.
+  // Holds what is kept of a path between the times.
   struct Finding : PathFinding {
-    int num_times = 0;          // that it needs
+    int num_times = 0;          // times that it needs
     size_t object = 0;          // node index
     bool is_field = false;
     Echo at_trace;
   };
 
-  // Of an object.
+  // These hold what is seen of an object.
   struct SeenNow {
-    BandSum seen, fresh;  // by one look: of all, and of new surface
+    BandSum seen, fresh;  // by one look: everything, and new surface
   };
   struct SeenSums {
     double seen = 0.0, fresh = 0.0;  // W, over times and antennas
@@ -148,7 +148,7 @@ class Certificate {
 
   size_t num_base() const { return static_cast<size_t>(check_.times().num_base); }
 
-  // Paths of the sample that need times from `first` on.
+  // Returns the paths of the sample that need times from `first` on.
   std::vector<size_t> members_from(size_t first) const {
     std::vector<size_t> members;
     for (size_t i = 0; i < findings_.size(); ++i) {
@@ -178,7 +178,7 @@ class Certificate {
   void check_block(std::span<const size_t> members, size_t first, ObjectsAtTimes& sums) {
     std::vector<int64_t> indices;
     for (const size_t member : members) indices.push_back(sample_.paths[member]);
-    const LocalPaths local = check_.preparer(indices);
+    const LocalPaths local = check_.prepare(indices);
     FrameCheck::Scratch scratch(local.longest);
     std::vector<Echo> traced;
     if (first == 0) traced = check_.at_trace(indices);
@@ -201,7 +201,7 @@ class Certificate {
     found.at_trace = traced;
   }
 
-  // Of the times at which surface is looked for, too.
+  // Adds the echoes at the base times only, at which surface is looked for, too.
   void add_echoes(const Finding& found, double weight, size_t first, std::span<const Echo> echoes, ObjectsAtTimes& sums) const {
     if (first >= num_base()) return;
     std::vector<ObjectAtTime>& times = sums[found.object];
@@ -258,8 +258,8 @@ class Certificate {
     arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
   }
 
-  // From the antennas of the trace at each of the times, and from those at the rim.
-  void look_at_surface() {
+  // Looks for new surface at each of the times, from the antennas of the trace and from those at the rim.
+  void search_new_surface() {
     if (!check_.anything_moves() && !check_.has_array()) return;
     const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
     LookSettings look;
@@ -274,15 +274,15 @@ class Certificate {
     }
   }
 
-  // What rim antennas see counts for shares alone.
+  // Adds what a look finds. What rim antennas see counts for shares alone.
   void add_look(const Look& found, size_t time, bool is_own) {
-    Radar ears = is_own ? check_.first_radar() : found.paths.radar;
-    ears.waveform.num_chirps = ears.waveform.num_samples = 1;
+    Radar pair_radar = is_own ? check_.first_radar() : found.paths.radar;
+    pair_radar.waveform.num_chirps = pair_radar.waveform.num_samples = 1;
     std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));
     std::iota(all.begin(), all.end(), 0);
     std::vector<double> lengths;
     std::vector<std::complex<double>> amplitudes;
-    Replayer(found.paths, ears).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
+    Replayer(found.paths, pair_radar).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
     std::map<size_t, SeenNow> seen;
     for (size_t i = 0; i < all.size(); ++i) {
       const Hit* hits = found.paths.hits_of(all[i]);
@@ -303,7 +303,7 @@ class Certificate {
     }
   }
 
-  // The object of the last hit that is no image, as the path was traced, and whether its echo adds up as a field.
+  // Returns the object of the last hit that is no image, as the path was traced, and whether its echo adds up as a field.
   std::pair<size_t, bool> end_of(const Paths& paths, size_t path, const Hit* hits) const {
     const int count = paths.num_bounces[path];
     const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
@@ -398,7 +398,7 @@ Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings
   for (const double time : settings.times) require(std::isfinite(time), "times", "must be finite", time);
   CheckTimes times = settings.times.empty() ? check_times(*paths.scene, radar, start)
                                             : given_check_times(*paths.scene, radar, start, settings.times);
-  return Certificate(paths, radar, std::move(times), settings, job).run();
+  return ValidityCheck(paths, radar, std::move(times), settings, job).run();
 }
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// The certificate of a replay: for what share of the power does one trace not serve the whole frame and the whole array?
+// Certifies a replay: for what share of the power does one trace not serve the whole frame and the whole array?
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,52 +16,53 @@ struct ValiditySettings {
   SpecularPoints specular = SpecularPoints::kMaterial;  // of the replay that is to be certified
 };
 
-// Shares of the power that the replay carries, of a set of paths. The power of a path is the mean of |a|^2 between the first
-// antennas over the trace time and the times of the check. Those of physical-optics paths, which add up as fields, are scaled
-// in common to the power of their sum, averaged over the band: else their share would depend on the number of rays.
+// Holds shares of the power that the replay of a set of paths carries. The power of a path is the mean of |a|^2 between the
+// first antennas over the trace time and the times of the check. The powers of physical-optics paths, which add up as
+// fields, are scaled in common to the power of their sum, averaged over the band: else their share would depend on the
+// number of rays.
 struct ValidityShares {
-  double power = 0.0;        // W, what the shares are of
+  double power = 0.0;        // W, the whole of the shares
   double slid = 0.0;         // phase error of points of reflection above kPhaseLimit
   double left = 0.0;         // points of reflection that leave the surface around their hit
   double blocked = 0.0;      // something comes in the way of a leg
   double turned = 0.0;       // a cosine of incidence or departure changes its sign or by more than a factor of two
-  double new_surface = 0.0;  // of the power of all that is seen at the times of the check: of what was hidden from the trace
+  double new_surface = 0.0;  // of what is seen at the times of the check: power from surface that was hidden from the trace
 };
 
 inline constexpr double kPhaseLimit = 0.3;       // rad
 inline constexpr double kValidityLimit = 0.01;   // share of the power above which a warning is due
-inline constexpr double kObjectLimit = 0.05;     // likewise of the power of an object
-inline constexpr double kObjectErrorDb = 0.5;    // of the power of an object over the frame, likewise
+inline constexpr double kObjectLimit = 0.05;     // the same for the power of an object
+inline constexpr double kObjectErrorDb = 0.5;    // dB, the same for the error of an object's power over the frame
 inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
 inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
-inline constexpr int kMostKeyframes = 1000000;   // that are advised; no frame has as many chirps
+inline constexpr int kMostKeyframes = 1000000;   // most that are advised; no frame has as many chirps
 inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
 
-// [P] each, hits in the order of the record; empty unless asked for.
+// Holds what was found of each path, [P] each, with hits in the order of the record; empty unless asked for.
 struct ValidityArrays {
   std::vector<double> power;               // W
   std::vector<float> phase_error;          // rad, largest over times and antennas where no point of reflection has left
   std::vector<float> stepped_phase_error;  // rad, what a Newton step to the moved points of reflection leaves
   std::vector<uint64_t> left;              // bit k: the point of reflection of hit k leaves its surface
   std::vector<uint64_t> blocked;           // bit k: something comes in the way of the leg that arrives at hit k
-  std::vector<uint8_t> receiver_blocked;   // 1: of the leg to the receiver
+  std::vector<uint8_t> receiver_blocked;   // 1: something comes in the way of the leg to the receiver
   std::vector<uint8_t> turned;             // 1: see ValidityShares
   std::vector<float> cosine_change;
 };
 
-// Of the paths whose last hit that is no image lies on the object, and of all of it that is seen.
+// Describes the paths whose last hit that is no image lies on the object, and all of the object that is seen.
 struct ObjectValidity : ValidityShares {
   std::string name;
   double disappears = 0.0;    // share of its power that is blocked or lost, mean over the times of the check
-  double error_db = 0.0;      // dB, of its power over the frame: replay over what is there with new surface; 0: not known
+  double error_db = 0.0;      // dB, power over the frame: replayed over true, with new surface; 0: not known
   double seen_power = 0.0;    // W, largest power with which the times of the check see it
   double turn = 0.0;          // rad, how far it turns within the frame at most
   bool has_paths = false;
   bool is_in_range = false;   // less than kDynamicRangeDb below the strongest, and above the noise of a range-Doppler cell
   bool is_too_fast = false;   // turns so often that the times of the check may miss something
-  bool is_asked = true;       // the record is a whole, or has paths of it: what a selection leaves out is not missed
+  bool is_asked = true;       // the record is whole or has paths of it; what a selection leaves out is not missed
 
-  // It needs no mending: its paths serve the frame, or it is out of the dynamic range.
+  // Returns whether it needs no mending: its paths serve the frame, or it is out of the dynamic range.
   bool ok() const;
 };
 
@@ -71,30 +72,31 @@ struct Validity {
   bool has_array = false;             // some antenna stands elsewhere than those of the trace
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
-  // rad: weighted by power, and largest over the paths that carry any; the largest by motion alone (for the trace's own
-  // antennas), and the largest that a Newton step leaves.
+  // rad: weighted by power; the largest over the paths that carry any; the largest by motion alone (for the trace's own
+  // antennas); and the largest that a Newton step leaves.
   double rms_phase_error = 0.0, largest_phase_error = 0.0, motion_phase_error = 0.0, stepped_phase_error = 0.0;
   double largest_cosine_change = 0.0;
   std::vector<ObjectValidity> objects;  // by strength
-  double cell_noise = 0.0;              // W at the antenna: an echo as strong as the noise of a range-Doppler cell
+  double cell_noise = 0.0;              // W at the antenna, of an echo as strong as the noise of a range-Doppler cell
   ValidityArrays arrays;
 
-  // Traces over a frame, each for its own part, that serve it: the phase error of motion, which falls with the square of the time
-  // from the trace, is below kPhaseLimit then, what shows new surface turns by kKeyframeTurn at most, and kOcclusionKeyframes
-  // where something is blocked or comes into view.
+  // Returns how many traces, each for its own part of the frame, serve it. The phase error of motion, which falls with the
+  // square of the time from the trace, is then below kPhaseLimit, and what shows new surface turns by kKeyframeTurn at most.
+  // There are at least kOcclusionKeyframes where something is blocked or comes into view.
   int keyframes() const;
   bool shares_hold() const;  // each share of the whole is below kValidityLimit
-  // What does not hold and what to do about it, a sentence each; empty where one trace serves.
+  // Returns what does not hold and what to do about it, a sentence each; empty where one trace serves.
   std::vector<std::string> warnings() const;
   std::string text() const;
 };
 
-// Checks paths at the times of check_times.h, or at those given, for the trace's own antennas and those at the rim of the array of
-// `radar`: the error of the length by points of reflection that slide (specular_slide.h; images are exact), whether they still lie
-// on their surface, shadow rays of all legs, cosines; and, with rays of its own, surface that was hidden from the trace. Of paths
-// that end in a rough surface at most kPathsChecked of each object and number of bounces are looked at, evenly spread over the
-// record; all with `arrays`. Memory grows with those alone. The same bits for any number of threads. Raises invalid_argument for a
-// bad radar, motions that do not cover the times or the frame, Cancelled.
+// Checks paths at the times of check_times.h, or at those given, for the trace's own antennas and those at the rim of the
+// array of `radar`. It finds the error of the length by points of reflection that slide (specular_slide.h; images are
+// exact), whether they still lie on their surface, which legs are blocked (by shadow rays), how cosines change and, with
+// rays of its own, surface that was hidden from the trace. Of paths that end in a rough surface it checks at most
+// kPathsChecked of each object and number of bounces, evenly spread over the record; with `arrays` it checks all. Memory
+// grows with those alone. The result has the same bits for any number of threads. Raises invalid_argument for a bad radar
+// and for motions that do not cover the times or the frame; raises Cancelled.
 inline constexpr int64_t kPathsChecked = 1 << 14;
 Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings = {}, Job* job = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a replay makes of each object at each time of a check, beside what is there.
+// Compares what a replay makes of each object at each time of a check with what is there.
 #include <array>
 #include <map>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// Physical-optics paths add up as fields over some frequencies of the band, the others as powers.
+// Sums the power of paths. Physical-optics paths add up as fields over some frequencies of the band, the others as powers.
 class BandSum {
  public:
   static constexpr size_t kFrequencies = 16;
@@ -26,14 +26,14 @@ class BandSum {
 };
 
 struct ObjectAtTime {
-  BandSum replayed, lost;  // of recorded paths: all, and those that are no longer there
-  BandSum fresh;           // of new surface
+  BandSum replayed, lost;  // recorded paths: all, and those that are no longer there
+  BandSum fresh;           // paths on new surface
 
   void add(const ObjectAtTime& other);
-  double true_power() const;  // W: of what is left and what is new, together
+  double true_power() const;  // W, of what is left and what is new together
 };
 
-// By object (node index) and time of the check.
+// Holds sums by object (node index) and time of the check.
 using ObjectsAtTimes = std::map<size_t, std::vector<ObjectAtTime>>;
 void add(const ObjectsAtTimes& other, ObjectsAtTimes& sum);
 

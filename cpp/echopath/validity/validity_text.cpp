@@ -36,7 +36,7 @@ const char* where(const Validity& report) {
   return report.has_array ? "within the frame or at the rim of the array" : "within the frame";
 }
 
-// " Of 'car' 34 %, of 'van' 10 %.": of the objects that the share concerns most.
+// Returns " Of 'car' 34 %, of 'van' 10 %." for the objects that the share concerns most.
 std::string most_of(const Validity& report, double ValidityShares::* share) {
   std::vector<const ObjectValidity*> found;
   for (const ObjectValidity& object : report.objects) {
@@ -80,7 +80,7 @@ std::string fast_warning(const ObjectValidity& object, const Validity& report) {
          " times of the check may miss what becomes of it. Trace shorter frames.";
 }
 
-// What of an object does not hold although the whole does; empty where the warnings of the whole have named it all.
+// Names what does not hold for an object although the whole does; empty where the warnings of the whole have named it all.
 std::string object_concerns(const ObjectValidity& object, const Validity& report) {
   std::string text;
   const auto add = [&](double ValidityShares::* share, const std::string& words) {
@@ -108,7 +108,7 @@ std::string object_warning(const ObjectValidity& object, const Validity& report)
   return concerns.empty() ? concerns : "Of '" + object.name + "' " + concerns + ". " + advice(report);
 }
 
-// What of an object is affected by more than the limit.
+// Names the shares that are above the limit.
 std::string concerns(const ValidityShares& shares) {
   std::string text;
   const auto add = [&](const char* name, double share) {
@@ -128,7 +128,7 @@ std::string line(const std::string& label, const std::string& value) {
   return text + value;
 }
 
-// Objects of which more than the limit is affected although the whole may hold.
+// Lists the objects of which more than the limit is affected, although the whole may hold.
 std::string object_lines(const Validity& report) {
   std::string text;
   size_t count = 0;

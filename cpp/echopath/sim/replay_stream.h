@@ -82,18 +82,4 @@ class ReplayStream {
   PathWatcher* watcher_ = nullptr;
 };
 
-// Replays all paths at every chirp and for every channel to the echoes that synthesis takes, to see what that costs alone.
-// Returns the number of path-chirps, static paths once.
-int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
-
-// Largest differences between replay with these settings and evaluation at the middle of chirps.
-struct ReplayError {
-  double phase = 0.0;      // rad, at the start frequency
-  double amplitude = 0.0;  // relative to the largest amplitude of the path in these chirps
-};
-
-// In `chirps` (indices), over all paths and channels, each path where it follows its tolerances. Raises Cancelled.
-ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
-                         Job* job = nullptr);
-
 }  // namespace echopath

@@ -61,7 +61,7 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     write_texts(folder, {"labels.json": json.dumps(results, indent=1) + "\n"})
-    draw_labels(results, folder / "labels.png")
+    draw_labels(results, folder / "labels.png", rate_target=RATE_TARGET)
     return results
 
 

@@ -40,17 +40,6 @@ py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
   return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
 }
 
-// Mesh IDs and events added up: what any pass over the hits must at least read.
-uint64_t read_hits(const Paths& paths) {
-  uint64_t sum = 0;
-  for (size_t path = 0; path < paths.offsets.size(); ++path) {
-    const Hit* hits = paths.hits->data() + paths.offsets[path];
-    for (int k = 0; k < paths.num_bounces[path]; ++k) sum += hits[k].mesh_id;
-    sum += paths.diffuse[path];
-  }
-  return sum;
-}
-
 // Power of a path, to be compared with powers in W.
 struct Power {};
 
@@ -149,8 +138,6 @@ void bind_label(py::module_& m) {
   bind_selection(m);
   bind_power(m);
   bind_num_bounces(m);
-  m.def("read_hits", &read_hits, py::arg("paths"),
-        "For benchmarks: reads what matching reads, on one thread, and returns a sum of it.");
   m.def("check_part_names", [](const SelectionPairs& parts) { check_part_names(named_selections(parts)); },
         py::arg("parts"),
         "Raises ValueError where a name of [(name, selection), ...] is empty, \"other\" or given twice.");

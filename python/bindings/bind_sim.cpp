@@ -2,14 +2,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <ctime>
 #include <string>
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/replay/time/frame_nodes.h"
 #include "echopath/sim/decompose.h"
-#include "echopath/sim/replay_stream.h"
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
 #include "keywords.h"
@@ -83,82 +80,12 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
   return out;
 }
 
-// One antenna pair, whose frame the nodes of a trial span.
-Radar radar_of(const ChirpSequence& waveform) {
-  Radar radar;
-  radar.waveform = waveform;
-  radar.transmitters.resize(1);
-  radar.receivers.resize(1);
-  return radar;
-}
-
-FrameNodes trial_nodes(const Radar& radar, py::ssize_t num_nodes) {
-  return num_nodes == 1 ? static_nodes(radar, 0.0) : chebyshev_nodes(radar, 0.0, {}, static_cast<int>(num_nodes));
-}
-
-Echoes trial_echoes(const ChirpSequence& waveform, const py::object& delays, const py::object& amplitudes) {
-  const auto delay = checked_array<double>(delays, "delays", "[K, P]");
-  const auto amplitude = checked_array<std::complex<double>>(amplitudes, "amplitudes", "[K, P]");
-  Echoes echoes;
-  echoes.sampling = trial_nodes(radar_of(waveform), delay.shape(0)).sampling.front();
-  echoes.num_echoes = delay.shape(1);
-  echoes.delay.assign(delay.data(), delay.data() + delay.size());
-  echoes.amplitude.assign(amplitude.data(), amplitude.data() + amplitude.size());
-  return echoes;
-}
-
-double seconds_of(clockid_t clock) {
-  timespec now;
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-py::tuple synthesis_trial(const ChirpSequence& waveform, const py::object& delays, const py::object& amplitudes,
-                          const std::string& method, double tolerance) {
-  const Echoes echoes = trial_echoes(waveform, delays, amplitudes);
-  const SynthesisOptions options{tolerance, kMethod.value_of(method)};
-  double wall = 0.0, processor = 0.0;
-  auto samples = run_job("synthesize", py::none(), [&](Job& job) {
-    const double wall_begin = seconds_of(CLOCK_MONOTONIC), processor_begin = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-    Synthesizer synthesizer(waveform, 1, 1, echoes.num_echoes, options);
-    synthesizer.add(0, echoes, &job);
-    auto cube = synthesizer.cube(0, &job);
-    wall = seconds_of(CLOCK_MONOTONIC) - wall_begin;
-    processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor_begin;
-    return cube;
-  });
-  return py::make_tuple(wall, processor, numpy_take(std::move(samples), {waveform.num_chirps, waveform.num_samples}));
-}
-
 }  // namespace
 
 void bind_sim(py::module_& m) {
   const ReplaySettings aims;
   m.attr("PHASE_TOLERANCE") = aims.phase_tolerance;
   m.attr("AMPLITUDE_TOLERANCE") = aims.amplitude_tolerance;
-  m.def("trial_node_times", [](const ChirpSequence& waveform, int num_nodes) {
-    return to_numpy(trial_nodes(radar_of(waveform), num_nodes).times);
-  }, py::arg("waveform"), py::arg("num_nodes"), "Times [num_nodes] in s of the nodes of synthesis_trial.");
-  m.def("synthesis_trial", &synthesis_trial, py::arg("waveform"), py::arg("delays"), py::arg("amplitudes"), py::kw_only(),
-        py::arg("method") = "auto", py::arg("tolerance") = 1e-7,
-        "What synthesis of echoes costs that polynomials give over a frame, for benchmarks: delays [K, P] in s and "
-        "amplitudes [K, P] in sqrt(W) at trial_node_times -> (wall seconds, processor seconds, samples [chirp, sample]).");
-  m.def("replay_only", [](const Paths& paths, const Radar& radar, double phase_tolerance) {
-    ReplaySettings settings;
-    settings.phase_tolerance = phase_tolerance;
-    return run_job("replay", py::none(), [&](Job& job) { return replay_only(paths, radar, settings, &job); });
-  }, py::arg("paths"), py::arg("radar"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
-        "What replay costs without synthesis, for benchmarks: evaluates all paths at all chirps and channels, one echo for "
-        "paths over the same hits as synthesis has them, and returns how many path-chirps that were.");
-  m.def("replay_error", [](const Paths& paths, const Radar& radar, const std::vector<int>& chirps, double phase_tolerance) {
-    ReplaySettings settings;
-    settings.phase_tolerance = phase_tolerance;
-    const ReplayError error =
-        run_job("replay", py::none(), [&](Job& job) { return replay_error(paths, radar, settings, chirps, &job); });
-    return py::make_tuple(error.phase, error.amplitude);
-  }, py::arg("paths"), py::arg("radar"), py::arg("chirps"), py::kw_only(), py::arg("phase_tolerance") = aims.phase_tolerance,
-        "How far interpolated paths are from paths evaluated at these chirps, for benchmarks: largest errors of phase (rad) "
-        "and of amplitude (share).");
   m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,

@@ -8,7 +8,6 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/trace/bare_queries.h"
 #include "echopath/sim/ray_allocation.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
@@ -58,31 +57,6 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   return paths;
 }
 
-py::dict time_bare_queries(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces, uint64_t seed,
-                           int repetitions) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
-  settings.max_bounces = max_bounces;
-  settings.seed = seed;
-  const BareQueries found = run_job("queries", py::none(), [&](Job& job) {
-    return measure_bare_queries(scene, radar, settings, repetitions, &job);
-  });
-  py::dict out;
-  out["num_rays"] = found.num_rays;
-  out["num_paths"] = found.num_paths;
-  out["num_queries"] = found.num_queries;
-  out["num_in_packets"] = found.num_in_packets;
-  out["num_shadow"] = found.num_shadow;
-  out["build_seconds"] = found.build_seconds;
-  const auto seconds = [](const BareQueries::Seconds& of) {
-    return py::dict(py::arg("elapsed") = of.elapsed, py::arg("processor") = of.processor);
-  };
-  out["trace_seconds"] = seconds(found.trace);
-  out["bare_seconds"] = seconds(found.bare);
-  out["single_seconds"] = seconds(found.single);
-  return out;
-}
-
 }  // namespace
 
 void bind_trace(py::module_& m) {
@@ -121,15 +95,6 @@ progress: callable(stage, fraction) or None
 kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for
 about 200 bytes a triangle while the scene lives
 Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
-
-  m.def("bare_queries", &time_bare_queries, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),
-        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("repetitions") = 5,
-        R"(Times a trace beside its own queries, asked again in a bare loop: for benchmarks, no part of the public interface.
-
-num_rays, max_bounces, seed: as in trace; repetitions: measurements, in turn
-Returns a dict: num_rays, num_paths, num_queries (num_in_packets and num_shadow of them), build_seconds (once) and
-trace_seconds (rays and record), bare_seconds (queries packed alike) and single_seconds (one by one), each a dict of lists
-[repetitions] in s: elapsed, and processor of all threads together.)");
 }
 
 }  // namespace echopath::bindings

@@ -5,14 +5,14 @@ import warnings
 
 import numpy as np
 
-import echopath as ep
+from . import _core
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
 
 
 def sees_azimuth(radar) -> bool:
     """Whether the antennas of a radar tell azimuths apart."""
-    azimuth, _ = ep.virtual_array(radar).default_angles()
+    azimuth, _ = _core.virtual_array(radar).default_angles()
     return len(azimuth) > 1
 
 
@@ -26,13 +26,13 @@ def checked_settings(radar, settings) -> dict:
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
-        ep.range_azimuth(ep.range_doppler(cube, small), small, **settings | {"velocity": None})
+        _core.range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None})
     return settings
 
 
 def _with_one_sample(radar):
     """A radar of the same antennas whose maps have one cell."""
     given = radar.waveform
-    waveform = ep.ChirpSequence(start_frequency=given.start_frequency, bandwidth=given.bandwidth, num_samples=1,
-                                sampling_rate=given.sampling_rate, num_chirps=1, chirp_interval=given.chirp_interval)
-    return ep.Radar(waveform, transmitters=radar.transmitters, receivers=radar.receivers)
+    waveform = _core.ChirpSequence(start_frequency=given.start_frequency, bandwidth=given.bandwidth, num_samples=1,
+                                   sampling_rate=given.sampling_rate, num_chirps=1, chirp_interval=given.chirp_interval)
+    return _core.Radar(waveform, transmitters=radar.transmitters, receivers=radar.receivers)

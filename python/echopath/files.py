@@ -6,8 +6,7 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-import echopath as ep
-
+from . import _core
 from .interrupts import heed, interrupts_are_kept
 
 
@@ -36,7 +35,7 @@ def _written(path: Path):
         temporary = None
         _flush(path.parent)
     except OSError as error:
-        raise ep.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
     finally:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)

@@ -68,6 +68,18 @@ def _grouping(view) -> Grouping:
     return view.grouping if isinstance(view, Families) else Grouping.selections(list(view.items()))
 
 
+def as_partitions(parts) -> dict:
+    """{name: selection} or {partition: {name: selection}} -> the latter."""
+    if not parts:
+        return {}
+    nested = [isinstance(value, dict) for value in parts.values()]
+    if all(nested):
+        return {partition: dict(group) for partition, group in parts.items()}
+    if any(nested):
+        raise ValueError(f"parts: must be all selections or all tables of selections, got {list(parts)}")
+    return {ONLY_PARTITION: dict(parts)}
+
+
 def check_partitions(partitions: dict, scene) -> None:
     """Raises ValueError naming the part whose name or text is faulty or that names no mesh of the scene.
 

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-import echopath as ep
+from . import _core
 
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 
@@ -48,11 +48,11 @@ def path_cells(paths, spectrum, *, tx=0, rx=0) -> PathCells:
     """
     waveform = paths.radar.waveform
     length, rate = _length_and_rate(paths, tx, rx)
-    delay, delay_rate = length / ep.speed_of_light, rate / ep.speed_of_light
+    delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light
     carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
     beat = waveform.slope * delay + carrier * delay_rate  # Hz, fast time
     doppler = carrier * delay_rate                        # Hz, slow time
-    distance = beat * ep.speed_of_light / (2.0 * waveform.slope)
+    distance = beat * _core.speed_of_light / (2.0 * waveform.slope)
     range_index = _range_index(beat, waveform, spectrum.range)
     velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, paths.radar)
     velocity_index[range_index == OUTSIDE] = OUTSIDE
@@ -72,7 +72,7 @@ def _length_and_rate(paths, tx: int, rx: int):
 def _range_index(beat, waveform, axis):
     """Nearest cell of each beat frequency in Hz: i32 [P], -1 where the anti-alias filter removes it."""
     step = axis[1] - axis[0] if len(axis) > 1 else np.inf
-    index = np.rint(beat * ep.speed_of_light / (2.0 * waveform.slope * step)).astype(np.int32)
+    index = np.rint(beat * _core.speed_of_light / (2.0 * waveform.slope * step)).astype(np.int32)
     if not waveform.real:
         index[index == len(axis)] = 0  # the last half cell below the sampling rate
     highest = waveform.sampling_rate * (0.5 if waveform.real else 1.0)

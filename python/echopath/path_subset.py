@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
+from . import _core
 
 BLOCK = 1 << 20  # paths
 _DIGIT = 16      # bits of a power that one pass of `power_of_strongest` looks at
@@ -27,7 +27,7 @@ def subset(paths, keep):
 
 def part_of_path(paths, selections: dict):
     """The part of each path in a partition {name: selection}: u16 [P], index of a name, or their number for "other"."""
-    return ep._core.partition_groups(paths, list(selections.items()))[1].astype(np.uint16)
+    return _core.partition_groups(paths, list(selections.items()))[1].astype(np.uint16)
 
 
 def power_of_strongest(power, max_paths: int) -> float:

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .frame_file.radar import WAVEFORM_KINDS, table_key
-
+WAVEFORM_KINDS = {"start_frequency": float, "bandwidth": float, "num_samples": int, "sampling_rate": float,
+                  "num_chirps": int, "chirp_interval": float, "real": bool}
 _NUM_TIMES = 5  # at which motions are compared, over the frame
 
 
@@ -27,6 +27,11 @@ def difference(radar, other, start_time: float = 0.0) -> str:
     times = start_time + np.linspace(0.0, radar.frame_duration, _NUM_TIMES)
     moves_alike = all(np.array_equal(radar.world_from_radar(time), other.world_from_radar(time)) for time in times)
     return "" if moves_alike else "motion"
+
+
+def table_key(pattern) -> tuple:
+    arrays = (pattern.azimuth, pattern.elevation, pattern.table_gain, pattern.table_phase)
+    return tuple(None if array is None else array.tobytes() for array in arrays)
 
 
 def _antenna_key(antenna) -> tuple:

@@ -6,19 +6,20 @@ from functools import cached_property
 
 import numpy as np
 
-import echopath as ep
-
+from . import _core
 from .azimuth_map import checked_settings, sees_azimuth
 from .detections.checks import check_keywords
+from .detections.of_frame import detect_frame
 from .effects import of_paths
-from .families import check_objects
+from .families import check_objects, families as find_families
 from .guard import check_rays, check_signal, warn_of
 from .keywords import refuse_unknown
 from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
-from .parts import ONLY_PARTITION, check_partitions
+from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from .path_subset import part_of_path
 from .resolution import mean_powers, unresolved_of
 from .stages import Stage, StageClock
+from .tracing import trace
 
 _FAMILIES, _WHOLE = object(), object()  # views that have the name of no partition
 
@@ -67,7 +68,7 @@ class Frame:
     @property
     def noisy_cube(self):
         """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call."""
-        return self.cube if self.noise_seed is None else ep.add_noise(self.cube, self.radar, seed=self.noise_seed)
+        return self.cube if self.noise_seed is None else _core.add_noise(self.cube, self.radar, seed=self.noise_seed)
 
     @property
     def effects(self) -> list:
@@ -90,7 +91,7 @@ class Frame:
 
         spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction) or None
         """
-        return ep.range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
+        return _core.range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 
     @cached_property
     def mean_power(self):
@@ -108,11 +109,11 @@ class Frame:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
         return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
-                             least_power=ep._core.noise_power_in_cell(self.radar))
+                             least_power=_core.noise_power_in_cell(self.radar))
 
     @cached_property
     def _families(self):
-        return ep.families(self.paths)
+        return find_families(self.paths)
 
     @cached_property
     def _mean_powers(self):
@@ -157,14 +158,14 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
     detect_keywords = _detect_keywords(scene, radar, detections, request, {"window": window, "zero_pad": zero_pad})
     clock = StageClock()
     with clock("trace"):
-        paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                         polarization=polarization, footprint=footprint, sampler=sampler,
-                         batches=batches, target_error_db=target_error_db, max_rays=max_rays, progress=progress)
+        paths = trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
+                      polarization=polarization, footprint=footprint, sampler=sampler,
+                      batches=batches, target_error_db=target_error_db, max_rays=max_rays, progress=progress)
     with clock("synthesis"):
         settings = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate, "retrace": retrace,
                     "keyframes": keyframes, "progress": progress}
-        probe = ep.SignalProbe(seed=seed) if guard else None
-        families = ep.families(paths, request.objects) if request else None
+        probe = _core.SignalProbe(seed=seed) if guard else None
+        families = find_families(paths, request.objects) if request else None
         cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings | {"probe": probe})
     with clock("parts of paths"):
         group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
@@ -186,14 +187,14 @@ def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0
             frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
     if detect_keywords is not None:
         with clock("detections"):
-            frame.detections = ep.detect_frame(frame, progress=progress, **detect_keywords)
+            frame.detections = detect_frame(frame, progress=progress, **detect_keywords)
     return frame
 
 
 def with_spectra(frame: Frame) -> Frame:
     """Fills in the range-Doppler maps of a frame: with noise of the whole, without noise of its parts."""
     def spectrum(cube):
-        return ep.range_doppler(cube, frame.radar, **frame.spectrum_settings)
+        return _core.range_doppler(cube, frame.radar, **frame.spectrum_settings)
 
     frame.spectrum = spectrum(frame.noisy_cube)
     frame.part_spectra = {partition: {name: spectrum(cube) for name, cube in cubes.items()}
@@ -201,24 +202,12 @@ def with_spectra(frame: Frame) -> Frame:
     return frame
 
 
-def as_partitions(parts) -> dict:
-    """{name: selection} or {partition: {name: selection}} -> the latter."""
-    if not parts:
-        return {}
-    nested = [isinstance(value, dict) for value in parts.values()]
-    if all(nested):
-        return {partition: dict(group) for partition, group in parts.items()}
-    if any(nested):
-        raise ValueError(f"parts: must be all selections or all tables of selections, got {list(parts)}")
-    return {ONLY_PARTITION: dict(parts)}
-
-
 def _cubes(paths, radar, partitions: dict, families, settings: dict):
     """{partition: {part: cube}}, the whole, and {Family: cube} ({} without families), from one pass."""
     if not partitions and families is None:
-        return {}, ep.synthesize(paths, radar, **settings), {}
+        return {}, _core.synthesize(paths, radar, **settings), {}
     views = partitions if families is None else {**partitions, _FAMILIES: families}
-    cubes = ep.decompose(paths, radar, views, **settings)
+    cubes = decompose(paths, radar, views, **settings)
     whole = sum(next(iter(cubes.values())).values())
     return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
 

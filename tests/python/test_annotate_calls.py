@@ -64,7 +64,7 @@ def test_unknown_keywords_name_the_nearest(plates_and_wall):
 @pytest.mark.parametrize("objects, message", [({"x": "bicycle"}, "objects: .*'bicycle'"),
                                               ({"x": "a", "y": "a"}, "objects: must each have a mesh")])
 def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkeypatch, objects, message):
-    monkeypatch.setattr(ep, "trace", None)
+    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace", None)
     with pytest.raises(ValueError, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), labels={"objects": objects})
 
@@ -91,7 +91,7 @@ def test_detections_have_the_objects_of_the_labels(plates_and_wall):
     ({"objects": ["bicycle"]}, ValueError, "bicycle"),
 ])
 def test_bad_keywords_of_detections_are_told_before_the_trace(plates_and_wall, monkeypatch, keywords, error, message):
-    monkeypatch.setattr(ep, "trace", None)
+    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace", None)
     with pytest.raises(error, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), detections=keywords)
 

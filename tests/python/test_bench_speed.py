@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import speed, speed_frames, speed_retrace, speed_synthesis
+from echopath.bench import speed, speed_frames, speed_retrace, speed_synthesis, speed_tracer
 from echopath.cli import main
+from support.radars import build_radar
 
 EXTENDED = 1e-12   # of a sum in extended precision against the direct one
 RATES = 1e-9         # relative: differences of delays tell the rate to 1e-10
@@ -19,7 +20,7 @@ def test_tones_at_rest_are_those_of_the_direct_sum():
     """Truth from the tones, written out as exponentials; the sum goes through the whole of synthesis."""
     echoes = speed_synthesis.Echoes(40, 1, seed=3)
     samples = speed_synthesis.slow_sum(*speed_synthesis.tones(echoes.delays[0], echoes.amplitudes[0], echoes.waveform), 512)
-    made = ep._core.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
+    made = ep._core.bench.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
     assert speed_synthesis.relative_error(made, samples) < EXTENDED
 
 
@@ -27,7 +28,7 @@ def test_tones_at_rest_are_those_of_the_direct_sum():
 def test_echoes_of_a_trial_move_as_they_should(scattered):
     """Direct sums in neighbouring chirps: each echo at its delay, against delays written out per chirp."""
     echoes = speed_synthesis.Echoes(30, 8, scattered=scattered)
-    nodes = ep._core.trial_node_times(echoes.waveform, speed_synthesis.NODES)
+    nodes = ep._core.bench.trial_node_times(echoes.waveform, speed_synthesis.NODES)
     # Straight motion: two nodes tell the delay at every chirp.
     rate = (echoes.delays[-1] - echoes.delays[0]) / (nodes[-1] - nodes[0])
     times = 60e-6 * np.arange(8) + 0.5 * 511 / 20e6
@@ -35,8 +36,21 @@ def test_echoes_of_a_trial_move_as_they_should(scattered):
     still = np.broadcast_to(echoes.amplitudes[0], delays.shape)
     constant = np.broadcast_to(echoes.amplitudes[0], echoes.amplitudes.shape)
     expected = ep._core.synthesize_echoes(echoes.waveform, delays, still, method="direct")
-    made = ep._core.synthesis_trial(echoes.waveform, echoes.delays, constant, method="direct")[2]
+    made = ep._core.bench.synthesis_trial(echoes.waveform, echoes.delays, constant, method="direct")[2]
     assert speed_synthesis.relative_error(made, expected) < RATES
+
+
+def test_bare_loop_asks_the_queries_of_the_trace():
+    scene, radar = speed_tracer.rough_spheres(5), build_radar([(0.0, 0.0, 0.0)], [(0.0, 0.3, 0.0)])
+    paths = ep.trace(scene, radar, num_rays=5000)
+    found = ep._core.bench.bare_queries(scene, radar, num_rays=5000, repetitions=2)
+    assert found["num_queries"] == paths.frame.statistics.num_queries > 5000
+    assert found["num_paths"] == paths.num_paths and found["num_rays"] == 5000
+    assert 0 < found["num_shadow"] < found["num_queries"] and 5000 <= found["num_in_packets"] <= found["num_queries"]
+    for name in ("trace_seconds", "bare_seconds", "single_seconds"):
+        assert len(found[name]["elapsed"]) == len(found[name]["processor"]) == 2
+    with pytest.raises(ValueError, match="repetitions"):
+        ep._core.bench.bare_queries(scene, radar, num_rays=100, repetitions=0)
 
 
 def test_records_have_the_paths_that_were_asked_for():
@@ -101,7 +115,15 @@ def test_finufft_holds_its_own_tolerance_against_our_direct_sum():
     pytest.importorskip("finufft")
     echoes = speed_synthesis.Echoes(500, 1)
     points, strengths = speed_synthesis.tones(echoes.delays[0], echoes.amplitudes[0], echoes.waveform)
-    direct = ep._core.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
+    direct = ep._core.bench.synthesis_trial(echoes.waveform, echoes.delays[:1], echoes.amplitudes[:1], method="direct")[2][0]
     asked = 1e-9
     theirs = speed_synthesis.Finufft(points, strengths, 512, asked).samples()
     assert speed_synthesis.relative_error(theirs, direct) < FINUFFT_MISS * asked
+
+
+def test_a_trial_refuses_what_does_not_fit():
+    waveform = speed_synthesis.waveform(8)
+    with pytest.raises(ValueError, match="amplitudes"):
+        ep._core.bench.synthesis_trial(waveform, np.zeros((2, 3)), np.zeros((2, 4)))
+    with pytest.raises(ValueError, match="num_nodes"):
+        ep._core.bench.trial_node_times(waveform, 0)

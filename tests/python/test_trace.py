@@ -153,16 +153,3 @@ def test_antenna_index_out_of_range():
     paths = ep.trace(soup_scene(triangle_soup(seed=8), reflectivity=0.5, scattering=1.0), make_radar(), num_rays=100)
     with pytest.raises(IndexError, match="rx: must lie in 0 to 0, got 1"):
         paths.amplitudes([0.0], 0, 1)
-
-
-def test_bare_loop_asks_the_queries_of_the_trace():
-    scene = soup_scene(triangle_soup(seed=8), reflectivity=0.5, scattering=1.0)
-    paths = ep.trace(scene, make_radar(), num_rays=5000)
-    found = ep._core.bare_queries(scene, make_radar(), num_rays=5000, repetitions=2)
-    assert found["num_queries"] == paths.frame.statistics.num_queries > 5000
-    assert found["num_paths"] == paths.num_paths and found["num_rays"] == 5000
-    assert 0 < found["num_shadow"] < found["num_queries"] and 5000 <= found["num_in_packets"] <= found["num_queries"]
-    for name in ("trace_seconds", "bare_seconds", "single_seconds"):
-        assert len(found[name]["elapsed"]) == len(found[name]["processor"]) == 2
-    with pytest.raises(ValueError, match="repetitions"):
-        ep._core.bare_queries(scene, make_radar(), num_rays=100, repetitions=0)

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "echopath/base/constants.h"
-#include "echopath/base/errors.h"
 #include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
-#include "echopath/signal/echo_states.h"
 #include "echopath/signal/echoes.h"
 
 namespace echopath {
@@ -272,104 +269,6 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
   }
   block.paths = first_of(block.paths, joined);
   return block;
-}
-
-namespace {
-
-// Evaluates all chirps of echoes [begin, end), which are few, so that their nodes stay in the first-level cache.
-void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_chirps) {
-  constexpr int kChirpsAtOnce = 4;
-  EchoStates states[kChirpsAtOnce];
-  for (int chirp = 0; chirp < num_chirps; chirp += kChirpsAtOnce) {
-    evaluate_states(echoes, chirp, std::min(kChirpsAtOnce, num_chirps - chirp), begin, static_cast<int>(end - begin), states);
-  }
-}
-
-}  // namespace
-
-int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job) {
-  constexpr int64_t kEchoes = EchoStates::kCapacity / 4;
-  ReplayStream stream(paths, radar, settings, job);
-  stream.join({});
-  int64_t path_chirps = 0;
-  stream.run([&](int, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
-    const int num_chirps = blocks.front().sampling.is_static() ? 1 : radar.waveform.num_chirps;
-    path_chirps += of.count * num_chirps;
-    for (const Echoes& echoes : blocks) {
-      parallel_for((echoes.num_echoes + kEchoes - 1) / kEchoes, [&](int64_t i) {
-        evaluate_chirps(echoes, i * kEchoes, std::min(echoes.num_echoes, (i + 1) * kEchoes), num_chirps);
-      });
-    }
-  });
-  return path_chirps;
-}
-
-namespace {
-
-// Compares one block of one channel with its values at the given chirps.
-class ErrorOfBlock {
- public:
-  ErrorOfBlock(const Replayer& replayer, const Paths& paths, const Radar& radar, int channel)
-      : replayer_(replayer), paths_(paths), radar_(radar), channel_(channel) {}
-
-  void find(const Echoes& echoes, std::span<const int64_t> indices, const std::vector<int>& chirps, ReplayError& error) {
-    std::vector<double> largest(indices.size()), worst(indices.size());  // amplitudes
-    for (const int chirp : chirps) {
-      evaluate(indices, chirp);
-      for (size_t p = 0; p < indices.size(); ++p) compare(echoes, chirp, p, largest[p], worst[p], error);
-    }
-    for (size_t p = 0; p < indices.size(); ++p) {
-      if (largest[p] > 0.0) error.amplitude = std::max(error.amplitude, worst[p] / largest[p]);
-    }
-  }
-
- private:
-  void evaluate(std::span<const int64_t> indices, int chirp) {
-    const auto transmitter = static_cast<int>(static_cast<size_t>(channel_) / radar_.receivers.size());
-    const double time = paths_.frame.start_time + radar_.chirp_time(transmitter, chirp);
-    replayer_.evaluate(indices, time, lengths_, amplitudes_);
-    const auto begin = static_cast<ptrdiff_t>(static_cast<size_t>(channel_) * indices.size()), end = begin + static_cast<ptrdiff_t>(indices.size());
-    lengths_ = {lengths_.begin() + begin, lengths_.begin() + end};
-    amplitudes_ = {amplitudes_.begin() + begin, amplitudes_.begin() + end};
-  }
-
-  void compare(const Echoes& echoes, int chirp, size_t p, double& largest, double& worst, ReplayError& error) const {
-    EchoStates state;
-    evaluate_states(echoes, chirp, static_cast<int64_t>(p), 1, state);
-    const std::complex<double> amplitude(state.amplitude[0], state.amplitude[1]);
-    if (amplitude == 0.0) return;  // dark
-    const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
-    error.phase = std::max(error.phase, wavenumber * std::abs(kSpeedOfLight * state.delay[0] - lengths_[p]));
-    largest = std::max(largest, std::abs(amplitudes_[p]));
-    worst = std::max(worst, std::abs(amplitude - amplitudes_[p]));
-  }
-
-  const Replayer& replayer_;
-  const Paths& paths_;
-  const Radar& radar_;
-  int channel_;
-  std::vector<double> lengths_;
-  std::vector<std::complex<double>> amplitudes_;
-};
-
-}  // namespace
-
-ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
-                         Job* job) {
-  for (const int chirp : chirps) {
-    require(chirp >= 0 && chirp < radar.waveform.num_chirps, "chirps", "must be chirps of the radar", chirp);
-  }
-  const ReplayStream stream(paths, radar, settings, job);
-  ReplayError error;
-  stream.run([&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
-    std::span<const int64_t> indices = of.first;
-    for (const Echoes& echoes : blocks) {
-      const auto count = static_cast<size_t>(echoes.num_echoes);
-      ErrorOfBlock(stream.replayer(), paths, radar, channel).find(echoes, indices.first(count), chirps, error);
-      indices = indices.subspan(count);
-    }
-  });
-  return error;
 }
 
 }  // namespace echopath

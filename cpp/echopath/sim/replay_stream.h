@@ -84,19 +84,4 @@ class ReplayStream {
   PathWatcher* watcher_ = nullptr;
 };
 
-// Replays all paths at every chirp and for every channel to the echoes that synthesis takes, to see what that costs alone.
-// Returns the number of path-chirps, where static paths count once.
-int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job = nullptr);
-
-// Holds the largest differences between replay with these settings and evaluation at the middle of chirps.
-struct ReplayError {
-  double phase = 0.0;      // rad, at the start frequency
-  double amplitude = 0.0;  // relative to the largest amplitude of the path in these chirps
-};
-
-// Returns the errors in `chirps` (indices) over all paths and channels, each path at the level that meets its tolerances.
-// Raises Cancelled.
-ReplayError replay_error(const Paths& paths, const Radar& radar, const ReplaySettings& settings, const std::vector<int>& chirps,
-                         Job* job = nullptr);
-
 }  // namespace echopath

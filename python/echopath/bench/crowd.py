@@ -52,7 +52,7 @@ def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     write_texts(folder, {"crowd.json": json.dumps(results, indent=1) + "\n"})
-    draw_crowd(results, folder / "crowd.png")
+    draw_crowd(results, folder / "crowd.png", wanted_db=WANTED_DB)
     return results
 
 

@@ -5,22 +5,24 @@ import numpy as np
 
 from ..origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
-from .crowd import WANTED_DB
 
 LEAST_SHOWN_DB = -12.0
 
 
-def draw_crowd(results: dict, path) -> None:
-    """Writes a PNG: error of each object with what the run claims (left), coverage over rays (right)."""
+def draw_crowd(results: dict, path, *, wanted_db: float) -> None:
+    """Writes a PNG: error of each object with what the run claims (left), coverage over rays (right).
+
+    wanted_db: error that an echo may have without a flag
+    """
     with new_figure(11.0, 5.4) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.3, 1.0))
-        _draw_streets(left, results["streets"])
+        _draw_streets(left, results["streets"], wanted_db)
         _draw_coverage(right, results["coverage"])
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
-def _draw_streets(axes, streets: list) -> None:
-    axes.axvspan(-WANTED_DB, WANTED_DB, color="0.9")
+def _draw_streets(axes, streets: list, wanted_db: float) -> None:
+    axes.axvspan(-wanted_db, wanted_db, color="0.9")
     for offset, colour, street in zip((-0.15, 0.15), CURVE_COLOURS, streets):
         for index, row in enumerate(street["rows"]):
             errors = np.maximum(row["error_db"], LEAST_SHOWN_DB)

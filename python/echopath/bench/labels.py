@@ -61,7 +61,7 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     write_texts(folder, {"labels.json": json.dumps(results, indent=1) + "\n"})
-    draw_labels(results, folder / "labels.png")
+    draw_labels(results, folder / "labels.png", rate_target=RATE_TARGET)
     return results
 
 
@@ -126,7 +126,7 @@ def _rates(title: str, paths) -> dict:
     threads = ep.num_threads()
     ep.set_num_threads(1)
     try:
-        bare = hits / _least_time(lambda: ep._core.read_hits(paths))
+        bare = hits / _least_time(lambda: ep._core.bench.read_hits(paths))
         rates = {text: hits / _least_time(lambda text=text: ep.Selection(text).matches(paths)) for text in EXPRESSIONS}
     finally:
         ep.set_num_threads(threads)

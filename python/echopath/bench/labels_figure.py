@@ -5,15 +5,17 @@ import numpy as np
 
 from ..origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
-from .labels import RATE_TARGET
 
 
-def draw_labels(results: dict, path) -> None:
-    """Writes a PNG: time of decompose over that of synthesize by number of parts (left), rates of matching (right)."""
+def draw_labels(results: dict, path, *, rate_target: float) -> None:
+    """Writes a PNG: time of decompose over that of synthesize by number of parts (left), rates of matching (right).
+
+    rate_target: promised hits per second on one core
+    """
     with new_figure(11.0, 4.6) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.35))
         _draw_cost(left, results["parts"])
-        _draw_rates(right, results["rates"])
+        _draw_rates(right, results["rates"], rate_target)
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
@@ -33,14 +35,14 @@ def _draw_cost(axes, cases: list) -> None:
     axes.grid(alpha=0.25)
 
 
-def _draw_rates(axes, cases: list) -> None:
+def _draw_rates(axes, cases: list, rate_target: float) -> None:
     labels = ["bare loop", *cases[0]["hits_per_second"]]
     height = 0.8 / len(cases)
     for index, (colour, case) in enumerate(zip(CURVE_COLOURS, cases)):
         rates = np.array([case["bare_hits_per_second"], *case["hits_per_second"].values()]) * 1e-6
         axes.barh(np.arange(len(labels)) + (index + 0.5) * height - 0.4, rates, 0.9 * height, color=colour,
                   label=case["title"])
-    axes.axvline(RATE_TARGET * 1e-6, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
+    axes.axvline(rate_target * 1e-6, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_yticks(np.arange(len(labels)), labels, family="monospace", fontsize=7)
     axes.invert_yaxis()
     axes.set_xlabel("million hits per second on one core (dotted: promised)")

@@ -73,7 +73,7 @@ def _times(case: Case, rays: int) -> dict:
     """Seconds of one trace, of its replay at all chirps, and of tracing every chirp anew."""
     settings = {"num_rays": rays, "max_bounces": case.max_bounces}
     trace, paths = _fastest(lambda: ep.trace(case.scene, case.radar, **settings))
-    replay, path_chirps = _fastest(lambda: ep._core.replay_only(paths, case.radar))
+    replay, path_chirps = _fastest(lambda: ep._core.bench.replay_only(paths, case.radar))
     synthesis, _ = _fastest(lambda: ep.synthesize(paths, case.radar))
     few, _ = _fastest(lambda: [ep.trace(case.scene, radar(num_chirps=1), start_time=i * 1e-3, **settings)
                                for i in range(TRACED_CHIRPS)], 1)
@@ -124,7 +124,7 @@ def _array(transmitters: int, receivers: int, rays: int) -> dict:
     channels = transmitters * receivers
     few = max(1000, rays // channels)
     trace, paths = _fastest(lambda: ep.trace(scene, with_array, num_rays=few, max_bounces=3))
-    replay, path_chirps = _fastest(lambda: ep._core.replay_only(paths, with_array), 2)
+    replay, path_chirps = _fastest(lambda: ep._core.bench.replay_only(paths, with_array), 2)
     synthesis, _ = _fastest(lambda: ep.synthesize(paths, with_array), 1)
     return {"transmitters": transmitters, "receivers": receivers, "rays": few, "paths": paths.num_paths, "trace_s": trace,
             "replay_s": replay, "synthesis_s": synthesis, "ns_per_path_chirp_channel": 1e9 * synthesis / path_chirps,

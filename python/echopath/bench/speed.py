@@ -92,9 +92,9 @@ def _replay(case, quick: bool) -> dict:
 
     paths = trace()
     trace_s = median_of(trace)
-    ep._core.replay_only(paths, case.radar)
+    ep._core.bench.replay_only(paths, case.radar)
     rows = [{"phase_tolerance": tolerance,
-             "replay_s": median_of(lambda: ep._core.replay_only(paths, case.radar, phase_tolerance=tolerance))}
+             "replay_s": median_of(lambda: ep._core.bench.replay_only(paths, case.radar, phase_tolerance=tolerance))}
             for tolerance in PHASE_TOLERANCES]
     return {"name": case.name, "title": case.title, "paths": paths.num_paths, "trace_s": trace_s, "rows": rows}
 

@@ -144,7 +144,7 @@ def _street_frames(scene, rays: int) -> dict:
     """The first frame by the clock, for which the system has to find memory, and the medians of later ones."""
     frames = [_street_frame(scene, rays) for _ in range(STREET_FRAMES)]
     paths = ep.trace(scene.scene, scene.radar, num_rays=rays)
-    replay_s, path_chirps = wall_time(lambda: ep._core.replay_only(paths, scene.radar))
+    replay_s, path_chirps = wall_time(lambda: ep._core.bench.replay_only(paths, scene.radar))
     chirps = scene.radar.waveform.num_chirps
     moving = round((path_chirps - paths.num_paths) / (chirps - 1))
     whole_s, _ = wall_time(lambda: ep.synthesize(paths, scene.radar))

@@ -40,7 +40,7 @@ class Echoes:
     def __init__(self, num_paths: int, num_chirps: int, *, scattered: bool = False, num_samples: int = 512, seed: int = 1):
         draw = np.random.default_rng(seed)
         self.waveform = waveform(num_chirps, num_samples)
-        times = ep._core.trial_node_times(self.waveform, NODES)
+        times = ep._core.bench.trial_node_times(self.waveform, NODES)
         body = draw.integers(0, BODIES, num_paths)
         place = draw.uniform(RANGES[0], RANGES[1] - 2.0, BODIES)[body] + 2.0 * draw.random(num_paths)
         speed = draw.uniform(-FASTEST, FASTEST, num_paths if scattered else BODIES)[slice(None) if scattered else body]
@@ -61,7 +61,7 @@ class Echoes:
 
     def trial(self, **settings):
         """(wall seconds, processor seconds, samples [chirp, sample]) of their synthesis."""
-        return ep._core.synthesis_trial(self.waveform, self.delays, self.amplitudes, **settings)
+        return ep._core.bench.synthesis_trial(self.waveform, self.delays, self.amplitudes, **settings)
 
     def in_few_chirps(self, num_chirps: int) -> Echoes:
         """The same nodes for a shorter frame, which the echoes cross quicker."""
@@ -163,7 +163,7 @@ def _rows(paths: int, chirps: int, quick: bool, tell) -> list[dict]:
     points, strengths = tones(bodies.delays[0], bodies.amplitudes[0], bodies.waveform)
     frame = bodies.in_few_chirps(ERROR_CHIRPS)
     moving_truth = frame.trial(method="direct")[2]
-    truth = ep._core.synthesis_trial(waveform(1), bodies.delays[:1], bodies.amplitudes[:1], method="direct")[2][0]
+    truth = ep._core.bench.synthesis_trial(waveform(1), bodies.delays[:1], bodies.amplitudes[:1], method="direct")[2][0]
     rows = []
     for tolerance in TOLERANCES:
         theirs = Finufft(points, strengths, 512, tolerance) if finufft_version() else None
@@ -193,7 +193,7 @@ def _sum_row(method: str, chirps: int) -> dict:
     seconds = min(some.trial(method=method)[1] for _ in range(3))
     count = 64
     truth = slow_sum(*tones(some.delays[0, :count], some.amplitudes[0, :count], some.waveform), 512)
-    made = ep._core.synthesis_trial(waveform(1), some.delays[:1, :count], some.amplitudes[:1, :count], method=method)[2][0]
+    made = ep._core.bench.synthesis_trial(waveform(1), some.delays[:1, :count], some.amplitudes[:1, :count], method=method)[2][0]
     return {"method": method, "ns": 1e9 * seconds / (SUM_PATHS * 4), "error": relative_error(made, truth)}
 
 

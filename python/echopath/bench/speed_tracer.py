@@ -44,7 +44,7 @@ def measure_tracer(*, quick: bool = False) -> list[dict]:
 def bare_share(scene, radar, num_rays: int, repetitions: int = REPETITIONS) -> dict:
     """Queries of a trace, seconds by the clock of the trace and of the queries alone, packed alike, and processor time of
     the queries, packed alike (`share`) and one by one (`single_share`), over that of the trace."""
-    found = ep._core.bare_queries(scene, radar, num_rays=num_rays, repetitions=repetitions)
+    found = ep._core.bench.bare_queries(scene, radar, num_rays=num_rays, repetitions=repetitions)
 
     def seconds(work: str, kind: str) -> float:
         return float(np.median(found[f"{work}_seconds"][kind]))

@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
 from .. import _core
 from ..families import check_objects
 from ..keywords import refuse_unknown
@@ -21,5 +19,5 @@ def check_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> Non
     check_objects(scene, keywords.get("objects"))
     one, waveform = with_receivers(radar, slice(0, 1)), radar.waveform
     nothing = np.zeros((len(one.transmitters), 1, waveform.num_chirps, waveform.num_samples))
-    _core.check_cfar(ep.range_doppler(nothing, one, **spectrum_settings), one,
+    _core.check_cfar(_core.range_doppler(nothing, one, **spectrum_settings), one,
                      **{word: value for word, value in keywords.items() if word in CFAR_KEYWORDS})

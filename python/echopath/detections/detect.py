@@ -5,9 +5,8 @@ import dataclasses
 
 import numpy as np
 
-import echopath as ep
-
 from .. import _core
+from ..families import families as find_families
 from ..keywords import known_keywords
 from ..same_radar import difference
 from . import labelling
@@ -42,9 +41,9 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
         raise ValueError("labels: cannot be given beside parts")
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
-    found = ep.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
-                    guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                    progress=progress)
+    found = _core.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
+                       guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
+                       progress=progress)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
@@ -59,7 +58,7 @@ def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, ech
     families, whole, measured, resolved = [None] * len(cells), None, power, set()
     if paths is not None:
         measured = echoes.measured(cells)
-        of_paths = ep.families(paths, objects)
+        of_paths = find_families(paths, objects)
         families, whole = labelling.families_of_cells(paths, of_paths, echoes, cells)
         resolved = labelling.resolved_families(paths, of_paths)
     elif labels is not None:

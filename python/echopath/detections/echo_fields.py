@@ -5,9 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-import echopath as ep
-
-from ..path_cells import OUTSIDE
+from .. import _core
+from ..path_cells import OUTSIDE, path_cells
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
@@ -128,14 +127,14 @@ class EchoFields:
         """Of the paths within the map, in the order of their nearest cells: place in cells, field, index."""
         paths, spectrum = self._paths, self._spectrum
         waveform, pad = paths.radar.waveform, spectrum.zero_pad
-        cells = ep.path_cells(paths, spectrum)
+        cells = path_cells(paths, spectrum)
         inside = np.flatnonzero(cells.range_index != OUTSIDE)
         number = cells.velocity_index[inside].astype(np.int64) * len(spectrum.range) + cells.range_index[inside]
         order = np.argsort(number, kind="stable")
         index = inside[order]
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(len(paths.radar.transmitters)) / waveform.num_chirps
-        range_step = ep.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
+        range_step = _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
         shift, field = self._of_channels(cells.length, index, range_step * pad)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
@@ -183,7 +182,7 @@ class EchoFields:
 
 def _window_samples(window, n: int):
     name, *level = (window,) if isinstance(window, str) else window
-    return ep._core.window(name, n, *level)
+    return _core.window(name, n, *level)
 
 
 def _reach(samples) -> int:
@@ -218,6 +217,6 @@ def _lengths_and_fields(paths, tx: int, rx: int) -> tuple:
     """Length [P] in m and signal, complex [P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
     waveform, middle = paths.radar.waveform, _chirp_times(paths, tx)[1]
     length = paths.lengths([middle], tx, rx)[0]
-    delay = length / ep.speed_of_light
+    delay = length / _core.speed_of_light
     cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
     return length, np.conj(paths.amplitudes([middle], tx, rx)[0]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))

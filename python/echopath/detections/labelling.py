@@ -3,8 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from ..resolution import mean_powers
 from .detections import NOISE
 
@@ -28,8 +27,8 @@ def part_powers(spectrum, radar, parts: dict, cells) -> tuple:
 def _map_of(name: str, part, spectrum, radar):
     if isinstance(part, dict):
         raise ValueError(f"parts: must be those of one view, got several, such as {name!r}")
-    if not isinstance(part, ep.RangeDoppler):
-        return ep.range_doppler(part, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
+    if not isinstance(part, _core.RangeDoppler):
+        return _core.range_doppler(part, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
     if part.values.shape != spectrum.values.shape:
         raise ValueError(f"parts: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
                          f"of {name!r}")
@@ -79,8 +78,8 @@ def families_of_labels(labels, cells) -> list:
         of_object, of_ghost = labels.object_map[tuple(cell)], labels.ghost_map[tuple(cell)]
         if of_ghost >= 0:
             ghost = labels.ghosts[of_ghost]
-            return ep.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via)
-        return ep.Family(labels.objects[of_object].name, 0, 1, ()) if of_object >= 0 else None
+            return _core.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via)
+        return _core.Family(labels.objects[of_object].name, 0, 1, ()) if of_object >= 0 else None
 
     return [family(cell) for cell in cells]
 
@@ -93,8 +92,8 @@ def resolved_families(paths, families) -> set:
 
 def resolved_labels(labels) -> set:
     """The families of the objects and ghosts of Labels whose power the rays know."""
-    ghosts = {ep.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via): ghost.received for ghost in labels.ghosts}
-    objects = {ep.Family(label.name, 0, 1, ()): label.received for label in labels.objects}
+    ghosts = {_core.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via): ghost.received for ghost in labels.ghosts}
+    objects = {_core.Family(label.name, 0, 1, ()): label.received for label in labels.objects}
     return {family for family, interval in (objects | ghosts).items() if interval is not None and interval.resolved}
 
 

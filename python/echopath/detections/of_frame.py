@@ -3,8 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 
-import echopath as ep
-
+from .. import _core
 from ..keywords import known_keywords
 from .checks import CFAR_KEYWORDS
 from .detect import detect
@@ -25,7 +24,7 @@ def detect_frame(frame, *, objects=None, max_peaks=1, progress=None, **keywords)
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to detect echoes in, got a record of paths alone")
     parts = next(iter(frame.part_spectra.values()), None)
-    settings = {"max_peaks": max_peaks} if len(ep.virtual_array(frame.radar).elements) > 1 else None
+    settings = {"max_peaks": max_peaks} if len(_core.virtual_array(frame.radar).elements) > 1 else None
     found = detect(frame.spectrum, frame.radar, paths=frame.paths, parts=parts, objects=objects, angles=settings,
                    progress=progress, **keywords)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)

@@ -3,19 +3,18 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
 from .motion import read_motion, write_motion
 
 
 def write_deformation(group, deformation) -> None:
     """Writes a vertex sequence or a skin."""
-    if isinstance(deformation, ep.Skin):
+    if isinstance(deformation, _core.Skin):
         group.attrs["kind"] = "skin"
         _write_skin(group, deformation)
         return
-    if not isinstance(deformation, ep.VertexSequence):
+    if not isinstance(deformation, _core.VertexSequence):
         raise ValueError(f"motion: must be a VertexSequence or a Skin to deform a mesh, got {deformation!r}")
     group.attrs["kind"] = "vertices"
     group.attrs["interpolation"] = deformation.interpolation
@@ -29,10 +28,10 @@ def read_deformation(group):
     if kind == "skin":
         return _read_skin(group)
     if kind != "vertices":
-        raise ep.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
+        raise _core.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
     times = read_array(group, "times", np.float64, (None,))
-    return ep.VertexSequence(times=times, vertices=read_array(group, "vertices", np.float64, (len(times), None, 3)),
-                             interpolation=read_attribute(group, "interpolation", str))
+    return _core.VertexSequence(times=times, vertices=read_array(group, "vertices", np.float64, (len(times), None, 3)),
+                                interpolation=read_attribute(group, "interpolation", str))
 
 
 def _write_skin(group, skin) -> None:
@@ -63,10 +62,10 @@ def _read_skin(group):
     for index, name in enumerate(names):
         parent = int(parents[index])
         if not -1 <= parent < index:
-            raise ep.FileError(f"{group.name}/parent: must name an earlier joint, is {parent} at joint {index}")
+            raise _core.FileError(f"{group.name}/parent: must name an earlier joint, is {parent} at joint {index}")
         motion = read_motion(read_group(motions, str(index))) if str(index) in motions else None
-        joints.append(ep.Joint(name, None if parent < 0 else names[parent], transform=placements[index], motion=motion,
-                               inverse_bind=inverse_binds[index]))
+        joints.append(_core.Joint(name, None if parent < 0 else names[parent], transform=placements[index], motion=motion,
+                                  inverse_bind=inverse_binds[index]))
     vertices = read_array(group, "vertices", np.float64, (None, 3))
     weights = read_array(group, "weights", np.float64, (len(vertices), None))
-    return ep.Skin(vertices, joints, weights, joint_indices=read_array(group, "joint_indices", np.uint32, weights.shape))
+    return _core.Skin(vertices, joints, weights, joint_indices=read_array(group, "joint_indices", np.uint32, weights.shape))

@@ -3,8 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from ..detections.detections import Detections
 from ..detections.echo_fields import EchoFields
 from .h5 import read_array, read_texts, write_array, write_texts
@@ -38,6 +37,6 @@ def read_detections(group, paths, spectrum, noise_seed) -> Detections:
     columns[RESOLVED] = known.astype(bool)
     columns |= {name: np.array(read_texts(group, name, count), dtype=str) for name in TEXTS}
     if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
-        raise ep.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")
+        raise _core.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")
     return Detections(cells=cells, centre=read_array(group, "centre", np.float64, (3,)),
                       echoes=EchoFields(paths, spectrum), seed=paths.frame.seed, noise_seed=noise_seed, **columns)

@@ -7,14 +7,13 @@ from contextlib import contextmanager
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from ..files import written_whole
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..simulate import Frame, with_spectra
-from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
 from .detections import read_detections, write_detections
+from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
@@ -126,7 +125,7 @@ def _new_file(path):
     with written_whole(path) as temporary, writing(temporary) as file:
         file.attrs["format"] = FORMAT
         file.attrs["schema_version"] = SCHEMA_VERSION
-        file.attrs["software_version"] = ep.__version__
+        file.attrs["software_version"] = _core.__version__
         yield file
 
 
@@ -135,10 +134,10 @@ def _our_file(path):
     """A frame file open for reading, its format and version checked."""
     with reading(path) as file:
         if file.attrs.get("format") != FORMAT:
-            raise ep.FileError("is an HDF5 file, but no frame file of echopath")
+            raise _core.FileError("is an HDF5 file, but no frame file of echopath")
         version = read_attribute(file, "schema_version", int)
         if version != SCHEMA_VERSION:
-            raise ep.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}")
+            raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}")
         yield file
 
 
@@ -271,5 +270,5 @@ def _cube_shape(radar) -> tuple:
 
 
 # The core knows no HDF5: its record of paths gets these two methods here.
-ep._core.Paths.save = save_paths
-ep._core.Paths.load = staticmethod(load_paths)
+_core.Paths.save = save_paths
+_core.Paths.load = staticmethod(load_paths)

@@ -9,8 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from ..interrupts import heed, interrupts_are_kept
 
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
@@ -106,10 +105,10 @@ def read_array(group, name: str, dtype, shape: tuple):
     """
     dataset = _item(group, name, h5py.Dataset)
     if dataset.dtype != np.dtype(dtype):
-        raise ep.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
+        raise _core.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
     if len(dataset.shape) != len(shape) or any(want not in (None, got) for want, got in zip(shape, dataset.shape)):
         wanted = ", ".join("any" if want is None else str(want) for want in shape)
-        raise ep.FileError(f"{dataset.name} must have the shape [{wanted}], has {list(dataset.shape)}")
+        raise _core.FileError(f"{dataset.name} must have the shape [{wanted}], has {list(dataset.shape)}")
     values = np.empty(dataset.shape, dataset.dtype)
     for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
         values[rows] = dataset[rows]
@@ -121,18 +120,18 @@ def read_texts(group, name: str, length: int | None = None) -> list[str]:
     """The [N] texts `name` of a group."""
     dataset = _item(group, name, h5py.Dataset)
     if len(dataset.shape) != 1 or (length is not None and len(dataset) != length):
-        raise ep.FileError(f"{dataset.name} must have {length} texts, has the shape {list(dataset.shape)}")
+        raise _core.FileError(f"{dataset.name} must have {length} texts, has the shape {list(dataset.shape)}")
     return [text.decode("utf-8") for text in dataset[...]]
 
 
 def read_attribute(group, name: str, kind):
     """The attribute `name` as a `kind` (int, float, bool, str)."""
     if name not in group.attrs:
-        raise ep.FileError(f"{group.name} has no attribute '{name}'")
+        raise _core.FileError(f"{group.name} has no attribute '{name}'")
     try:
         return kind(group.attrs[name])
     except (TypeError, ValueError):
-        raise ep.FileError(f"{group.name}: attribute '{name}' must be a {kind.__name__}") from None
+        raise _core.FileError(f"{group.name}: attribute '{name}' must be a {kind.__name__}") from None
 
 
 def read_group(group, name: str):
@@ -143,7 +142,7 @@ def read_group(group, name: str):
 def _item(group, name: str, kind):
     item = group.get(name)
     if not isinstance(item, kind):
-        raise ep.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind.__name__.lower()}")
+        raise _core.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind.__name__.lower()}")
     return item
 
 
@@ -153,15 +152,15 @@ def reading(path):
     try:
         with interrupts_are_kept(), h5py.File(path, "r") as file:
             yield file
-    except ep.FileError as error:
-        raise ep.FileError(f"{path}: {error}") from None
+    except _core.FileError as error:
+        raise _core.FileError(f"{path}: {error}") from None
     except FileNotFoundError:
-        raise ep.FileError(f"{path}: no such file") from None
+        raise _core.FileError(f"{path}: no such file") from None
     except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
         if Path(path).suffix.lower() == ".toml":
-            raise ep.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
-                               "DIR` makes DIR/frame.h5 of it") from None
-        raise ep.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
+            raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
+                                  "DIR` makes DIR/frame.h5 of it") from None
+        raise _core.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
 
 
 def _first_line(error) -> str:

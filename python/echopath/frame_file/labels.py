@@ -5,8 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-import echopath as ep
-
 from .. import _core
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
 from ..resolution import Interval
@@ -90,7 +88,7 @@ def read_labels(group) -> Labels:
 def _read_plane(group) -> Plane:
     name = read_attribute(group, "plane", str)
     if name not in PLANES:
-        raise ep.FileError(f"{group.name}: unknown plane '{name}', known are {', '.join(PLANES)}")
+        raise _core.FileError(f"{group.name}: unknown plane '{name}', known are {', '.join(PLANES)}")
     return PLANES[name]
 
 
@@ -104,7 +102,7 @@ def _read_errors(group, shape: tuple) -> dict:
 def _check_indices(group, cells: dict, counts: dict) -> None:
     for name, count in counts.items():
         if cells[name].size and not -1 <= cells[name].min() <= cells[name].max() < count:
-            raise ep.FileError(f"{group.name}/{name}: must be -1 to {count - 1}, its labels")
+            raise _core.FileError(f"{group.name}/{name}: must be -1 to {count - 1}, its labels")
 
 
 # --- objects and ghosts ---
@@ -202,5 +200,5 @@ def _read_cells(group, count: int, plane: Plane) -> list[dict]:
 
 def _within(group, name: str, indices, count: int):
     if len(indices) and not 0 <= indices.min() <= indices.max() < count:
-        raise ep.FileError(f"{group.name}/{name}: must be 0 to {count - 1}")
+        raise _core.FileError(f"{group.name}/{name}: must be 0 to {count - 1}")
     return indices

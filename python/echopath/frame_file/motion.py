@@ -3,19 +3,18 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from .h5 import read_array, read_attribute, write_array
 
 
 def write_motion(group, motion) -> None:
     """Writes a linear motion or keyframes."""
-    if isinstance(motion, ep.LinearMotion):
+    if isinstance(motion, _core.LinearMotion):
         group.attrs["kind"] = "linear"
         write_array(group, "velocity", motion.velocity, unit="m/s")
         write_array(group, "angular_velocity", motion.angular_velocity, unit="rad/s")
         return
-    if not isinstance(motion, ep.KeyframeMotion):
+    if not isinstance(motion, _core.KeyframeMotion):
         raise ValueError(f"motion: must be a LinearMotion or KeyframeMotion, got {motion!r}")
     group.attrs["kind"] = "keyframes"
     group.attrs["interpolation"] = motion.interpolation
@@ -28,14 +27,14 @@ def read_motion(group):
     """The motion of a group."""
     kind = read_attribute(group, "kind", str)
     if kind == "linear":
-        return ep.LinearMotion(velocity=read_array(group, "velocity", np.float64, (3,)),
-                               angular_velocity=read_array(group, "angular_velocity", np.float64, (3,)))
+        return _core.LinearMotion(velocity=read_array(group, "velocity", np.float64, (3,)),
+                                  angular_velocity=read_array(group, "angular_velocity", np.float64, (3,)))
     if kind == "keyframes":
-        return ep.KeyframeMotion(times=read_array(group, "times", np.float64, (None,)),
-                                 translations=_filled(group, "translations", (None, 3)),
-                                 rotations=_filled(group, "rotations", (None, 4)),
-                                 interpolation=read_attribute(group, "interpolation", str))
-    raise ep.FileError(f"{group.name}: unknown kind of motion '{kind}'")
+        return _core.KeyframeMotion(times=read_array(group, "times", np.float64, (None,)),
+                                    translations=_filled(group, "translations", (None, 3)),
+                                    rotations=_filled(group, "rotations", (None, 4)),
+                                    interpolation=read_attribute(group, "interpolation", str))
+    raise _core.FileError(f"{group.name}: unknown kind of motion '{kind}'")
 
 
 def _filled(group, name: str, shape: tuple):

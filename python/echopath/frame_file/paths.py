@@ -3,8 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
 from ..path_subset import subset
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
 
@@ -59,20 +58,20 @@ def read_paths(group, scene, radar):
             columns[name] = read_array(source, name, dtype, (num_paths, *shape))
     _check_indices(group, hits, columns, scene)
     frame = _read_frame(read_group(group, "frame"))
-    return ep.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
+    return _core.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
 
 
 def _check_indices(group, hits, columns: dict, scene) -> None:
     """Whatever indexes something else must stay inside it."""
     offsets = columns["offsets"]
     if np.any(offsets < 0) or np.any(offsets > len(hits) - columns["num_bounces"].astype(np.int64)):
-        raise ep.FileError(f"{group.name}/paths/offsets: must lie within the {len(hits)} hits")
+        raise _core.FileError(f"{group.name}/paths/offsets: must lie within the {len(hits)} hits")
     meshes = list(scene.meshes)
     if len(hits) and hits["mesh_id"].max() >= len(meshes):
-        raise ep.FileError(f"{group.name}/hits/mesh_id: must be below {len(meshes)}, the number of meshes")
+        raise _core.FileError(f"{group.name}/hits/mesh_id: must be below {len(meshes)}, the number of meshes")
     num_triangles = np.array([len(mesh.mesh.triangles) for mesh in meshes] or [0])
     if len(hits) and np.any(hits["triangle_id"] >= num_triangles[hits["mesh_id"]]):
-        raise ep.FileError(f"{group.name}/hits/triangle_id: must be below the number of triangles of its mesh")
+        raise _core.FileError(f"{group.name}/hits/triangle_id: must be below the number of triangles of its mesh")
 
 
 def _write_frame(group, frame) -> None:
@@ -108,13 +107,13 @@ def _read_frame(group):
     aimed_at = read_array(group, "stratum_object", np.int64, (len(names),))
     focus_of = read_array(group, "stratum_focus_of", np.int64, (len(names),))
     strip = read_array(group, "stratum_strip", np.float64, (len(names), 3))
-    strata = [ep.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
-                         ray_density=float(ray_density[i]), name=names[i], across=across[i],
-                         half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
-                         object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
+    strata = [_core.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
+                            ray_density=float(ray_density[i]), name=names[i], across=across[i],
+                            half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
+                            object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
-    statistics = ep.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
-    return ep.TraceFrame(
+    statistics = _core.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
+    return _core.TraceFrame(
         start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
         transmitter=read_array(group, "transmitter", np.float64, (3,)),
         receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,

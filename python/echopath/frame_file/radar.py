@@ -3,13 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
+from ..same_radar import WAVEFORM_KINDS, table_key
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
 from .motion import read_motion, write_motion
-
-WAVEFORM_KINDS = {"start_frequency": float, "bandwidth": float, "num_samples": int, "sampling_rate": float,
-                  "num_chirps": int, "chirp_interval": float, "real": bool}
 
 
 def write_radar(group, radar) -> None:
@@ -30,12 +27,12 @@ def read_radar(group):
     """The radar of a group."""
     source = read_group(group, "waveform")
     fields = {field: read_attribute(source, field, kind) for field, kind in WAVEFORM_KINDS.items()}
-    return ep.Radar(ep.ChirpSequence(**fields), transmitters=_read_antennas(read_group(group, "transmitters")),
-                    receivers=_read_antennas(read_group(group, "receivers")),
-                    transmit_power=read_attribute(group, "transmit_power", float),
-                    noise_figure_db=read_attribute(group, "noise_figure_db", float),
-                    multiplexing=read_attribute(group, "multiplexing", str),
-                    motion=read_motion(group["motion"]) if "motion" in group else None)
+    return _core.Radar(_core.ChirpSequence(**fields), transmitters=_read_antennas(read_group(group, "transmitters")),
+                       receivers=_read_antennas(read_group(group, "receivers")),
+                       transmit_power=read_attribute(group, "transmit_power", float),
+                       noise_figure_db=read_attribute(group, "noise_figure_db", float),
+                       multiplexing=read_attribute(group, "multiplexing", str),
+                       motion=read_motion(group["motion"]) if "motion" in group else None)
 
 
 def _write_antennas(group, antennas) -> None:
@@ -67,11 +64,6 @@ def _write_tables(group, patterns) -> None:
             write_array(table, "phase", pattern.table_phase, unit="rad")
 
 
-def table_key(pattern) -> tuple:
-    arrays = (pattern.azimuth, pattern.elevation, pattern.table_gain, pattern.table_phase)
-    return tuple(None if array is None else array.tobytes() for array in arrays)
-
-
 def _read_antennas(group) -> list:
     kinds = read_texts(group, "pattern")
     count = len(kinds)
@@ -82,7 +74,7 @@ def _read_antennas(group) -> list:
     polarization = read_array(group, "polarization", np.float64, (count, 3))
     tables = _read_tables(group, count) if "table" in kinds else [None] * count
     patterns = [_pattern(kinds[i], peak_gain[i], exponent[i], tables[i]) for i in range(count)]
-    return [ep.Antenna(position[i], orientation=orientation[i], pattern=patterns[i], polarization=polarization[i])
+    return [_core.Antenna(position[i], orientation=orientation[i], pattern=patterns[i], polarization=polarization[i])
             for i in range(count)]
 
 
@@ -98,15 +90,15 @@ def _read_table(group):
     elevation = read_array(group, "elevation", np.float64, (None,))
     shape = (len(elevation), len(azimuth))
     phase = read_array(group, "phase", np.float64, shape) if "phase" in group else None
-    return ep.GainTable(azimuth=azimuth, elevation=elevation, gain=read_array(group, "gain", np.float64, shape),
-                        phase=phase)
+    return _core.GainTable(azimuth=azimuth, elevation=elevation, gain=read_array(group, "gain", np.float64, shape),
+                           phase=phase)
 
 
 def _pattern(kind: str, peak_gain: float, exponent: float, table):
     if kind == "table" and table is not None:
         return table
     if kind == "isotropic":
-        return ep.Isotropic(gain=peak_gain)
+        return _core.Isotropic(gain=peak_gain)
     if kind == "cosine_power":
-        return ep.CosinePower(exponent, peak_gain=peak_gain)
-    raise ep.FileError(f"unknown antenna pattern '{kind}'")
+        return _core.CosinePower(exponent, peak_gain=peak_gain)
+    raise _core.FileError(f"unknown antenna pattern '{kind}'")

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
+from ..scene import Scene
 from .deformation import read_deformation, write_deformation
 from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
 from .motion import read_motion, write_motion
@@ -59,12 +59,12 @@ def read_scene(group):
     for index in range(count):
         parent = int(parents[index])
         if not NONE <= parent < index:
-            raise ep.FileError(f"{group.name}/parent: must name an earlier node, is {parent} at node {index}")
+            raise _core.FileError(f"{group.name}/parent: must name an earlier node, is {parent} at node {index}")
         own_name = names[index] if parent == NONE else names[index].removeprefix(names[parent] + "/")
-        nodes.append(ep._core.Node(name=own_name, parent=parent, placement=placements[index],
-                                   material_name=material_names[index], smooth=bool(smooth[index]),
-                                   **{kind: items[index] for kind, items in shared.items()}))
-    scene = ep.Scene()
+        nodes.append(_core.Node(name=own_name, parent=parent, placement=placements[index],
+                                material_name=material_names[index], smooth=bool(smooth[index]),
+                                **{kind: items[index] for kind, items in shared.items()}))
+    scene = Scene()
     scene._add_nodes(nodes)
     return scene
 
@@ -83,7 +83,7 @@ def _read_shared(group, kind: str, count: int) -> list:
     for index in range(len(source)):
         items.append(read(read_group(source, str(index)), items))
     if count and not (indices.min() >= NONE and indices.max() < len(items)):
-        raise ep.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}")
+        raise _core.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}")
     return [None if index == NONE else items[index] for index in indices]
 
 
@@ -104,14 +104,14 @@ def _read_mesh(group, earlier: list):
     if "whole" in group.attrs:
         index = read_attribute(group, "whole", int)
         if not 0 <= index < len(earlier):
-            raise ep.FileError(f"{group.name}: attribute whole must name an earlier mesh, is {index}")
+            raise _core.FileError(f"{group.name}: attribute whole must name an earlier mesh, is {index}")
         return earlier[index].part(read_array(group, "whole_triangle", np.uint32, (None,)))
     vertices = read_array(group, "vertices", np.float64, (None, 3))
     triangles = read_array(group, "triangles", np.uint32, (None, 3))
     original_triangle = read_array(group, "original_triangle", np.uint32, (len(triangles),))
-    mesh = ep.Mesh(vertices, triangles, original_triangle)
+    mesh = _core.Mesh(vertices, triangles, original_triangle)
     if len(mesh.triangles) != len(triangles):
-        raise ep.FileError(f"{group.name}/triangles: {len(triangles) - len(mesh.triangles)} have no area")
+        raise _core.FileError(f"{group.name}/triangles: {len(triangles) - len(mesh.triangles)} have no area")
     return mesh
 
 
@@ -127,8 +127,8 @@ def _write_material(group, material) -> None:
 
 
 def _read_material(group):
-    return ep.Material(**{field: read_attribute(group, field, kind) for field, kind in _MATERIAL_KINDS.items()
-                          if field in group.attrs})
+    return _core.Material(**{field: read_attribute(group, field, kind) for field, kind in _MATERIAL_KINDS.items()
+                             if field in group.attrs})
 
 
 def _alone(function):

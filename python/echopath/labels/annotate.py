@@ -5,9 +5,8 @@ import dataclasses
 
 import numpy as np
 
-import echopath as ep
-
 from .. import _core, same_radar
+from ..families import families as find_families
 from ..keywords import known_keywords
 from ..path_subset import part_of_path
 from ..resolution import interval_of, mean_powers
@@ -59,7 +58,7 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
                            errors=errors)
     selections, cubes = _selections_and_cubes(parts, radar, paths.frame.start_time, errors)
     settings = settings | {"progress": progress}
-    families = ep.families(paths, objects)
+    families = find_families(paths, objects)
     views = {_FAMILIES: families} if cubes else {_FAMILIES: families, _PARTS: selections}
     num_parts = len(families) + (0 if cubes else len(selections) + 1)
     powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, settings), request.plane)

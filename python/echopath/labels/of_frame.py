@@ -1,10 +1,9 @@
 """Labels of a frame that was simulated or read back from a file."""
 from __future__ import annotations
 
-import echopath as ep
-
+from ..families import families as find_families
 from ..keywords import known_keywords
-from ..parts import ONLY_PARTITION, check_partitions
+from ..parts import ONLY_PARTITION, as_partitions, check_partitions
 from .annotate import MAP_KEYWORDS, label_partitions, make_request
 from .powers import CubeSet, add_powers, decomposed
 
@@ -29,7 +28,7 @@ def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
     request = make_request(frame.radar, paths.frame.num_batches, **frame.spectrum_settings, **angles, **keywords)
     chosen = _as_new_partitions(parts, frame)
     settings = {name: getattr(frame, name) for name in SIGNAL_SETTINGS} | {"progress": progress}
-    families = ep.families(paths, request.objects)
+    families = find_families(paths, request.objects)
     views = {_FAMILIES: families, **chosen}
     num_parts = len(families) + sum(len(group) + 1 for group in chosen.values())
     powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, settings), request.plane)
@@ -40,8 +39,6 @@ def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
 
 
 def _as_new_partitions(parts, frame) -> dict:
-    from ..simulate import as_partitions  # which needs this package
-
     chosen = as_partitions(parts) or ({} if frame.parts else {ONLY_PARTITION: {}})
     taken = [partition for partition in chosen if partition in frame.parts]
     if taken:

@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
 from .. import _core
 from ..azimuth_map import checked_settings, sees_azimuth
 from .labels import AzimuthBox, AzimuthPeak, Box, Peak
@@ -23,13 +21,13 @@ class RangeDopplerPlane:
         """window, zero_pad: as in `range_doppler`"""
         self._settings = {"window": window, "zero_pad": zero_pad}
         with_one = with_receivers(radar, slice(0, 1))
-        empty = ep.range_doppler(_no_signal(with_one), with_one, **self._settings)
+        empty = _core.range_doppler(_no_signal(with_one), with_one, **self._settings)
         self.velocity, self.azimuth, self.range = empty.velocity.copy(), None, empty.range.copy()
         self.noise_power = _core.cell_noise_power(radar, window)
 
     def power(self, cube, radar):
         """Power [V, R] in W of a cube [tx, rx, chirp, sample] of a radar with any of the receivers."""
-        return _core.mean_power(ep.range_doppler(cube, radar, **self._settings))
+        return _core.mean_power(_core.range_doppler(cube, radar, **self._settings))
 
     def require_errors(self) -> None:
         """Powers are means of |field|^2: standard errors can be had."""
@@ -58,7 +56,7 @@ class RangeAzimuthPlane:
             raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
                              f"of a part are not those of the whole), got {self._angles['method']!r}")
         self._settings = {"window": window, "zero_pad": zero_pad}
-        noise = self._map(ep.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED), radar)
+        noise = self._map(_core.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED), radar)
         self.velocity, self.azimuth, self.range = None, noise.azimuth.copy(), noise.range.copy()
         self.noise_power = float(np.mean(noise.power))
         self._num_elevations = len(noise.elevation)
@@ -82,7 +80,7 @@ class RangeAzimuthPlane:
     make_peak, make_box = AzimuthPeak, AzimuthBox
 
     def _map(self, cube, radar):
-        return ep.range_azimuth(ep.range_doppler(cube, radar, **self._settings), radar, **self._angles)
+        return _core.range_azimuth(_core.range_doppler(cube, radar, **self._settings), radar, **self._angles)
 
 
 def make_plane(name: str, radar, window, zero_pad, angles):
@@ -98,9 +96,9 @@ def make_plane(name: str, radar, window, zero_pad, angles):
 
 def with_receivers(radar, which: slice):
     """The radar with some of its receivers."""
-    return ep.Radar(radar.waveform, transmitters=radar.transmitters, receivers=radar.receivers[which],
-                    transmit_power=radar.transmit_power, noise_figure_db=radar.noise_figure_db,
-                    multiplexing=radar.multiplexing, motion=radar.motion)
+    return _core.Radar(radar.waveform, transmitters=radar.transmitters, receivers=radar.receivers[which],
+                       transmit_power=radar.transmit_power, noise_figure_db=radar.noise_figure_db,
+                       multiplexing=radar.multiplexing, motion=radar.motion)
 
 
 def _no_signal(radar):

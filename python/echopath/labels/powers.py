@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-import echopath as ep
-
+from .. import _core
+from ..parts import decompose
 from .planes import with_receivers
 
 CUBES_IN_MEMORY = 1 << 30  # bytes that the cubes of one set of receivers may take, as far as one receiver does not need more
@@ -30,7 +30,7 @@ def rival_of(part):
 
     Among them are the same ways there and back, which no map tells apart: their fields add up.
     """
-    is_ghost = isinstance(part, ep.Family) and part.is_ghost
+    is_ghost = isinstance(part, _core.Family) and part.is_ghost
     return (part.object, part.order, frozenset(part.via)) if is_ghost else part
 
 
@@ -89,7 +89,7 @@ def decomposed(paths, radar, views: dict, num_parts: int, plane, settings: dict)
     """
     for which in receiver_sets(radar, num_parts, plane.takes_receiver_sets):
         some = with_receivers(radar, which)
-        cubes = ep.decompose(paths, some, views, **settings)
+        cubes = decompose(paths, some, views, **settings)
         yield CubeSet(some, len(some.receivers) / len(radar.receivers), cubes)
 
 

@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 from pydantic import create_model
 
-import echopath as ep
-
+from .. import _core, actors
+from ..antennas import load_antenna
 from ..azimuth_map import checked_settings
 from ..families import named_globs
-from ..parts import check_partitions
-from ..simulate import as_partitions
+from ..materials import materials
+from ..parts import as_partitions, check_partitions
+from ..scene import Scene
 from .errors import validated
 from .schema import (AngleTable, DetectionsTable, LabelsTable, ObjectTable, RadarTable, ReplayTable, SceneTable,
                      SpectrumTable,
@@ -120,7 +121,7 @@ def _check_labels(scene_file: SceneFile) -> None:
     with _blame("labels.objects"):
         for _, globs in named_globs(scene_file.labels and scene_file.labels.objects) or []:
             for glob in globs:
-                ep.hits(glob).check(scene_file.scene)
+                _core.hits(glob).check(scene_file.scene)
 
 
 def _with_file(path: Path, line: str) -> str:
@@ -132,7 +133,7 @@ def _parse(path: Path) -> dict:
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8"))
     except OSError as error:
-        raise ep.FileError(f"{path}: cannot be read ({error.strerror})") from None
+        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
     except tomllib.TOMLDecodeError as error:
@@ -151,7 +152,7 @@ def _blame(key: str):
 
 def _build_radar(table: RadarTable, folder: Path):
     with _blame("radar.waveform"):
-        waveform = ep.ChirpSequence(**table.waveform.model_dump())
+        waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
     for side in ("transmitters", "receivers"):
         antennas[side] = []
@@ -159,16 +160,16 @@ def _build_radar(table: RadarTable, folder: Path):
             with _blame(f"radar.{side}[{index}]"):
                 antennas[side].append(_antenna(antenna, table, folder))
     with _blame("radar"):
-        return ep.Radar(waveform, **antennas, transmit_power=table.transmit_power,
-                        noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
-                        motion=_motion(table.motion, "radar.motion"))
+        return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
+                           noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
+                           motion=_motion(table.motion, "radar.motion"))
 
 
 def _antenna(antenna, radar: RadarTable, folder: Path):
     orientation = antenna.orientation or _turned_left(antenna.yaw_deg or 0.0)
-    return ep.Antenna(tuple(antenna.position), orientation=tuple(orientation),
-                      pattern=_pattern(antenna.pattern or radar.pattern, folder),
-                      polarization=tuple(antenna.polarization or radar.polarization))
+    return _core.Antenna(tuple(antenna.position), orientation=tuple(orientation),
+                         pattern=_pattern(antenna.pattern or radar.pattern, folder),
+                         polarization=tuple(antenna.polarization or radar.polarization))
 
 
 def _turned_left(yaw_deg: float) -> tuple:
@@ -179,12 +180,12 @@ def _turned_left(yaw_deg: float) -> tuple:
 
 def _pattern(table, folder: Path):
     if table is None:
-        return ep.Isotropic()
+        return _core.Isotropic()
     if table.kind == "isotropic":
-        return ep.Isotropic(gain=table.gain)
+        return _core.Isotropic(gain=table.gain)
     if table.kind == "table":
-        return ep.load_antenna(folder / table.file)
-    return ep.CosinePower(table.exponent, peak_gain=table.peak_gain)
+        return load_antenna(folder / table.file)
+    return _core.CosinePower(table.exponent, peak_gain=table.peak_gain)
 
 
 def _motion(table, key: str):
@@ -192,9 +193,9 @@ def _motion(table, key: str):
         return None
     with _blame(key):
         if table.kind == "linear":
-            return ep.LinearMotion(velocity=tuple(table.velocity), angular_velocity=tuple(table.angular_velocity))
-        return ep.KeyframeMotion(times=table.times, translations=table.translations, rotations=table.rotations,
-                                 interpolation=table.interpolation)
+            return _core.LinearMotion(velocity=tuple(table.velocity), angular_velocity=tuple(table.angular_velocity))
+        return _core.KeyframeMotion(times=table.times, translations=table.translations, rotations=table.rotations,
+                                    interpolation=table.interpolation)
 
 
 def _material(value, key: str):
@@ -203,17 +204,17 @@ def _material(value, key: str):
         return None
     with _blame(key):
         if isinstance(value, str):
-            return ep.materials[value]
+            return materials[value]
         given = value.model_dump(exclude_unset=True)
         base = given.pop("base", None)
         if isinstance(given.get("permittivity"), list):
             real, loss = given["permittivity"]
             given["permittivity"] = complex(real, -loss)
-        return ep.materials[base].replace(**given) if base is not None else ep.Material(**given)
+        return materials[base].replace(**given) if base is not None else _core.Material(**given)
 
 
 def _build_scene(settings: SceneTable, folder: Path):
-    scene = ep.Scene()
+    scene = Scene()
     for index, table in enumerate(settings.objects):
         key = f"objects[{index}]"
         placement = {"transform": table.transform} if table.transform is not None else {
@@ -231,7 +232,7 @@ def _shape(table: ObjectTable, folder: Path, key: str, material):
     """The object's mesh, group of meshes or actor, and the material still to be given to it."""
     if table.mesh is not None:
         with _blame(f"{key}.mesh"):
-            meshes = ep.load_meshes(str(folder / table.mesh), unit=table.unit or 1.0)
+            meshes = _core.load_meshes(str(folder / table.mesh), unit=table.unit or 1.0)
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     factory = _actor_factory(table.actor, f"{key}.actor")
     model = _parameter_table(table.actor, factory)
@@ -250,13 +251,13 @@ def _as_location(key: str) -> tuple:
 
 def actor_names() -> list[str]:
     """Names of the ready-made objects: the public functions of echopath.actors."""
-    return [name for name in ep.actors.__all__ if inspect.isfunction(getattr(ep.actors, name))]
+    return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]
 
 
 def _actor_factory(name: str, key: str):
     if name not in actor_names():
         raise ValueError(f"{key}: unknown actor '{name}'; {nearest_key(name, actor_names()).replace('keys', 'actors')}")
-    return getattr(ep.actors, name)
+    return getattr(actors, name)
 
 
 def _parameter_table(name: str, factory) -> type[Table]:

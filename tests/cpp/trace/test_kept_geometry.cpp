@@ -251,24 +251,5 @@ TEST(KeptGeometry, AThousandMovesTakeNoMemory) {
   EXPECT_LT(resident_bytes() - before, 16 << 20);
 }
 
-// Queries of several threads at once do not lose or mix what each has asked.
-TEST(QueryLog, TakesTheQueriesOfAllThreads) {
-  constexpr int64_t kNumQueries = 20000;
-  const Scene scene = soup(2);
-  EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
-  QueryLog log;
-  geometry.record_queries(&log);
-  parallel_for(kNumQueries, [&](int64_t i) {
-    const double number = static_cast<double>(i);
-    geometry.occluded(Vec3(-2.0 - number, 0.0, 0.0), Vec3(-3.0 - number, 0.0, 0.0));
-  });
-  geometry.record_queries(nullptr);
-  ASSERT_EQ(log.calls.size(), static_cast<size_t>(kNumQueries));
-  ASSERT_EQ(log.rays.size(), static_cast<size_t>(kNumQueries));
-  std::vector<int> times_asked(kNumQueries);
-  for (const QueryLog::Ray& ray : log.rays) ++times_asked[static_cast<size_t>(std::lround(-2.0f - ray.from.x))];
-  EXPECT_TRUE(std::all_of(times_asked.begin(), times_asked.end(), [](int times) { return times == 1; }));
-}
-
 }  // namespace
 }  // namespace echopath

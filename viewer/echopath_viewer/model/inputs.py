@@ -6,9 +6,9 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.parts import as_partitions
 from echopath.path_subset import part_of_path
 from echopath.same_radar import difference
-from echopath.simulate import as_partitions
 
 from .part_set import WHOLE, Part, PartSet
 from .signals import Signals, all_paths, selections_of

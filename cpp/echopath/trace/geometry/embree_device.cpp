@@ -82,4 +82,44 @@ void EmbreeScene::Device::build(Job* job) {
   check("building the scene");
 }
 
+#if RTC_VERSION_MAJOR >= 4
+void EmbreeScene::Device::intersect(RTCRayHit& query) const { rtcIntersect1(scene, &query); }
+
+void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet) const {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid.lanes, scene, &packet, &arguments);
+}
+
+void EmbreeScene::Device::occluded(RTCRay& ray) const { rtcOccluded1(scene, &ray); }
+
+void EmbreeScene::Device::occluded(const ValidLanes& valid, RTCRay16& rays) const { rtcOccluded16(valid.lanes, scene, &rays); }
+#else
+void EmbreeScene::Device::intersect(RTCRayHit& query) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+
+void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid.lanes, scene, &context, &packet);
+}
+
+void EmbreeScene::Device::occluded(RTCRay& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+
+void EmbreeScene::Device::occluded(const ValidLanes& valid, RTCRay16& rays) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid.lanes, scene, &context, &rays);
+}
+#endif
+
 }  // namespace echopath

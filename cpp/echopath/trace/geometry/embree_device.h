@@ -1,5 +1,5 @@
 #pragma once
-// The only header that knows Embree and its versions. Internal to the module.
+// The only header that knows Embree. Internal to the module and to `bench`, which looks at queries.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -54,46 +54,6 @@ ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& fro
   rays.flags[lane] = 0;
 }
 
-#if RTC_VERSION_MAJOR >= 4
-inline void embree_intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
-
-inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &queries, &arguments);
-}
-
-inline void embree_occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
-
-inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays); }
-#else
-inline void embree_intersect(RTCScene scene, RTCRayHit& query) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &query);
-}
-
-inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& queries) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &context, &queries);
-}
-
-inline void embree_occluded(RTCScene scene, RTCRay& ray) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, &ray);
-}
-
-inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, scene, &context, &rays);
-}
-#endif
-
 inline void forget_hit(RTCHit& hit) {
   hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -111,14 +71,25 @@ struct alignas(64) ValidLanes {
   int lanes[kPacketSize];
 };
 
-struct EmbreeScene::Device {
+// What is asked of Embree, one ray or a packet at a time. Closest hits of rays are written into what asks; a far end of -infinity
+// marks an occluded ray. Thread-safe.
+class EmbreeScene::Queries {
+ public:
+  virtual ~Queries() = default;
+  virtual void intersect(RTCRayHit& query) const = 0;
+  virtual void intersect(const ValidLanes& valid, RTCRayHit16& packet) const = 0;
+  virtual void occluded(RTCRay& ray) const = 0;
+  virtual void occluded(const ValidLanes& valid, RTCRay16& rays) const = 0;
+};
+
+struct EmbreeScene::Device final : EmbreeScene::Queries {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   bool has_tree_per_mesh = false;
   std::vector<bool> has_mesh;  // by mesh ID
 
   Device();
-  ~Device();
+  ~Device() override;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   void check(const char* what) const;
@@ -127,6 +98,11 @@ struct EmbreeScene::Device {
   void start_scene(size_t num_meshes, bool tree_per_mesh);
   void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
   void build(Job* job);
+
+  void intersect(RTCRayHit& query) const override;
+  void intersect(const ValidLanes& valid, RTCRayHit16& packet) const override;
+  void occluded(RTCRay& ray) const override;
+  void occluded(const ValidLanes& valid, RTCRay16& rays) const override;
 };
 
 }  // namespace echopath

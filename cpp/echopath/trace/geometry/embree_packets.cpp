@@ -68,12 +68,6 @@ ECHOPATH_INLINE void round_lanes(const RayLanes* rays, RTCRay16* out, ValidLanes
   for (int lane = 0; lane < kPacketSize; ++lane) valid->lanes[lane] = rays->far[lane] > 0 ? -1 : 0;
 }
 
-void write_down(const RayLanes& rays, QueryLog::Kind kind, QueryLog& log) {
-  std::vector<QueryLog::Ray> asked;
-  for (int lane = 0; lane < kPacketSize; ++lane) asked.emplace_back(rays.from.at(lane), rays.direction.at(lane), rays.far[lane]);
-  log.add(kind, asked);
-}
-
 bool is_met(const Hit& hit) { return hit.mesh_id != RTC_INVALID_GEOMETRY_ID; }
 
 void take(const RTCHit16& found, std::array<Hit, kPacketSize>& out) {
@@ -114,8 +108,7 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   for (int lane = 0; lane < kPacketSize; ++lane) rays.far[lane] = lane < count ? double{kInfinity} : -1.0;
   run_simd<&round_lanes>(&rays, &queries.ray, &valid);
   forget_hits(queries.hit);
-  if (log_) write_down(rays, QueryLog::Kind::kClosestPacket, *log_);
-  embree_intersect(device_->scene, valid.lanes, queries);
+  queries_->intersect(valid, queries);
   take(queries.hit, out.met);
   if (std::none_of(out.met.begin(), out.met.end(), is_met)) return out.verdicts.fill(Verdict::kMiss);
   PacketFacets facets;
@@ -163,8 +156,7 @@ void EmbreeScene::ask_segments(const RayLanes& rays, ValidLanes& blocked) const 
   alignas(64) RTCRay16 queries;
   ValidLanes valid;
   run_simd<&round_lanes>(&rays, &queries, &valid);
-  if (log_) write_down(rays, QueryLog::Kind::kShadowPacket, *log_);
-  embree_occluded(device_->scene, valid.lanes, queries);
+  queries_->occluded(valid, queries);
   for (int lane = 0; lane < kPacketSize; ++lane) blocked.lanes[lane] = valid.lanes[lane] & (queries.tfar[lane] < 0 ? -1 : 0);
 }
 

@@ -42,7 +42,7 @@ Eigen::AlignedBox3d world_box(const Scene& scene, const PosedScene& pose) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
-    : device_(std::make_unique<Device>()) {
+    : device_(std::make_unique<Device>()), queries_(device_.get()) {
   update(scene, pose, origin, job);
 }
 
@@ -91,11 +91,7 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& start,
   RTCRayHit query;
   set_ray(query.ray, unpacked(start), unpacked(direction), kInfinity);
   forget_hit(query.hit);
-  if (log_) {
-    const QueryLog::Ray asked(unpacked(start), unpacked(direction), kInfinity);
-    log_->add(QueryLog::Kind::kClosest, {&asked, 1});
-  }
-  embree_intersect(device_->scene, query);
+  queries_->intersect(query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
   out.hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
   return confirm(from, direction, out);
@@ -151,11 +147,7 @@ bool EmbreeScene::occluded(const Vec3& from, const Vec3& to) const {
   if (line.far <= 0) return false;
   RTCRay ray;
   set_ray(ray, line.from, line.direction, static_cast<float>(line.far));
-  if (log_) {
-    const QueryLog::Ray asked(line.from, line.direction, line.far);
-    log_->add(QueryLog::Kind::kShadow, {&asked, 1});
-  }
-  embree_occluded(device_->scene, ray);
+  queries_->occluded(ray);
   return ray.tfar < 0;
 }
 

@@ -11,7 +11,6 @@
 #include "echopath/trace/geometry/packet.h"
 #include "echopath/trace/record/paths.h"
 #include "echopath/trace/geometry/embree_meshes.h"
-#include "echopath/trace/geometry/query_log.h"
 #include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {
@@ -78,11 +77,11 @@ class EmbreeScene {
   // blocked.
   using Lanes = std::array<bool, kPacketSize>;
   void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
-  // From now on every query is written down, too, by whatever thread; null: no more. No query may be under way.
-  void record_queries(QueryLog* log) { log_ = log; }
-  // Asks the queries between two marks of a log again, packed as they were or (`one_by_one`) each for itself, and does
-  // nothing else.
-  void ask_again(const QueryLog& log, QueryLog::Mark begin, QueryLog::Mark end, bool one_by_one) const;
+  // The way to Embree, in single precision: all that is asked goes through it. Another one can be put in its place, say one that
+  // looks at the queries and hands them on; it must outlive its use, and no query may be under way.
+  class Queries;  // embree_device.h
+  const Queries& queries() const { return *queries_; }
+  void ask_through(const Queries& queries) { queries_ = &queries; }
   // The point moved off its surface by a few units of single precision, so that it does not meet it again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
   double lift() const { return lift_; }  // m
@@ -122,7 +121,7 @@ class EmbreeScene {
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
-  QueryLog* log_ = nullptr;
+  const Queries* queries_;
   double lift_ = 0.0;   // m
   double reach_ = 0.0;  // m: rays from farther away are moved up to there
   EmbreeMeshes meshes_;

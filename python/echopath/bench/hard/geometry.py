@@ -60,7 +60,7 @@ def street(offset):
        broken="rays in world coordinates instead of those about the scene: 0.028")
 def utm_hits() -> float:
     directions = np.random.default_rng(1).normal((1.0, 0.0, 0.0), (0.05, 0.3, 0.3), (1_000_000, 3))
-    met = [_core.first_hits(street_scene(offset), np.broadcast_to(offset, directions.shape), directions)
+    met = [_core.bench.first_hits(street_scene(offset), np.broadcast_to(offset, directions.shape), directions)
            for offset in (np.zeros(3), UTM)]
     (mesh, triangle, distance, _), (other_mesh, other_triangle, other_distance, _) = met
     if np.mean(mesh != NO_MESH) < 0.3:
@@ -192,7 +192,7 @@ def _sliver_hits(width: float, height: float, lean: float):
     scene.add(sliver_wall(span, height, 20_000, 0.0), name="wall", material=METAL, position=(5.0, 0.0, 0.0), yaw=lean)
     across, up = random.uniform(-0.45, 0.45, (2, count)) * [[span], [height]]
     targets = np.column_stack([5.0 - np.sin(lean) * across, np.cos(lean) * across, up])
-    mesh_id, _, distance, _ = _core.first_hits(scene, np.zeros_like(targets), targets)
+    mesh_id, _, distance, _ = _core.bench.first_hits(scene, np.zeros_like(targets), targets)
     is_met = mesh_id != NO_MESH
     return float(np.mean(~is_met)), np.abs(distance - np.linalg.norm(targets, axis=1))[is_met]
 

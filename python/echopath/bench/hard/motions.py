@@ -73,7 +73,7 @@ def interpenetrating() -> float:
     random, wrong = np.random.default_rng(5), 0
     for time in (0.0, 0.013, 0.02, 0.031):
         directions = np.array([4.2, 0.0, 0.0]) + random.uniform(-0.6, 0.6, (1500, 3))
-        mesh_id, _, distance, _ = _core.first_hits(scene, np.zeros_like(directions), directions, time=time)
+        mesh_id, _, distance, _ = _core.bench.first_hits(scene, np.zeros_like(directions), directions, time=time)
         _, expected = brute_force(scene, directions, time)
         near = np.isclose(distance, expected, atol=1e-5) | ((mesh_id == 2 ** 32 - 1) & np.isinf(expected))
         wrong += int(np.sum(~near))

@@ -81,7 +81,7 @@ def broadside_rcs(side: float, distance: float) -> float:
 def misses(scene, origin, targets) -> int:
     """Rays from `origin` [3] through `targets` [N, 3] that meet nothing."""
     directions = np.asarray(targets, float) - origin
-    mesh_id, *_ = _core.first_hits(scene, np.broadcast_to(origin, directions.shape), directions)
+    mesh_id, *_ = _core.bench.first_hits(scene, np.broadcast_to(origin, directions.shape), directions)
     return int(np.sum(mesh_id == 2 ** 32 - 1))
 
 

@@ -19,14 +19,6 @@ struct QueryLog {
   struct Ray {
     VectorOf<float> from, direction;
     float far;  // m; negative: a lane that is not in use
-
-    Ray(const VectorOf<double>& start, const VectorOf<double>& toward, double end)
-        : from(rounded(start)), direction(rounded(toward)), far(static_cast<float>(end)) {}
-
-   private:
-    static VectorOf<float> rounded(const VectorOf<double>& v) {
-      return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-    }
   };
   // Where a block of launch rays begins.
   struct Mark {

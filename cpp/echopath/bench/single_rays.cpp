@@ -1,0 +1,65 @@
+#include "echopath/bench/single_rays.h"
+
+#include <algorithm>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/trace/geometry/embree_scene.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kRaysPerBlock = 4096;
+
+// The scene at one time, about the first of the points.
+struct PosedGeometry {
+  PosedGeometry(const Scene& scene, double time, const std::vector<Vec3>& points, Job* job)
+      : pose(scene, time), origin(EmbreeScene::origin_near(scene, pose, points.empty() ? Vec3(Vec3::Zero()) : points.front())),
+        triangles(scene, pose, origin, job) {}
+  PosedScene pose;
+  Vec3 origin;
+  EmbreeScene triangles;
+};
+
+template <class Query>
+void for_each_ray(size_t count, Job* job, const Query& query) {
+  const auto num_rays = static_cast<int64_t>(count);
+  parallel_for((num_rays + kRaysPerBlock - 1) / kRaysPerBlock, [&](int64_t block) {
+    const int64_t end = std::min((block + 1) * kRaysPerBlock, num_rays);
+    for (int64_t i = block * kRaysPerBlock; i < end; ++i) query(static_cast<size_t>(i));
+  }, job);
+}
+
+}  // namespace
+
+RayAnswers first_hits(const Scene& scene, double time, const std::vector<Vec3>& origins, const std::vector<Vec3>& directions,
+                      Job* job) {
+  require(origins.size() == directions.size(), "directions", "must be as many as origins, rows", directions.size());
+  const PosedGeometry geometry(scene, time, origins, job);
+  const size_t count = origins.size();
+  RayAnswers found{std::vector(count, RayAnswers::kNoMesh), std::vector<uint32_t>(count), std::vector<double>(count),
+                   std::vector<uint8_t>(count)};
+  for_each_ray(count, job, [&](size_t i) {
+    RayHit hit;
+    const auto verdict = geometry.triangles.intersect(origins[i] - geometry.origin, directions[i].normalized(), hit);
+    found.is_false[i] = verdict == EmbreeScene::Verdict::kFalseHit;
+    if (verdict != EmbreeScene::Verdict::kHit) return;
+    found.mesh_id[i] = hit.hit.mesh_id;
+    found.triangle_id[i] = hit.hit.triangle_id;
+    found.distance[i] = hit.distance;
+  });
+  return found;
+}
+
+std::vector<uint8_t> blocked_segments(const Scene& scene, double time, const std::vector<Vec3>& starts,
+                                      const std::vector<Vec3>& ends, Job* job) {
+  require(starts.size() == ends.size(), "ends", "must be as many as starts, rows", ends.size());
+  const PosedGeometry geometry(scene, time, starts, job);
+  std::vector<uint8_t> blocked(starts.size());
+  for_each_ray(starts.size(), job, [&](size_t i) {
+    blocked[i] = geometry.triangles.occluded(starts[i] - geometry.origin, ends[i] - geometry.origin);
+  });
+  return blocked;
+}
+
+}  // namespace echopath

@@ -1,0 +1,155 @@
+"""Imports between modules of the package and of its viewer go one way, as far as the text of the modules tells."""
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
+
+# Imports within functions that close a circle, and why each may.
+CLOSING = {
+    ("echopath", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
+    ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
+}
+
+
+def modules_of(packages) -> dict:
+    """{name: (its file, whether it is a package)}"""
+    found = {}
+    for package in packages:
+        for file in package.rglob("*.py"):
+            *parents, own = file.relative_to(package.parent).with_suffix("").parts
+            name = ".".join(parents if own == "__init__" else [*parents, own])
+            found[name] = (file, own == "__init__")
+    return found
+
+
+def statements(node, in_function=False):
+    """(import statement, whether it stands in a function)"""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (ast.Import, ast.ImportFrom)):
+            yield child, in_function
+        else:
+            yield from statements(child, in_function or isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)))
+
+
+def base_of(statement, name: str, is_package: bool) -> str:
+    """The module that `from ... import` names."""
+    if not statement.level:
+        return statement.module
+    parts = name.split(".") if is_package else name.split(".")[:-1]
+    parts = parts[:len(parts) - statement.level + 1]
+    return ".".join(parts + ([statement.module] if statement.module else []))
+
+
+def named_modules(statement, name: str, modules: dict):
+    """Modules that a statement in the module `name` names; of an extension such as echopath._core, none."""
+    if isinstance(statement, ast.Import):
+        yield from (alias.name for alias in statement.names if alias.name in modules)
+        return
+    base = base_of(statement, name, modules[name][1])
+    for alias in statement.names:
+        if f"{base}.{alias.name}" in modules:
+            yield f"{base}.{alias.name}"
+        elif base in modules and alias.name != "_core":
+            yield base
+
+
+def with_packages(target: str, name: str) -> list:
+    """The module and those packages around it that its import runs first, unless they are around `name`, too."""
+    parts = target.split(".")
+    around = [".".join(parts[:count]) for count in range(1, len(parts))]
+    return [target, *(package for package in around if not f"{name}.".startswith(f"{package}."))]
+
+
+def imports_of(packages) -> dict:
+    """{(module, what it imports): whether all its imports of that stand in functions}"""
+    modules, found = modules_of(packages), {}
+    for name, (file, _) in modules.items():
+        for statement, is_late in statements(ast.parse(file.read_text())):
+            for target in named_modules(statement, name, modules):
+                for one in with_packages(target, name):
+                    if one != name:
+                        found[name, one] = found.get((name, one), True) and is_late
+    return found
+
+
+def circle_of(edges):
+    """Modules in the order in which each imports the next and the last the first, or [] where there is no circle."""
+    after = {}
+    for source, target in edges:
+        after.setdefault(source, []).append(target)
+    done, way = set(), []
+
+    def follow(name):
+        if name in way:
+            return way[way.index(name):]
+        if name in done:
+            return []
+        way.append(name)
+        circle = next(filter(None, map(follow, after.get(name, ()))), [])
+        way.pop()
+        done.add(name)
+        return circle
+
+    return next(filter(None, map(follow, list(after))), [])
+
+
+@pytest.fixture(scope="module")
+def imports():
+    return imports_of(PACKAGES)
+
+
+def test_modules_import_in_no_circle(imports):
+    assert circle_of(edge for edge, is_late in imports.items() if not is_late) == []
+
+
+def test_imports_in_functions_close_only_the_circles_that_are_listed(imports):
+    assert circle_of(edge for edge in imports if edge not in CLOSING) == []
+
+
+@pytest.mark.parametrize("edge", CLOSING, ids=" -> ".join)
+def test_listed_imports_stand_in_functions_and_close_a_circle(imports, edge):
+    assert imports[edge]
+    assert circle_of(other for other in imports if other == edge or other not in CLOSING)
+
+
+def test_the_package_loads_without_its_viewer(imports):
+    outward = [edge for edge, is_late in imports.items()
+               if not is_late and edge[0].split(".")[0] == "echopath" and edge[1].split(".")[0] != "echopath"]
+    assert outward == []
+
+
+# Two modules of a package, and the circle that they make.
+CIRCLES = {
+    "relative": ("from .b import x", "from .a import y", ["p.a", "p.b"]),
+    "module from its package": ("from . import b", "from . import a", ["p.a", "p.b"]),
+    "absolute": ("import p.b", "from p.a import y", ["p.a", "p.b"]),
+    "under a condition": ("if 1:\n    from .b import x", "try:\n    from . import a\nfinally:\n    pass", ["p.a", "p.b"]),
+    "one way": ("from .b import x", "import json", []),
+    "of the extension": ("from .b import x", "from . import _core", []),
+    "in a function": ("from .b import x", "def f():\n    from .a import y", []),
+}
+
+
+@pytest.mark.parametrize("first, second, expected", CIRCLES.values(), ids=CIRCLES)
+def test_circles_are_found(tmp_path, first, second, expected):
+    package = tmp_path / "p"
+    package.mkdir()
+    for name, text in {"__init__": "", "a": first, "b": second}.items():
+        (package / f"{name}.py").write_text(text + "\n")
+    assert sorted(circle_of(edge for edge, is_late in imports_of([package]).items() if not is_late)) == expected
+
+
+def test_a_package_that_runs_first_is_part_of_the_circle(tmp_path):
+    """q.inner runs q/__init__ first, which needs what asks for q.inner."""
+    for name, text in {"p": "from q.inner import x", "q/__init__": "import p", "q/inner": ""}.items():
+        file = tmp_path / name
+        file.parent.mkdir(exist_ok=True)
+        file.with_suffix(".py").write_text(text + "\n")
+    (tmp_path / "p.py").rename(tmp_path / "moved.py")
+    (tmp_path / "p").mkdir()
+    (tmp_path / "moved.py").rename(tmp_path / "p" / "__init__.py")
+    imports = imports_of([tmp_path / "p", tmp_path / "q"])
+    assert sorted(circle_of(imports)) == ["p", "q"]

@@ -24,14 +24,11 @@ constexpr double kSameDepth = 1e-5;
 // Holds the antennas of one end of the radar.
 struct End {
   Vec3 position;  // mean, relative to the origin
-  const std::vector<Antenna>& antennas;
-  Mat3 radar_from_world;
+  std::vector<PosedAntenna> antennas;
 
   bool has_gain_toward(const Vec3& direction) const {
-    const Vec3 in_radar = radar_from_world * direction;
-    return std::any_of(antennas.begin(), antennas.end(), [&](const Antenna& antenna) {
-      return antenna.pattern.toward(antenna.orientation.conjugate() * in_radar).power > 0.0;
-    });
+    return std::any_of(antennas.begin(), antennas.end(),
+                       [&](const PosedAntenna& antenna) { return antenna.toward(direction).power > 0.0; });
   }
 };
 
@@ -191,14 +188,13 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   require(num_meshes == scene.meshes().size(), "surfaces", "must be of the scene, meshes", num_meshes);
   scene.require_times(settings.time, settings.time);
   const Transform world_from_radar = radar.world_from_radar(settings.time);
-  const Mat3 radar_from_world = world_from_radar.linear().transpose();
   const Vec3 transmitter = mean_position(radar.transmitters, world_from_radar);
   const Vec3 receiver = mean_position(radar.receivers, world_from_radar);
   const PosedScene pose(scene, settings.time);
   const Vec3 origin = EmbreeScene::origin_near(scene, pose, transmitter);
   const EmbreeScene whole(scene, pose, origin, job);
-  const End sending{transmitter - origin, radar.transmitters, radar_from_world};
-  const End receiving{receiver - origin, radar.receivers, radar_from_world};
+  const End sending{transmitter - origin, posed_antennas(radar.transmitters, world_from_radar, origin)};
+  const End receiving{receiver - origin, posed_antennas(radar.receivers, world_from_radar, origin)};
 
   std::vector<ObjectVisibility> seen;
   if (job) job->start(surfaces.num_objects);

@@ -1,5 +1,6 @@
 #pragma once
-// The tracer's time beside that of its own queries, asked again in a bare loop: how far it is from the limit of Embree.
+// Compares the tracer's time with that of its own queries, asked again in a bare loop: how far it is from the limit of
+// Embree.
 #include <vector>
 
 #include "echopath/trace/trace.h"
@@ -7,7 +8,7 @@
 namespace echopath {
 
 struct BareQueries {
-  // s, of each repetition: by the clock, and of all processors together, which other programs disturb less.
+  // Holds the seconds of each repetition: by the clock, and of all processors together, which other programs disturb less.
   struct Seconds {
     std::vector<double> elapsed, processor;
   };
@@ -16,12 +17,12 @@ struct BareQueries {
   int64_t num_in_packets = 0;      // of them
   int64_t num_shadow = 0;          // of them
   double build_seconds = 0.0;      // once for all rays: geometry, mirrors, launch plan
-  // Measured in turn: rays and record; the same queries packed as the tracer packs them; each for itself.
+  // Measured in turn: rays and record; the same queries packed as the tracer packs them; the same queries one by one.
   Seconds trace, bare, single;
 };
 
-// Traces, writes the queries down (on one thread) and measures, on as many threads as `set_num_threads` says. Needs 28
-// bytes a query. Raises what `trace` raises; invalid_argument for repetitions below 1.
+// Traces, writes the queries down (on one thread) and measures, on as many threads as `set_num_threads` says. It needs 28
+// bytes a query. Raises what `trace` raises; raises invalid_argument for repetitions below 1.
 BareQueries measure_bare_queries(const Scene& scene, const Radar& radar, const TraceSettings& settings, int repetitions,
                                  Job* job = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The queries of a trace as Embree got them, to be asked again without the tracer around them (bare_queries.h).
+// Holds the queries of a trace as Embree got them, to be asked again without the tracer around them (bare_queries.h).
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -20,7 +20,7 @@ struct QueryLog {
     VectorOf<float> from, direction;
     float far;  // m; negative: a lane that is not in use
   };
-  // Where a block of launch rays begins.
+  // Says where a block of launch rays begins.
   struct Mark {
     size_t call = 0, ray = 0;
   };
@@ -28,7 +28,7 @@ struct QueryLog {
   std::vector<Ray> rays;  // of each call in turn
   std::vector<Mark> marks;
 
-  // Thread-safe: the rays of a call stay together.
+  // Adds the rays of a call; they stay together. Thread-safe.
   void add(Kind kind, std::span<const Ray> of_call) {
     const std::lock_guard lock(mutex_);
     calls.push_back({kind, static_cast<uint8_t>(of_call.size())});

@@ -1,5 +1,5 @@
 #pragma once
-// Writes down what a geometry asks Embree, and asks it again.
+// Records what a geometry asks Embree, and asks it again.
 #include <memory>
 
 #include "echopath/bench/query_log.h"

@@ -3,7 +3,7 @@
 
 namespace echopath {
 
-// Reads, on one thread, what matching reads at least of every path, and returns a sum of it: mesh IDs and events.
+// Reads, on one thread, the data that matching must read of every path (mesh IDs and events), and returns a sum of it.
 uint64_t read_hits(const Paths& paths);
 
 }  // namespace echopath

@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-// Values of all chirps of echoes [begin, end): few echoes at a time, whose nodes stay in the first-level cache.
+// Evaluates echoes [begin, end) at all chirps: few echoes at a time, whose nodes stay in the first-level cache.
 void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_chirps) {
   constexpr int kChirpsAtOnce = 4;
   EchoStates states[kChirpsAtOnce];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t kRaysPerBlock = 4096;
 
-// The scene at one time, about the first of the points.
+// Holds the scene at one time, with an origin next to the first of the points.
 struct PosedGeometry {
   PosedGeometry(const Scene& scene, double time, const std::vector<Vec3>& points, Job* job)
       : pose(scene, time), origin(EmbreeScene::origin_near(scene, pose, points.empty() ? Vec3(Vec3::Zero()) : points.front())),

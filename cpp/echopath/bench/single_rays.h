@@ -1,5 +1,5 @@
 #pragma once
-// Rays and segments one by one, as the tracer sees them, to be compared with what other ray tracers find.
+// Traces rays and segments one by one, as the tracer sees them, to compare them with the results of other ray tracers.
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// What rays meet first, [N] each.
+// Holds what rays meet first, [N] each.
 struct RayAnswers {
   static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
   std::vector<uint32_t> mesh_id, triangle_id;  // kNoMesh: nothing
@@ -17,12 +17,12 @@ struct RayAnswers {
   std::vector<uint8_t> is_false;               // 1: found, but not confirmed in double precision
 };
 
-// origins [N] in m, world; directions [N] of any length; time in s. Raises invalid_argument unless there are as many of both, and
-// Cancelled.
+// Traces rays: origins [N] in m, world; directions [N] of any length; time in s. Raises invalid_argument unless there are as
+// many of both; raises Cancelled.
 RayAnswers first_hits(const Scene& scene, double time, const std::vector<Vec3>& origins, const std::vector<Vec3>& directions,
                       Job* job = nullptr);
 
-// Whether something lies on the open segments between starts and ends [N] in m, world: 1 where it does. Raises likewise.
+// Returns 1 where something lies on the open segment between starts and ends [N] in m, world. Raises as first_hits does.
 std::vector<uint8_t> blocked_segments(const Scene& scene, double time, const std::vector<Vec3>& starts,
                                       const std::vector<Vec3>& ends, Job* job = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Seconds since it was made: by the clock, and of all processors together, which other programs disturb less.
+// Counts the seconds since it was made: by the clock, and of all processors together, which other programs disturb less.
 #include <ctime>
 
 namespace echopath {

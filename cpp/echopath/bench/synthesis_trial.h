@@ -1,5 +1,5 @@
 #pragma once
-// Synthesis of echoes that polynomials give over a frame, without scene, rays and replay.
+// Synthesises echoes that polynomials give over a frame, without scene, rays and replay.
 #include <complex>
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace echopath {
 
-// Times (s) of the nodes of a frame that starts at 0: Chebyshev-Lobatto nodes, or one for echoes at rest.
+// Returns the times (s) of the nodes of a frame that starts at 0: Chebyshev-Lobatto nodes, or one for echoes at rest.
 std::vector<double> trial_node_times(const ChirpSequence& waveform, int num_nodes);
 
-// delay (s) and amplitude (sqrt(W)) [num_nodes, num_echoes] at trial_node_times. Raises invalid_argument unless they are of that
-// size.
+// Makes echoes from delay (s) and amplitude (sqrt(W)), [num_nodes, num_echoes] at trial_node_times. Raises invalid_argument
+// unless they are of that size.
 Echoes trial_echoes(const ChirpSequence& waveform, int num_nodes, std::vector<double> delay,
                     std::vector<std::complex<double>> amplitude);
 

@@ -46,7 +46,7 @@ std::vector<uint32_t> echoes_of(std::span<const uint8_t> joined) {
 
 namespace {
 
-// Neighbouring echoes that as many others go into.
+// Describes `count` neighbouring echoes, each of which is the sum of `members` echoes.
 struct Run {
   size_t from, to, count, members;
 };

@@ -1,6 +1,7 @@
 #pragma once
-// One echo for paths over the same hits. A rough surface sends a coherent and a diffuse path back from each point where a ray
-// meets it: their lengths are the same at all times and for all antennas, and what is synthesised is the sum of their amplitudes.
+// Joins paths over the same hits into one echo. A rough surface sends a coherent and a diffuse path back from each point
+// where a ray meets it: their lengths are the same at all times and for all antennas, so the echo is synthesised once with
+// the sum of their amplitudes.
 #include <span>
 #include <vector>
 
@@ -12,13 +13,13 @@ namespace echopath {
 
 class JoinRule {
  public:
-  // labels: [P] each; paths that differ in one of them stay apart. All must outlive the rule.
+  // `labels` are [P] each; paths that differ in one of them stay apart. All must outlive the rule.
   JoinRule(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular,
            std::vector<const std::vector<uint32_t>*> labels);
 
-  // For each path but the first whether it makes one echo with the one before: same hits, of which the same ones are images in
-  // mirrors, same ray, same end at which it began. Nothing is joined where specular hits move with the point of reflection, which
-  // hits do not tell.
+  // Returns for each path whether it makes one echo with the path before it (the first never does). Two paths do when they
+  // have the same hits, the same images in mirrors, the same ray and the same end at which they began. No paths are joined
+  // where specular hits move with the point of reflection, because the hits do not tell where that lies.
   std::vector<uint8_t> operator()(std::span<const int64_t> paths) const;
 
  private:
@@ -31,11 +32,12 @@ class JoinRule {
   std::vector<const std::vector<uint32_t>*> labels_;
 };
 
-// The echo of each path; empty where `joined` is.
+// Returns the index of the echo of each path; it is empty where `joined` is.
 std::vector<uint32_t> echoes_of(std::span<const uint8_t> joined);
-// joined: [echo] of `all`, 1 where it goes into the one before. `to`: [num_nodes, echoes that are left], sized by the caller.
+// `joined` has one entry for each echo of `all`, 1 where it is added to the echo before it. The caller sizes `to` as
+// [num_nodes, echoes that are left].
 void join(const Echoes& all, std::span<const uint8_t> joined, Echoes& to);
-// The first path of each echo that is left.
+// Returns the first path of each echo that is left.
 std::vector<int64_t> first_of(std::span<const int64_t> paths, std::span<const uint8_t> joined);
 
 }  // namespace echopath

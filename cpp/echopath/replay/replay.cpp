@@ -13,14 +13,15 @@
 namespace echopath {
 namespace {
 
-// Paths whose legs and what these are made of stay in the second-level cache.
+// With this many paths, the legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
 
-// Coefficients fall about geometrically from these: orders above what that makes of a tail are the next to try.
+// Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
+// the next order to try.
 constexpr double kFirstPhase = 100.0;     // rad
 constexpr double kFirstAmplitude = 1.0;   // relative to the largest
 
-// The order at which a tail found at `order` would be within its tolerance.
+// Returns the order at which a tail found at `order` would be within its tolerance.
 double order_for(double tolerance, double tail, double first, int order) {
   if (tail >= first) return TimeGrids::kHighestOrder;
   return order * std::log(tolerance / first) / std::log(tail / first);
@@ -33,7 +34,7 @@ const Radar& checked(const Radar& radar, const Paths& paths, const ReplaySetting
   return radar;
 }
 
-// Rows of nodes of whole echoes; `step` of them for each node that is written.
+// Returns the rows in which whole echoes are written; each node that is written takes `step` of them.
 std::vector<ChannelNodes> rows_of(std::span<Echoes> echoes, size_t step = 1) {
   std::vector<ChannelNodes> rows;
   for (Echoes& one : echoes) {
@@ -43,7 +44,7 @@ std::vector<ChannelNodes> rows_of(std::span<Echoes> echoes, size_t step = 1) {
   return rows;
 }
 
-// Leaves the echoes at `places` (ascending) and forgets all others.
+// Keeps the echoes at `places` (ascending) and drops all others.
 void keep(std::span<const size_t> places, Echoes& echoes) {
   const auto count = static_cast<size_t>(echoes.num_echoes), num_nodes = echoes.delay.size() / count;
   for (size_t node = 0; node < num_nodes; ++node) {
@@ -112,7 +113,7 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   return echoes;
 }
 
-// Of all channels that are posed.
+// Evaluates all channels of the grid's transmitters.
 std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, uint8_t* turned) const {
   const size_t num_channels = grid.posed.at(0).transmitters.size() * num_receivers();
   std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, grid.posed.size());
@@ -201,7 +202,7 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
   return echoes;
 }
 
-// Orders that paths of one channel would need which the polynomials do not follow.
+// Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.
 void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<UnfollowedPath>& needed) const {
   const NodeTails tails = node_tails(nodes, echoes);
   const auto raise = [&](double tolerance, double tail, double first, double& order) {

@@ -1,5 +1,5 @@
 #pragma once
-// Replay: what the recorded paths look like at other times and to other antennas, without tracing.
+// Replay computes what the recorded paths look like at other times and to other antennas, without tracing.
 //
 // Material points (diffuse hits and the physical-optics hit) move with their triangles, exactly; hits on flagged mirrors are
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move with
@@ -22,45 +22,47 @@ class Replayer {
 
   int num_channels() const;
   const TimeGrids& grids() const { return grids_; }
-  // Which grid is to follow which path. The replayer must outlive it.
+  // Returns the rule by which each path gets its time grid. The replayer must outlive it.
   PathGrids path_grids() const;
 
-  // Echoes of `paths` (indices), by channel [tx * num_rx + rx]; groups are left empty.
-  // The paths must not move, nor must the radar: they are evaluated once, at the time of the trace.
+  // Returns the echoes of `paths` (indices), by channel [tx * num_rx + rx]; their groups are left empty. Neither the paths
+  // nor the radar may move: they are evaluated once, at the time of the trace.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
-  // Interpolates them by a polynomial (grids()). Paths whose last two coefficients exceed a tolerance, of length or amplitude, are
-  // left out and added to `unfollowed`, in their order.
+  // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
+  // order, where the last two coefficients of their length or of their amplitude exceed the tolerance.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
   // Poses the scene at all nodes of a grid of chirps or samples, which both functions below take.
   PosedGrid pose(const TimeGrid& grid) const { return posed_.pose(grid); }
-  // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, of which each of its chirps has some.
+  // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, which has several nodes in each of its
+  // chirps.
   std::vector<Echoes> exact(std::span<const int64_t> paths, const PosedGrid& samples) const;
-  // Evaluates the channels of one transmitter [rx] at the nodes of a ChirpGrid, in the middle of each chirp, and takes derivatives
-  // of the lengths from a polynomial, which must follow them: num_rows_by_chirp() rows. What fades behind an edge of its surface
-  // has a root in its amplitude, which no polynomial follows. Paths that are `joined` go into the echo of the one before
-  // (JoinRule); none where it is empty.
+  // Evaluates the channels of one transmitter [rx] at the nodes of a ChirpGrid, in the middle of each chirp, and takes
+  // derivatives of the lengths from a polynomial, which must follow them. The result has num_rows_by_chirp() rows. It serves
+  // paths whose amplitude no polynomial follows, because it has a root where a surface turns away. Paths that are `joined`
+  // go into the echo of the path before them (JoinRule); where `joined` is empty, each path keeps its own echo.
   std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int polynomial, const PosedGrid& chirps,
                                std::span<const uint8_t> joined = {}) const;
   int64_t num_rows_by_chirp() const;
 
-  // Which paths are to make one echo with others, unless they differ in `labels` ([P] each, which must outlive the rule).
+  // Returns the rule that joins paths into one echo, unless they differ in `labels` ([P] each, which must outlive the rule).
   JoinRule join_rule(std::vector<const std::vector<uint32_t>*> labels) const;
-  // Echoes of paths, of which those that are `joined` go into the one before.
+  // Adds the echo of each path that is `joined` to the echo before it, and returns those that are left.
   std::vector<Echoes> joined(std::vector<Echoes> of_paths, std::span<const uint8_t> joined) const;
 
-  // Takes back echoes that are done with, for their memory.
+  // Takes back echoes that are no longer needed, so that their memory is used again.
   void recycle(std::span<Echoes> echoes) const;
 
-  // Lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one time. Raises Cancelled when the job is.
+  // Computes lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one `time` (s). Raises Cancelled when the
+  // job is cancelled.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
-  // The same amplitudes [view, channel, P] with the weights of launch cells that are looked at in other ways: wider ones are
-  // those of fewer rays, sides of 0 switch the footprint filter off.
+  // Computes amplitudes [view, channel, P] for several views of the launch cells: wider cells give the weights of a launch
+  // with fewer rays, and cells with sides of 0 switch the footprint filter off.
   void evaluate(std::span<const int64_t> paths, double time, std::span<const CellView> cells, std::vector<double>& lengths,
                 std::vector<std::complex<double>>& amplitudes, Job* job = nullptr) const;
 
  private:
-  // Posed nodes, and where the values of some channels there go.
+  // Holds posed nodes and where the values of some channels at these nodes are written.
   struct Target;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;

@@ -1,5 +1,6 @@
 #pragma once
-// Memory of a replay, kept for the next: the pages of a small record, touched for the first time, cost as much as its paths do.
+// Keeps the memory of a replay for the next one: for a small record, touching new pages costs as much as evaluating its
+// paths.
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -9,10 +10,10 @@
 
 namespace echopath {
 
-// Thread-safe.
+// All of its functions are thread-safe.
 class ReplayMemory {
  public:
-  // What another left, or new; see KeptMemory.
+  // Returns the memory that an earlier replay left, or a new one (KeptMemory).
   static std::unique_ptr<ReplayMemory> take();
   static void leave(std::unique_ptr<ReplayMemory> memory) noexcept;
 

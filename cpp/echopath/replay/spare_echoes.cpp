@@ -4,7 +4,7 @@
 
 namespace echopath {
 
-// The smallest that will do; where there is none, the memory of the largest makes room.
+// Takes the smallest memory that suffices; where none does, it frees the largest and takes new memory.
 Echoes SpareEchoes::take(size_t num_values) {
   Echoes echoes;
   {

@@ -1,5 +1,5 @@
 #pragma once
-// Memory of echoes that are done with, for the next: a page that is touched for the first time costs as much as a path does.
+// Keeps the memory of echoes that are no longer needed: touching a new page costs as much as evaluating a path.
 #include <map>
 #include <mutex>
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace echopath {
 
-// Thread-safe.
+// All of its functions are thread-safe.
 class SpareEchoes {
  public:
-  // Echoes without group and with room for that many delays and amplitudes each, which are not set.
+  // Returns echoes without a group and with room for `num_values` delays and amplitudes each, whose values are not set.
   Echoes take(size_t num_values);
   void give(std::span<Echoes> echoes);
   size_t num_bytes() const;  // of all that are here

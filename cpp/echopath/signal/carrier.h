@@ -1,11 +1,11 @@
 #pragma once
-// Beat frequency and start phase of each echo at one chirp (the formula itself: carrier_of in kernels_body.h).
+// Finds the beat frequency and start phase of each echo at one chirp (the formula itself is tones_of in kernels_body.h).
 //
 // Model "lin": over one chirp the delay is linear in time about the window centre t_m. With n the sample, t = n / fs,
 //   s[n] = sum conj(a) exp(j 2 pi {f0 tau + mu t_m tau - mu tau^2 / 2 + f_b (t - t_m)}),
 //   f_b  = mu tau + (f0 + mu t_m - mu tau) taudot.
-// Against the exact phase this errs by 2 pi mu taudot (Tc / 2)^2: 0.0027 rad at 10 m/s, 1 GHz, 25.6 us; per_sample.h is
-// the way without that error.
+// Against the exact phase this errs by 2 pi mu taudot (Tc / 2)^2: 0.0027 rad at 10 m/s, 1 GHz, 25.6 us; per_sample.h has no
+// such error.
 #include <cstdint>
 
 #include "echopath/signal/echo_states.h"
@@ -14,7 +14,7 @@ namespace echopath {
 
 struct ChirpSequence;
 
-// At most kCapacity echoes at one chirp: echo p is (re + j im)[p] e^{j 2 pi frequency[p] (n - reference sample)}.
+// Holds at most kCapacity echoes at one chirp: echo p is (re + j im)[p] e^{j 2 pi frequency[p] (n - reference sample)}.
 struct Carriers {
   static constexpr int kCapacity = EchoStates::kCapacity;
   int count = 0;
@@ -24,7 +24,7 @@ struct Carriers {
   alignas(64) double im[kCapacity];
 };
 
-// Constants of the phase model. `reference_sample`: where the phase of the carriers is taken.
+// Holds the constants of the phase model. The phase of the carriers is taken at `reference_sample`.
 struct CarrierModel {
   CarrierModel(const ChirpSequence& waveform, int reference_sample);
   double start_frequency;       // Hz
@@ -33,11 +33,12 @@ struct CarrierModel {
   double sample_interval;       // s
   double reference_offset;      // samples from the window centre to the reference sample
   double highest_frequency;     // cycles per sample; beat frequencies outside [0, highest) are removed
-  // f0 + mu t_m as a sum of two: the carrier turns 1e4 to 1e6 times, and one rounding of it would leave 1e-11 rad.
+  // f0 + mu t_m is stored as a sum of two: the carrier turns 1e4 to 1e6 times, and one rounding of it would leave 1e-11 rad.
   double centre_frequency, centre_frequency_rest;  // Hz
 };
 
-// Carriers of echoes [begin, begin + count) at `chirp`; count <= Carriers::kCapacity. Phases are right to 7e-14 rad.
+// Finds the carriers of echoes [begin, begin + count) at `chirp`; count <= Carriers::kCapacity. Phases are right to 7e-14
+// rad.
 void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count,
                        Carriers& out);
 

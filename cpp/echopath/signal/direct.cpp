@@ -4,7 +4,7 @@
 namespace echopath {
 namespace {
 
-// Adding this leaves multiples of 2^-29, whose products with the number of a sample are exact up to 2^24 samples.
+// Adding and subtracting this leaves multiples of 2^-29, whose products with a sample's number are exact up to 2^24 samples.
 constexpr double kSplit = 12582912.0;  // 1.5 * 2^23
 
 ECHOPATH_INLINE void add_tone(double frequency, double re, double im, int num_samples, double* out_re, double* out_im) {

@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-// Values at the nodes that some chirps share; echo p of node k stands at p + k * stride.
+// Holds the values at the nodes that some chirps share; echo p of node k stands at p + k * stride.
 struct Nodes {
   const double *delay, *amplitude;  // amplitudes: re, im interleaved
   int64_t stride;
@@ -16,7 +16,7 @@ struct Nodes {
   int order;
 };
 
-// Of kLanes echoes from p on, at kChirps chirps for which the nodes are read once; sums stay in the registers.
+// Evaluates kLanes echoes from p on, at kChirps chirps for which the nodes are read once; the sums stay in the registers.
 template <int kLanes, int kChirps>
 ECHOPATH_INLINE void interpolate_some(const Nodes& nodes, int p, EchoStates* states) {
   typedef double Lanes __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
@@ -55,14 +55,14 @@ void copy_nodes(const Nodes& nodes, int count, EchoStates& state) {
   std::copy_n(nodes.amplitude, 2 * count, state.amplitude);
 }
 
-// As many chirps at once as there are registers for.
+// Takes as many chirps at once as there are registers for.
 template <int kChirps>
 void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
   if (instruction_set() == InstructionSet::kAvx512) run_simd<interpolate<8, kChirps>>(nodes, count, states);
   else run_simd<interpolate<4, kChirps>>(nodes, count, states);
 }
 
-// From `chirp` on, up to `most`.
+// Returns how many chirps from `chirp` on share its nodes, up to `most`.
 int chirps_that_share_nodes(const TimeSampling& sampling, int chirp, int most) {
   int count = 1;
   while (count < most && sampling.first_node[chirp + count] == sampling.first_node[chirp]) ++count;

@@ -1,5 +1,5 @@
 #pragma once
-// Echoes at the window centre of one chirp.
+// Finds the delays, rates and amplitudes of echoes at the window centre of a chirp.
 #include <cstdint>
 
 namespace echopath {
@@ -13,16 +13,16 @@ struct EchoStates {
   alignas(64) double amplitude[2 * kCapacity];      // sqrt(W), re, im interleaved
 };
 
-// Second and third derivative of the delays, 1/s and 1/s^2.
+// Holds the second and third derivatives of the delays, in 1/s and 1/s^2.
 struct EchoBends {
   alignas(64) double bend[EchoStates::kCapacity];
   alignas(64) double twist[EchoStates::kCapacity];
 };
 
-// Of echoes [begin, begin + count), count <= kCapacity, at chirps [chirp, chirp + num_chirps): states [num_chirps]. Costs least
-// where neighbouring chirps share their nodes.
+// Evaluates echoes [begin, begin + count), count <= kCapacity, at chirps [chirp, chirp + num_chirps): states [num_chirps].
+// It costs least where neighbouring chirps share their nodes.
 void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states);
-// Likewise at one chirp. `bends` may be null; zeros where the sampling has none.
+// Evaluates these echoes at one chirp. `bends` may be null; they are zero where the sampling has none.
 void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends = nullptr);
 
 }  // namespace echopath

@@ -20,7 +20,7 @@ constexpr int kMostDrifts = 64;
 constexpr int kEchoesOfCell = 4;  // for each class of drift, as few as make moments worth while
 constexpr int kDigitBits = 11;  // of a pass of the radix sort
 
-// Sorts by bits [first_bit, end_bit), equal ones in their order. `sorted`: room for as many.
+// Sorts by bits [first_bit, end_bit); equal keys keep their order. `sorted` is scratch memory.
 void radix_sort(std::vector<uint64_t>& keys, std::vector<uint64_t>& sorted, int first_bit, int end_bit) {
   constexpr size_t kDigits = size_t{1} << kDigitBits;
   sorted.resize(keys.size());
@@ -42,7 +42,7 @@ const double* EchoTiles::nodes(const Tile& tile) const {
   return nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes;
 }
 
-// Classes of echoes by how far they drift over the frame.
+// Divides echoes into classes by how far they drift over the frame.
 struct DriftClasses {
   double least = 0.0;   // s, of delay
   double width = 1.0;   // s
@@ -69,7 +69,7 @@ double drift_of(const Echoes& block, int64_t echo) {
          block.delay[static_cast<size_t>(echo)];
 }
 
-// As narrow as a cell, unless that leaves few echoes for each cell and class.
+// Returns classes as narrow as a cell, unless that leaves few echoes for each cell and class.
 DriftClasses classes_of_drift(std::span<const Echoes> blocks, double longest_delay, int num_cells) {
   std::vector<std::pair<Extent, Extent>> by_block(blocks.size());
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
@@ -139,7 +139,7 @@ void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double lo
   gather(blocks);
 }
 
-// Tiles end where the group does.
+// A tile ends where its group does.
 void EchoTiles::cut() {
   tiles_.clear();
   first_.clear();
@@ -171,14 +171,14 @@ void EchoTiles::cut() {
 
 namespace {
 
-// Where the values of one echo stand in its block.
+// Says where the values of one echo stand in its block.
 struct Source {
   const double* delay;
   const double* amplitude;  // re, im
   int64_t stride;           // echoes, from node to node
 };
 
-// All nodes of one vector of echoes. Those of the next, far apart in memory, are on their way meanwhile.
+// Gathers all nodes of one vector of echoes. It prefetches those of the next, which are far apart in memory.
 void gather_vector(const Source* from, const Source* next, int count, int num_nodes, double* out) {
   for (int k = 0; k < num_nodes; ++k, out += 3 * kLanes) {
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -193,7 +193,8 @@ void gather_vector(const Source* from, const Source* next, int count, int num_no
   }
 }
 
-// `source_of`(echo of the tile, however far beyond its last). The last vector is filled up without amplitude.
+// `source_of` takes the index of an echo in the tile, which may lie beyond the last. The last vector is filled up with zero
+// amplitudes.
 template <class SourceOf>
 void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
   Source sources[2][kLanes];

@@ -1,5 +1,5 @@
 #pragma once
-// Echoes in the order of their groups and delays, in the layout of the inner loops.
+// Keeps echoes in the order of their groups and delays, in the layout of the inner loops.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -12,8 +12,8 @@ namespace echopath {
 struct DriftClasses;
 
 // Neighbours in delay share cells of the grid, where their kernels are summed at once (cell moments), and the rows of a
-// group stay in the cache. Delays are compared in the middle of the frame, among echoes that drift alike over it, where there
-// are enough of them: what moves otherwise than its neighbours mixes the order, which costs time alone.
+// group stay in the cache. Delays are compared in the middle of the frame, among echoes that drift alike over it, where
+// there are enough of them. An echo that moves otherwise than its neighbours mixes the order, which costs only time.
 class EchoTiles {
  public:
   struct Tile {
@@ -22,8 +22,8 @@ class EchoTiles {
     uint32_t group;
   };
 
-  // From `blocks` that share one sampling. Delays in [0, longest_delay], which is so many cells long, are told apart, others
-  // are not. Reuses memory.
+  // Takes the echoes of `blocks`, which share one sampling. Delays in [0, longest_delay], a span of `num_cells` cells, are
+  // told apart, others are not. Memory is used again.
   void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells);
 
   int num_nodes() const { return num_nodes_; }
@@ -38,7 +38,7 @@ class EchoTiles {
   void gather(std::span<const Echoes> blocks);
 
   int num_nodes_ = 0;
-  // A key is, from its highest bits: group, drift, delay, block, echo in the block.
+  // The bits of a key are, from the highest: group, drift, delay, block, echo in the block.
   int local_bits_ = 0, index_bits_ = 0, delay_bits_ = 0, drift_bits_ = 0, group_bits_ = 0;
   int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
   std::vector<uint64_t> order_, spare_order_;  // keys of all echoes, and room to sort them

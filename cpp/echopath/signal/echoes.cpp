@@ -16,7 +16,7 @@ void require_ascending(const std::vector<double>& times) {
   }
 }
 
-// Derivative at t of the parabola through three points: weights of the three values.
+// Returns the derivative at t of the parabola through three points as weights of the three values.
 void three_point_slope(const double* node, double t, double* weight) {
   for (int k = 0; k < 3; ++k) {
     const double a = node[(k + 1) % 3], b = node[(k + 2) % 3];

@@ -1,20 +1,20 @@
 #pragma once
-// The inner loops of synthesis, compiled once per instruction set from kernels_body.h. The headers that this one includes
-// define no functions with code: what is compiled for one instruction set must not be linked into another's.
+// The inner loops of synthesis, compiled once for each instruction set from kernels_body.h. The headers that this one
+// includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
 #include <cstdint>
 
 #include "echopath/signal/carrier.h"
 
 namespace echopath {
 
-// The rows of all groups at one chirp and channel: real parts of group g from of_group[g] + first on, imaginary parts a row length
-// later. Zero before the first echo; groups without echoes need have none.
+// Holds the rows of all groups at one chirp and channel: the real parts of group g begin at of_group[g] + first, the
+// imaginary parts a row length later. Rows are zero before the first echo; groups without echoes need none.
 struct Rows {
   double* const* of_group;
   int64_t first;
 };
 
-// The kernel of a NUFFT and the grid it is spread on.
+// Describes the kernel of a NUFFT and the grid on which it is spread.
 struct Spreading {
   int width;
   const double* coefficients;  // NufftKernel::coefficients
@@ -22,7 +22,7 @@ struct Spreading {
   int64_t row_length;
 };
 
-// Echoes of one group, near each other in delay, in the layout of EchoTiles, at a few chirps.
+// Holds echoes of one group, near each other in delay, in the layout of EchoTiles, at a few chirps.
 struct TileAtChirps {
   static constexpr int kLanes = 8;       // of the layout, whatever the instruction set
   static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the first-level cache
@@ -37,7 +37,7 @@ struct TileAtChirps {
 };
 
 struct SignalKernels {
-  // Carriers of states.
+  // Computes the carriers of the states.
   void (*modulate)(const CarrierModel& model, const EchoStates& states, int count, Carriers& out);
   // Adds carriers in any order, each to the row of its group.
   void (*spread)(const Spreading& spreading, const Carriers& carriers, Rows rows);
@@ -46,7 +46,7 @@ struct SignalKernels {
                    int64_t chirp_stride);
 };
 
-// Those of instruction_set().
+// Returns the kernels of instruction_set().
 const SignalKernels& signal_kernels();
 
 }  // namespace echopath

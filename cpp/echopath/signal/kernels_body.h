@@ -8,16 +8,16 @@
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
-// Chirps whose echoes at a vector of nodes fit into the registers.
+// With this many chirps, the echoes of a vector of nodes fit into the registers.
 constexpr int kChirpsAtOnce = kLanes == 8 ? 4 : 2;
-// Terms of a polynomial whose moments do, real and imaginary.
+// With this many terms of a polynomial, real and imaginary moments fit into the registers.
 constexpr int kTermsAtOnce = kLanes == 8 ? 12 : 5;
-// Echoes in one cell from which their moments are quicker than a kernel for each, for kernels of one vector or two.
+// From this many echoes in one cell on, their moments are quicker than a kernel for each; for kernels of one vector or two.
 constexpr int kFewInCell[] = {3, 2};
-// Echoes per run of one cell below which it pays to bring those of a cell together, and the cells this can be done for.
+// Where runs of one cell have fewer echoes on average, it pays to bring those of a cell together, if the tile has few cells.
 constexpr int kShortRun = 8;
 constexpr int kCellsOfTile = 128;
-// Echoes of a sorted tile are spread in this many places in turn: a sum of the last few is not yet ready to be loaded.
+// Echoes of a sorted tile are spread at this many places in turn, because the sum of the last few is not yet ready to load.
 constexpr int kStreams = 8;
 
 template <int kCount>
@@ -29,7 +29,7 @@ struct Tones {
   Vecs<kCount> frequency, re, im;
 };
 
-// The phase model of carrier.h, in half turns.
+// Computes the phase model of carrier.h, in half turns.
 template <PhasorError kError, int kCount>
 ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<kCount>& states) {
   const double centre = 2.0 * model.centre_frequency, rest = 2.0 * model.centre_frequency_rest;
@@ -68,7 +68,7 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
   }
 }
 
-// Echoes on the grid at one chirp. Loops may read a vector beyond the last.
+// Holds the places of echoes on the grid at one chirp. Loops may read a vector beyond the last.
 struct Places {
   static constexpr int kSize = TileAtChirps::kCapacity + 8;
   alignas(64) double t[kSize];       // place in the cell, [-1, 1]
@@ -77,7 +77,8 @@ struct Places {
   alignas(64) int32_t cell[kSize];   // of the first kernel value, counted from 1 - width
 };
 
-// Adding this to twice a place in cells, less 1, leaves twice its whole cells, and these in the lowest bits.
+// Adding this to twice a place in cells, less 1, leaves twice the number of whole cells, which also stands in the lowest
+// bits.
 constexpr double kCellShift = 2.0 * kRoundingShift;
 
 ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
@@ -87,7 +88,7 @@ ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Pl
   store(places.t + p, (shifted - kCellShift) - twice);
 }
 
-// Where runs of one cell end: bit p of the words, where the echo behind p has another cell or is none.
+// Marks where runs of one cell end: bit p of the words is set where the echo behind p has another cell or there is none.
 struct RunEnds {
   static constexpr int kWords = TileAtChirps::kCapacity / 64;
   uint64_t word[kWords];
@@ -118,8 +119,8 @@ struct RunEnds {
   }
 };
 
-// How many echoes each of the cells of a tile has, for each of kCounters shares of the tile: a counter that was just raised is
-// not yet ready to be raised again.
+// Counts the echoes in each cell of a tile, for each of kCounters shares of the tile: a counter that was just raised is not
+// yet ready to be raised again.
 struct CellCounts {
   static constexpr int kCounters = 4;
   int share;           // echoes of each share but the last
@@ -129,7 +130,7 @@ struct CellCounts {
   int32_t count[kCellsOfTile][kCounters];
 };
 
-// Calls visit(echo, share), the shares in turn.
+// Calls visit(echo, share), with the shares in turn.
 template <class Visit>
 ECHOPATH_INLINE void visit_shares(int share, int count, Visit visit) {
   const int in_all = count - (CellCounts::kCounters - 1) * share;
@@ -164,7 +165,8 @@ CellCounts count_cells(const int32_t* cell, int count) {
   return counts;
 }
 
-// In the order of the cells, equal ones in theirs. `counts` then tells where the echoes of each share and cell end.
+// Sorts the echoes by cell; those of one cell keep their order. `counts` then tells where the echoes of each share and cell
+// end.
 void bring_together(const Places& places, int count, CellCounts& counts, Places& sorted) {
   int32_t sum = 0;
   for (int c = 0; c < counts.num_cells; ++c) {
@@ -189,7 +191,7 @@ struct Spreader {
   const double* coefficients;
   int64_t row_length;
 
-  // Adds re and im times the values of the kernel.
+  // Adds re and im, which hold the values of the kernel times the amplitude, to the row.
   ECHOPATH_INLINE void add_window(const Vec* re, const Vec* im, double* row) const {
 #pragma GCC unroll 8
     for (int v = 0; v < kVectors; ++v) {
@@ -213,7 +215,7 @@ struct Spreader {
     add_window(re, im, first + places.cell[p]);
   }
 
-  // Sums over the lanes of up to kLanes moments from d on; one that is left alone shares the work of both its parts.
+  // Sums up to kLanes moments from d on over the lanes; a moment that is left alone is summed with both its parts at once.
   template <int kFirst, int kCount>
   ECHOPATH_INLINE static void add_up(int d, const Vec* moment_re, const Vec* moment_im, double* sum_re, double* sum_im) {
     if (kLanes > 2 && d + 1 == kCount) {
@@ -226,7 +228,7 @@ struct Spreader {
     store(sum_im + kFirst + d, sums(moment_im + d));
   }
 
-  // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell: sums of (re + j im) t^d.
+  // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell: the sums of (re + j im) t^d.
   template <int kFirst, int kCount>
   ECHOPATH_INLINE void add_moments(const Places& places, int begin, int end, double* sum_re, double* sum_im) const {
     constexpr int kRounded = (kCount + kLanes - 1) / kLanes * kLanes;
@@ -259,7 +261,7 @@ struct Spreader {
     }
   }
 
-  // The kernel is a polynomial in t: a run of echoes needs its values once.
+  // The kernel is a polynomial in t, so a run of echoes needs its values once.
   ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* row) const {
     alignas(64) double sum_re[kTerms + 2 * kLanes], sum_im[kTerms + 2 * kLanes];
     add_moments<0, (kTerms < kTermsAtOnce ? kTerms : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
@@ -282,7 +284,7 @@ struct Spreader {
     });
   }
 
-  // After bring_together.
+  // Adds the echoes that bring_together has sorted.
   void add_cells(const Places& sorted, const CellCounts& counts, double* first) const {
     int begin = 0;
     for (int c = 0; c < counts.num_cells; ++c) {
@@ -324,7 +326,7 @@ void spread_any(const Spreading& spreading, const Places& places, int count, con
   for (int p = 0; p < count; ++p) spreader.add_echo(places, p, rows.of_group[group[p]] + rows.first);
 }
 
-// By width from the least.
+// The functions are ordered by width, from the least.
 using SpreadTile = void (*)(const Spreading&, const Places&, int, double*);
 constexpr SpreadTile kSpreadTile[] = {spread_tile<3>,  spread_tile<4>,  spread_tile<5>,  spread_tile<6>,  spread_tile<7>,
                                       spread_tile<8>,  spread_tile<9>,  spread_tile<10>, spread_tile<11>, spread_tile<12>,
@@ -354,7 +356,7 @@ ECHOPATH_INLINE void store_places(const Spreading& spreading, const Tones<kChirp
   }
 }
 
-// Places of a tile at kChirps chirps from `chirp`, which interpolate between the same nodes.
+// Finds the places of a tile at kChirps chirps from `chirp` on, which interpolate between the same nodes.
 template <PhasorError kError, int kChirps>
 ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, int chirp,
                                 Places* places) {
@@ -404,7 +406,7 @@ void place_tile_at_all(const CarrierModel& model, const Spreading& spreading, co
 void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
               int64_t chirp_stride) {
   Places places[TileAtChirps::kMaxChirps];
-  // Far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
+  // These phasor errors are far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
   if (spreading.width <= 4) place_tile_at_all<PhasorError::k7em6>(model, spreading, tile, places);
   else if (spreading.width <= 8) place_tile_at_all<PhasorError::k1em12>(model, spreading, tile, places);
   else place_tile_at_all<PhasorError::kRounding>(model, spreading, tile, places);

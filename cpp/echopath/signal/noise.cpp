@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-// Box and Muller: circular complex Gaussian with E|n|^2 = 2.
+// Draws a circular complex Gaussian with E|n|^2 = 2 (Box and Muller).
 std::complex<double> gaussian_pair(uint64_t seed, int64_t index) {
   const auto [u, v] = uniform2(seed, Stream::kNoise, static_cast<uint64_t>(index), 0);
   return std::polar(std::sqrt(-2.0 * std::log1p(-u)), kTwoPi * v);

@@ -1,5 +1,5 @@
 #pragma once
-// Thermal noise of the receiver: the only home of noise.
+// Computes the thermal noise of the receiver; no other module does.
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -9,23 +9,24 @@
 
 namespace echopath {
 
-// Noise power of one IF sample, W: k T0 F fs for complex samples, half of it for real ones (single-sideband noise
-// figure, no image).
+// Returns the noise power of one IF sample in W: k T0 F fs for complex samples, half of it for real ones (single-sideband
+// noise figure, no image).
 double noise_power(const Radar& radar);
 
-// Noise power in the range-Doppler cell that all samples of a frame make with even weights, W, against the received power of
-// an echo there: that of a sample over their number, twice as much for real samples, whose maps hold half of their power.
+// Returns the noise power in W in the range-Doppler cell that all samples of a frame make with even weights, to compare with
+// the received power of an echo there: the power of a sample over their number, twice as much for real samples, whose maps
+// hold half of their power.
 double noise_power_in_cell(const Radar& radar);
 
-// Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise),
-// independent from sample to sample. A pure function of (seed, place in the cube), so it depends on no thread.
-// Parallel over chirps.
-// Raises invalid_argument unless the cube has the size that the radar gives it, Cancelled when the job is.
+// Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise), independent
+// from sample to sample. It is a pure function of (seed, place in the cube), so it does not depend on threads. It runs in
+// parallel over chirps. Raises invalid_argument unless the cube has the size that the radar gives it; raises Cancelled when
+// the job is cancelled.
 void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job = nullptr);
-// The same for the `size` samples at `cube`.
+// Adds this noise to the `size` samples at `cube`.
 void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job = nullptr);
 
-// Samples in the cube of a radar: transmitters x receivers x chirps x samples.
+// Returns the number of samples in the cube of a radar: transmitters x receivers x chirps x samples.
 int64_t cube_size(const Radar& radar);
 
 }  // namespace echopath

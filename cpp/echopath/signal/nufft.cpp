@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kOversampling = 2;
 
-// The error of a tone grows steeply toward the ends of the samples; few of them cannot average it, and get a wider grid.
+// The error of a tone grows steeply toward the ends of the samples; few samples cannot average it and get a wider grid.
 constexpr int kFewSamples = 100, kMargin = 4;
 
 // The grid must hold twice the samples, and the kernel without meeting itself.
@@ -35,7 +35,7 @@ ECHOPATH_INLINE void interleave(const double* re, const double* im, int64_t coun
   }
 }
 
-// values, out: complex
+// `values` and `out` are complex.
 ECHOPATH_INLINE void scale(const double* values, const double* factor, int64_t count, double* __restrict out) {
   for (int64_t i = 0; i < count; ++i) {
     out[2 * i] = values[2 * i] * factor[i];
@@ -43,7 +43,7 @@ ECHOPATH_INLINE void scale(const double* values, const double* factor, int64_t c
   }
 }
 
-// Of this thread, until it asks again.
+// Returns a buffer of this thread, valid until the thread asks again.
 FftBuffer& scratch(int size) {
   thread_local FftBuffer buffer(size);
   if (buffer.size() != size) buffer = FftBuffer(size);
@@ -99,7 +99,7 @@ class Nufft : public SpreadMethod {
   std::vector<double> correction_;
 };
 
-// Thread-safe.
+// Keeps the methods of the last few sizes. Thread-safe.
 class RecentNuffts {
  public:
   std::shared_ptr<const Nufft> get(int num_samples, int width) {

@@ -12,13 +12,13 @@ namespace {
 
 using Real = long double;
 
-// Largest rms error over the samples of one tone of unit amplitude as measured for width 3, 4, ..., whatever the number of
+// Largest measured rms error over the samples of one tone of unit amplitude, for width 3, 4, ..., whatever the number of
 // samples (test_methods.cpp holds them to it).
 constexpr double kToneError[] = {8.8e-3, 8.9e-4, 1.0e-4, 8.7e-6, 8.9e-7, 9.7e-8, 1.25e-8,
                                  1.45e-9, 1.6e-10, 1.65e-11, 1.75e-12, 2.0e-13, 6.5e-14, 0.0};
 
-// Of pi width (1 - 1 / 4), where the kernel's spectrum begins to alias: near 0.98 for the least error; that of width 8,
-// which the default tolerance takes, found to a finer step.
+// Returns beta as a share of pi width (1 - 1 / 4), where the kernel's spectrum begins to alias. The error is least near
+// 0.98; for width 8, which the default tolerance takes, the share was found to a finer step.
 double beta_share(int width) { return width == 8 ? 0.985 : 0.98; }
 
 Real kernel_value(Real beta, int width, Real u) {
@@ -26,7 +26,7 @@ Real kernel_value(Real beta, int width, Real u) {
   return std::exp(beta * (std::sqrt(std::max(Real{0}, 1 - x * x)) - 1));
 }
 
-// Chebyshev polynomial k at node i of count: [k, i].
+// Returns Chebyshev polynomial k at node i of count: [k, i].
 std::vector<Real> chebyshev_table(int count) {
   std::vector<Real> table;
   for (int k = 0; k < count; ++k) {
@@ -35,7 +35,7 @@ std::vector<Real> chebyshev_table(int count) {
   return table;
 }
 
-// Coefficients (lowest power first) of the polynomial through `value` at the count Chebyshev nodes of [-1, 1].
+// Returns the coefficients (lowest power first) of the polynomial through `value` at the count Chebyshev nodes of [-1, 1].
 std::vector<Real> polynomial_through_chebyshev_nodes(const std::vector<Real>& value, const std::vector<Real>& table) {
   const int count = static_cast<int>(value.size());
   std::vector<Real> sum(count), previous(count), current(count);
@@ -86,7 +86,8 @@ NufftKernel::NufftKernel(int kernel_width)
   }
 }
 
-// u = (width / 2) sin(a) takes the root away; the midpoint rule then errs only at the ends, by about 1e-4 exp(-beta).
+// The substitution u = (width / 2) sin(a) takes the root away; the midpoint rule then errs only at the ends, by about 1e-4
+// exp(-beta).
 void NufftKernel::set_nodes() {
   constexpr int kNodes = 32;  // on the positive half: the kernel is even
   for (int i = 0; i < kNodes; ++i) {

@@ -1,7 +1,7 @@
 #pragma once
-// The spreading kernel of the NUFFT: "exponential of semicircle" (Barnett, Magland, af Klinteberg 2019),
+// Approximates the spreading kernel of the NUFFT, the "exponential of semicircle" (Barnett, Magland, af Klinteberg 2019),
 //   phi(u) = exp(beta (sqrt(1 - (2 u / width)^2) - 1)) for |u| <= width / 2 grid cells,
-// each of its unit pieces as a polynomial.
+// by a polynomial in each of its unit pieces.
 #include <vector>
 
 namespace echopath {
@@ -9,17 +9,17 @@ namespace echopath {
 struct NufftKernel {
   static constexpr int kMinWidth = 3;
   static constexpr int kMaxWidth = 16;
-  // Of the polynomials: more would not make the tone error of width_for smaller.
+  // Returns the degree of the polynomials: a higher one would not make the tone error of width_for smaller.
   static constexpr int degree(int width) { return width <= 4 || width == 8 ? width : width - 1; }
-  // Values per coefficient row: whole vectors; the values beyond the width are zero.
+  // Returns the values per coefficient row, which are whole vectors; the values beyond the width are zero.
   static constexpr int padded(int width) { return width <= 8 ? 8 : 16; }
 
-  // The narrowest kernel on a grid of twice the samples whose rms error over the samples of any tone stays below
-  // `tolerance` of its amplitude.
+  // Returns the width of the narrowest kernel on a grid of twice the samples whose rms error over the samples of any tone
+  // stays below `tolerance` of its amplitude.
   static int width_for(double tolerance);
 
   explicit NufftKernel(int kernel_width);
-  // Fourier transform at 0, step, 2 step ... cycles per grid cell: [count].
+  // Returns the Fourier transform at 0, step, 2 step ... cycles per grid cell: [count].
   std::vector<double> transform(double step, int count) const;
 
   int width;

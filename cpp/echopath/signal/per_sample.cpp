@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-// One echo over a chirp. The phase at the window centre is reduced once; what is added to it over the chirp is small.
+// Describes one echo over a chirp. The phase at the window centre is reduced once; the phase added over the chirp is small.
 struct Bent {
   double re, im;           // conj(a), sqrt(W)
   double delay;            // s
@@ -23,7 +23,7 @@ Bent bent_echo(const CarrierModel& model, const EchoStates& states, const EchoBe
           bends.twist[p] / 6.0};
 }
 
-// Beat frequency in the middle of the chirp lies in the band of the anti-alias filter.
+// Returns whether the beat frequency in the middle of the chirp lies in the band of the anti-alias filter.
 bool passes_filter(const CarrierModel& model, const Bent& echo) {
   const double swept = model.slope * echo.delay;
   const double beat = swept + (model.start_frequency + model.slope * model.window_centre - swept) * echo.rate;
@@ -31,7 +31,7 @@ bool passes_filter(const CarrierModel& model, const Bent& echo) {
   return frequency >= 0.0 && frequency < model.highest_frequency;
 }
 
-// Of a sample, in sqrt(W).
+// Returns the value of the echo at a sample, in sqrt(W).
 ECHOPATH_INLINE Phasor value_at(const CarrierModel& model, const Bent& echo, double sample) {
   const double slope = model.slope, centre = model.window_centre;
   const double carrier = model.start_frequency + slope * (centre - echo.delay);

@@ -1,9 +1,9 @@
 #pragma once
-// Moving echoes with the delay of every sample, for rotors and other targets that are too fast for the linear model of
+// Adds moving echoes with the delay of every sample, for rotors and other targets that are too fast for the linear model of
 // carrier.h:
 //   s[n] = sum conj(a) exp(j 2 pi {f0 tau + mu t tau - mu tau^2 / 2}),   t = n / fs,
 //   tau(t) = tau_m + tau' x + tau'' x^2 / 2 + tau''' x^3 / 6,  x = t - t_m.
-// What the series leaves out is tau'''' x^4 / 24: 5e-7 rad at 77 GHz for a blade of 0.3 m at 800 rad/s in chirps of 25.6 us.
+// The series leaves out tau'''' x^4 / 24: 5e-7 rad at 77 GHz for a blade of 0.3 m at 800 rad/s in chirps of 25.6 us.
 #include <span>
 
 #include "echopath/radar/radar.h"

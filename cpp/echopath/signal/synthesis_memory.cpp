@@ -13,7 +13,7 @@ void SynthesisMemory::leave(std::unique_ptr<SynthesisMemory> memory) noexcept {
   KeptMemory<SynthesisMemory>::of_process().leave(std::move(memory));
 }
 
-// The smallest that will do.
+// Takes the smallest room that suffices.
 RowMemory SynthesisMemory::take_rows(size_t count) {
   auto best = rows_.end();
   for (auto rows = rows_.begin(); rows != rows_.end(); ++rows) {

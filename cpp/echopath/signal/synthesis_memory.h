@@ -1,5 +1,5 @@
 #pragma once
-// What a synthesis works on, kept for the next.
+// Keeps the memory of a synthesis for the next one.
 #include <memory>
 #include <vector>
 
@@ -14,12 +14,12 @@ struct RowMemory {
 
 class SynthesisMemory {
  public:
-  // What another left, or new; see KeptMemory.
+  // Returns the memory that an earlier synthesis left, or a new one (KeptMemory).
   static std::unique_ptr<SynthesisMemory> take();
   static void leave(std::unique_ptr<SynthesisMemory> memory) noexcept;
 
   EchoTiles tiles;
-  // Room for `count` values, which are not set.
+  // Returns room for `count` values, which are not set.
   RowMemory take_rows(size_t count);
   void give(RowMemory rows);
   size_t num_bytes() const;

@@ -70,7 +70,7 @@ void validate_sampling(const TimeSampling& sampling, int num_chirps) {
   }
 }
 
-// Bits do not depend on it: every chirp takes all echoes in their order.
+// The bits of the result do not depend on it, because every chirp takes all echoes in their order.
 int chirps_per_task(int num_chirps) {
   const int groups = (num_chirps + kChirpGroup - 1) / kChirpGroup;
   return kChirpGroup * std::clamp(groups / (2 * num_threads()), 1, kGroupsPerTask);
@@ -89,7 +89,7 @@ bool same_sampling(const TimeSampling& a, const TimeSampling& b) {
          a.slope == b.slope;
 }
 
-// How many from the first on share its sampling.
+// Returns how many blocks from the first on share its sampling.
 size_t run_of_one_sampling(std::span<const Echoes> blocks) {
   size_t count = 1;
   while (count < blocks.size() && same_sampling(blocks[count].sampling, blocks.front().sampling)) ++count;
@@ -154,7 +154,7 @@ void Synthesizer::validate(const Echoes& block) const {
   require_finite(reinterpret_cast<const double*>(block.amplitude.data()), 2 * values, "amplitude");
 }
 
-// Doubles of one row, both parts.
+// Returns the number of doubles of one row, both parts.
 int64_t Synthesizer::row_size(bool moving) const {
   return 2 * (moving && sample_rows_ ? sample_rows_ : tones_)->row_length();
 }
@@ -182,7 +182,7 @@ void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
 
 namespace {
 
-// [num_groups], 1 for those that have echoes.
+// Returns [num_groups], 1 for groups that have echoes.
 std::vector<uint8_t> groups_of(std::span<const Echoes> blocks, int num_groups) {
   std::vector<uint8_t> has_echoes(static_cast<size_t>(num_groups));
   for (const Echoes& block : blocks) {
@@ -200,7 +200,8 @@ std::vector<uint8_t> groups_of(const EchoTiles& tiles, int num_groups) {
 
 }  // namespace
 
-// In a number of parts that does not depend on the threads, with rows of their own, added in their order.
+// Adds echoes at rest in a number of parts that does not depend on the threads; each part has rows of its own, which are
+// added in order.
 void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const {
   int64_t total = 0;
   for (const Echoes& block : blocks) total += block.num_echoes;
@@ -229,7 +230,7 @@ void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, J
   }
 }
 
-// `part`: of the echoes of all blocks, one block after the other.
+// `part` counts the echoes of all blocks, one block after the other.
 void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, const RowsOfGroups& rows, Job* job) const {
   int64_t first = 0;
   for (const Echoes& block : blocks) {
@@ -239,7 +240,7 @@ void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, con
   }
 }
 
-// Each task clears its chirps of the rows of groups that are new.
+// Each task clears its own chirps in the rows of groups that are new.
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
   EchoTiles& tiles = memory_->tiles;
   if (spread_) tiles.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
@@ -262,7 +263,7 @@ void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, 
   });
 }
 
-// The delay of the last cell.
+// Returns the delay of the last cell.
 double Synthesizer::longest_delay() const { return waveform_.sampling_rate / waveform_.slope(); }
 
 void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
@@ -280,7 +281,7 @@ void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const Ro
   }
 }
 
-// Every chirp takes all echoes in their order, in blocks that do not depend on the tasks: hence the same bits always.
+// Every chirp takes all echoes in their order, in blocks that do not depend on the tasks, so the bits are always the same.
 void Synthesizer::add_rows(const Echoes& block, Range echoes, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const int64_t stride = row_size(!block.sampling.is_static());
   for (int64_t begin = echoes.begin; begin < echoes.end; begin += Carriers::kCapacity) {
@@ -314,7 +315,7 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
   return out;
 }
 
-// To zeros [chirp, sample].
+// Adds to `out`, zeros [chirp, sample], the samples of one channel and group.
 void Synthesizer::write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const {
   const double* const moving = rows.moving[group].values.get();
   const std::vector<double>& still = rows.still[group];

@@ -1,5 +1,5 @@
 #pragma once
-// IF synthesis: delays and amplitudes of echoes -> samples of every chirp, channel and group.
+// IF synthesis turns delays and amplitudes of echoes into samples of every chirp, channel and group.
 #include <complex>
 #include <cstdint>
 #include <memory>
@@ -24,21 +24,21 @@ enum class Method { kAuto, kDirect, kRecurrence, kNufft };
 struct SynthesisOptions {
   double tolerance = 1e-7;        // rms error over the samples, relative to the sum of |amplitude|; 1e-13 to 0.1
   Method method = Method::kAuto;  // kAuto: recurrence for few echoes, else NUFFT; kDirect is the reference
-  // Moving echoes with the delay of every sample (per_sample.h), whatever the method; costs a sine and cosine per sample.
+  // Takes moving echoes with the delay of every sample (per_sample.h), whatever the method; costs a sine and cosine per
+  // sample.
   bool per_sample = false;
 };
 
-// Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at
-// the sampling rate, or half of it for real samples), or per_sample.h for what moves.
-// Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once
-// from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
-// bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
-// chirps.
-// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and what
-// `add` says; up to KeptMemory::kMost of it is kept for the next.
+// Adds echoes block by block. The model is that of carrier.h ("lin", residual video phase included, brick-wall anti-alias
+// filter at the sampling rate, or half of it for real samples), or that of per_sample.h for moving echoes. Synthesis is
+// linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once from the
+// number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same bits for any
+// number of threads. Echoes that do not move are added once, so a static scene gives bit-identical chirps. It needs 16 bytes
+// x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and the memory that
+// `add` names; up to KeptMemory::kMost of it is kept for the next.
 class Synthesizer {
  public:
-  // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
+  // `expected_echoes` counts the echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
   // tolerance.
   Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
               const SynthesisOptions& options = {});
@@ -47,14 +47,14 @@ class Synthesizer {
 
   Method method() const { return method_; }  // the one chosen, never kAuto
 
-  // Adds blocks to a channel; parallel over chirps. Many echoes at once are quicker: a NUFFT sorts neighbouring moving blocks
-  // of one sampling together, which needs as much memory again as they have. Raises invalid_argument on wrong shapes, groups
-  // out of range, or values that are not finite; nothing is added then. The job's progress advances by the number of echoes;
-  // when it is cancelled, Cancelled is raised and the cubes are void.
+  // Adds blocks to a channel; parallel over chirps. It is quicker to add many echoes at once: a NUFFT sorts neighbouring
+  // moving blocks of one sampling together, which needs as much memory again as they have. Raises invalid_argument on wrong
+  // shapes, groups out of range, or values that are not finite; nothing is added then. The job's progress advances by the
+  // number of echoes. Raises Cancelled when the job is cancelled; the cubes are void then.
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
-  // Samples [channel, chirp, sample] of one group so far, in sqrt(W).
+  // Returns the samples [channel, chirp, sample] of one group so far, in sqrt(W).
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
 
  private:

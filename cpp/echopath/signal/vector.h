@@ -1,4 +1,4 @@
-// Vectors of ECHOPATH_LANES doubles, for kernels_body.h alone (no include guard: once per instruction set).
+// Holds vectors of ECHOPATH_LANES doubles, for kernels_body.h alone (no include guard: once per instruction set).
 #include <cstdint>
 #if defined(__FMA__)
 #include <immintrin.h>
@@ -21,7 +21,7 @@ ECHOPATH_INLINE Vec all(double x) { return x - Vec{}; }
 ECHOPATH_INLINE Mask bits(Vec x) { return reinterpret_cast<Mask>(x); }
 ECHOPATH_INLINE Vec from_bits(Mask x) { return reinterpret_cast<Vec>(x); }
 
-// Bit i tells that a[i] != b[i], for i in [0, 64).
+// Returns bits of which bit i tells that a[i] != b[i], for i in [0, 64).
 ECHOPATH_INLINE uint64_t differences(const int32_t* a, const int32_t* b) {
   uint64_t bits = 0;
 #if ECHOPATH_LANES == 8
@@ -41,17 +41,17 @@ ECHOPATH_INLINE uint64_t differences(const int32_t* a, const int32_t* b) {
   return bits;
 }
 
-// a * b + c; which roundings it has is the compiler's choice.
+// Returns a * b + c; the compiler chooses how it is rounded.
 ECHOPATH_INLINE Vec multiply_add(Vec a, Vec b, Vec c) { return a * b + c; }
 
-// a * b + c where c is nearly -a * b: the product is not rounded before c is added.
+// Returns a * b + c where c is nearly -a * b: the product is not rounded before c is added.
 ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
 #if ECHOPATH_LANES == 8
   return _mm512_fmadd_pd(a, b, c);
 #elif ECHOPATH_LANES == 4
   return _mm256_fmadd_pd(a, b, c);
 #else
-  // Without a fused operation: the product's own error by halves of 26 bits (Dekker 1971).
+  // Without a fused operation the product's own error follows from halves of 26 bits (Dekker 1971).
   constexpr double kSplit = 134217729.0;  // 2^27 + 1
   const Vec big_a = a * kSplit, big_b = b * kSplit;
   const Vec ah = big_a - (big_a - a), bh = big_b - (big_b - b);
@@ -62,7 +62,7 @@ ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
 #endif
 }
 
-// Vectors that take each step together: the chain of one is short of work while it waits for its last result.
+// Holds vectors that take each step together: one vector alone would wait for its last result.
 template <int kCount>
 struct Vecs {
   Vec of[kCount];
@@ -133,7 +133,7 @@ ECHOPATH_INLINE Vec sums(const Vec* x) {
 #endif
 }
 
-// Its first lanes are the sums of all lanes of a and of b.
+// The first lanes of the result are the sums of all lanes of a and of b.
 ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
 #if ECHOPATH_LANES == 8
   Vec pair = __builtin_shuffle(a, b, Mask{0, 8, 2, 10, 4, 12, 6, 14}) + __builtin_shuffle(a, b, Mask{1, 9, 3, 11, 5, 13, 7, 15});

@@ -1,5 +1,5 @@
 #pragma once
-// The trace: scene and radar at mid-frame -> paths.
+// Traces a scene: rays that see scene and radar at mid-frame make the paths of the record.
 #include "echopath/base/job.h"
 #include "echopath/trace/launch/launch_focus.h"
 #include "echopath/trace/record/paths.h"
@@ -15,8 +15,8 @@ struct TraceSettings {
   double start_time = 0.0;      // s, first sample of the frame
   PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
-  // 1 to 64: independent lattices that share the rays, from which errors follow. Each is as fine as its share of the
-  // rays.
+  // 1 to 64: independent lattices that share the rays; errors follow from their differences. Each is as fine as its share of
+  // the rays.
   int batches = 1;
   Sampler sampler = Sampler::kLattice;  // of the launch directions
   LaunchGuide guide;  // without shares: the rule of launch.h
@@ -25,10 +25,10 @@ struct TraceSettings {
 };
 
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
-// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad
-// settings, a radar without antennas, a mirror that is not flat, or a motion that does not cover the frame;
-// DeviceError; Cancelled. With `kept`, the geometry of the trace before serves this one where it can, and stays for the next: the
-// same record, sooner, at the price of its memory.
+// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings, a
+// radar without antennas, a mirror that is not flat, or a motion that does not cover the frame; raises DeviceError; raises
+// Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves its own for the next: the
+// record is the same and comes sooner, but the memory stays in use.
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
             KeptGeometry* kept = nullptr);
 

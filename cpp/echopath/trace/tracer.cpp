@@ -8,11 +8,11 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kRaysPerBlock = 256;
-// What is shot before it becomes part of the record: small enough for caches, and many blocks for each thread.
+// These blocks are shot before they become part of the record: few enough for the caches, and many for each thread.
 constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
-constexpr int64_t kBlocksAhead = 64;  // that tell how large a record of several waves will be
+constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several waves will be
 
-// The whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
+// Sets the whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
 void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
   const auto boresight = [](const Antenna& antenna) -> Vec3 { return antenna.orientation * Vec3::UnitX(); };
   const Vec3 first = boresight(radar.transmitters.front());
@@ -96,7 +96,7 @@ void Tracer::shoot_block(int64_t index, PathBlock& block) const {
   shooter_.shoot(index * kRaysPerBlock, std::min(num_rays(), (index + 1) * kRaysPerBlock), block);
 }
 
-// Every `step`-th block.
+// Shoots every `step`-th block.
 std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
   std::vector<PathBlock> ahead(static_cast<size_t>((num_blocks() + step - 1) / step));
   Job own(job);  // its progress is that of the waves
@@ -104,7 +104,8 @@ std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
   return ahead;
 }
 
-// The blocks [begin, begin + wave.size()), as far as there are so many: those that were shot ahead, others in `wave`.
+// Returns the blocks [begin, begin + wave.size()), as far as there are so many: it takes those that were shot ahead and
+// shoots the others into `wave`.
 std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                                  std::vector<PathBlock>& wave, Job* job) const {
   std::vector<const PathBlock*> blocks(static_cast<size_t>(std::min(std::ssize(wave), num_blocks() - begin)));
@@ -121,7 +122,8 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
   return blocks;
 }
 
-// In waves: what a block holds is still in the cache when it becomes part of the record, and the next wave has its memory.
+// Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
+// memory.
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);

@@ -1,5 +1,6 @@
 #pragma once
-// The steps of a trace: what is made once for all its rays, and the rays in blocks. Internal to the module.
+// Carries out the steps of a trace: it makes once what all rays share, and shoots the rays in blocks. Internal to the
+// module.
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"
@@ -12,7 +13,7 @@ class Tracer {
   Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept = nullptr);
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
-  // Shoots all rays; the same record each time.
+  // Shoots all rays; it returns the same record each time.
   Paths run(Job* job) const;
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;

@@ -7,7 +7,7 @@ namespace echopath {
 namespace {
 
 constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high} << 32 | low; }
-// Where in its triangle a hit is.
+// Identifies where in its triangle a hit is.
 constexpr uint64_t place_key(const Hit& hit) { return pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)); }
 
 }  // namespace
@@ -25,7 +25,7 @@ void ChainPlan::clear() {
   mirror_paths.clear();
 }
 
-// Hits and events of a path in the order in which it was traced.
+// Lists the hits and events of a path in the order in which it was traced.
 struct ChainPlanner::TracedHits {
   const Hit* recorded;
   int count;
@@ -34,12 +34,12 @@ struct ChainPlanner::TracedHits {
 
   int index(int k) const { return is_reversed ? count - 1 - k : k; }
   const Hit& hit(int k) const { return recorded[index(k)]; }
-  // The recorded hits of [first, last].
+  // Returns the recorded hits of [first, last].
   const Hit* run(int first, int last) const { return recorded + (is_reversed ? index(last) : first); }
   bool is_diffuse(int k) const { return diffuse_bits >> index(k) & 1; }
 };
 
-// Material points; -1 where there are flagged mirrors alone.
+// Holds the indices of the first and the last material point; they are -1 where the path has flagged mirrors alone.
 struct ChainPlanner::Ends {
   int first = -1, last = -1;
   bool has_specular = false;  // a hit before the last one reflects and is no flagged mirror
@@ -100,7 +100,7 @@ bool ChainPlanner::is_direct(size_t path) const {
   return paths_->curved_cell.empty() || paths_->curved_cell[path] == std::array<float, 7>{};
 }
 
-// The coherent and the diffuse path of a point follow each other.
+// The coherent and the diffuse path of a point follow each other in the record.
 bool ChainPlanner::add_direct(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
   if (!is_direct(p)) return false;
@@ -136,7 +136,8 @@ uint32_t ChainPlanner::slide_of(int64_t path, const Ends& ends) {
   return static_cast<uint32_t>(plan_.sliding.size() - 1);
 }
 
-// Legs are found by their recorded hits alone: transmitters stand before the first of these, receivers behind the last.
+// A leg is identified by its recorded hits alone: the antenna at which the path begins stands before the first of them, the
+// other antenna behind the last.
 uint32_t ChainPlanner::start_leg(const TracedHits& hits, int first) {
   if (first == 0) return straight_leg(hits.hit(0), hits.is_reversed);
   const Known run{hits.run(0, first), first + 1, hits.is_reversed};
@@ -204,7 +205,7 @@ uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
   return static_cast<uint32_t>(plan_.legs.size() - 1);
 }
 
-// One diffuse hit has an inner part where its triangle may stretch, which changes its area.
+// A path with one diffuse hit has an inner part only where its triangle may stretch, because that changes its area.
 uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
   if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id))) return ChainPlan::kNone;
   const int count = ends.last - ends.first + 1;

@@ -1,6 +1,6 @@
 #pragma once
-// What the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path over each pair of the
-// mirror chains to its hits, so most paths are two legs that others have too.
+// Plans what the paths of a block share: points, mirrors, images of antennas, legs. One ray makes a path for each pair of
+// mirror chains to its hits, so most paths consist of two legs that other paths have too.
 #include <array>
 #include <span>
 
@@ -14,17 +14,17 @@ namespace echopath {
 struct ChainPlan {
   static constexpr uint32_t kNone = ~uint32_t{0};
 
-  // Antennas as seen over mirrors, of transmitters and receivers alike: image `parent` seen in `mirror`. Image 0 is the
-  // antenna itself.
+  // An image of the antennas over mirrors, for transmitters and receivers alike: it is the image `parent` reflected in
+  // `mirror`. Image 0 is the antenna itself.
   struct Image {
     uint32_t parent, mirror;
   };
-  // From the images of all transmitters or of all receivers to a point.
+  // A leg runs from an image of each transmitter (or of each receiver) to a point.
   struct Leg {
     uint32_t image, point;
     bool of_receivers;
   };
-  // What lies between the first and the last material point of a path: hits [begin, end) of `inner_points`.
+  // Describes the part of a path between its first and its last material point: hits [begin, end) of `inner_points`.
   struct Inner {
     size_t begin, end;
     uint64_t diffuse, image;  // bit per hit
@@ -33,13 +33,13 @@ struct ChainPlan {
     size_t place;              // of the path in its block
     int64_t path;
     uint32_t start, end;       // legs, in the order in which the path was traced
-    uint32_t inner;            // kNone: one material point, whose triangle keeps its area
+    uint32_t inner;            // kNone: there is one material point, whose triangle keeps its area
     uint32_t slide;            // index into `sliding`; kNone: its points of reflection stay where they were recorded
     bool is_reversed;          // it starts at a receiver
     bool is_coherent;          // it has a launch cell, at the point of its last leg
     std::complex<double> weight;
   };
-  // A path over flagged mirrors alone: a straight line from an image of the transmitter to the receiver.
+  // A path over flagged mirrors alone is a straight line from an image of the transmitter to the receiver.
   struct MirrorPath {
     size_t place;
     int64_t path;
@@ -47,7 +47,7 @@ struct ChainPlan {
     std::complex<double> weight;
   };
 
-  // What one point sends straight back: at most a coherent and a diffuse path.
+  // Lists the paths that one point sends straight back: at most one coherent and one diffuse path.
   struct Direct {
     static constexpr int64_t kNoPath = -1;
     const Hit* hit;
@@ -69,19 +69,19 @@ struct ChainPlan {
   void clear();
 };
 
-// Makes plans one after the other, and keeps its memory from record to record; for one thread at a time.
+// Makes one plan after the other and keeps its memory from record to record. It serves one thread at a time.
 class ChainPlanner {
  public:
-  // For blocks of this record from now on. All must outlive its use.
-  // with_direct: those that are made of one flat point on a rigid mesh stand apart from the other chains.
+  // Sets the record whose blocks are planned from now on. All arguments must outlive this use. Where `with_direct` is set,
+  // paths with one flat point on a rigid mesh are listed apart from the other chains.
   void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_direct);
-  // For the paths of these indices; valid until the next call.
+  // Returns the plan for the paths of these indices; it is valid until the next call.
   const ChainPlan& operator()(std::span<const int64_t> indices);
 
  private:
   struct TracedHits;
   struct Ends;
-  // Runs of hits that were looked for last: most paths share an end with the one before.
+  // Remembers the run of hits that was looked up last: most paths share an end with the path before.
   struct Known {
     const Hit* hits = nullptr;
     int count = 0;
@@ -111,7 +111,7 @@ class ChainPlanner {
   bool slides_ = false, with_direct_ = false;
   ChainPlan plan_;
   Known last_start_, last_end_;
-  const Hit* last_hit_ = nullptr;  // whose point was looked for last: an end of a path is often that of the next
+  const Hit* last_hit_ = nullptr;  // whose point was looked up last: an end of a path is often that of the next
   uint32_t last_point_ = 0;
   std::vector<std::array<uint32_t, 2>> straight_;  // [point] legs from the antennas themselves: of transmitters, of receivers
   SegmentIds leg_of_, inner_of_[2];  // legs over mirrors; inner parts: as recorded, reversed

@@ -26,7 +26,7 @@ void find_mirrors(const ChainPlan& plan, const PathPreparer& preparer, const Pos
   }
 }
 
-// Of the antennas themselves, as axes that tables of gains need.
+// Stores the axes of the antennas themselves (image 0), which tables of gains need.
 void store_axes(const PosedNodes& nodes, bool of_receivers, AntennaImages& images) {
   for (size_t node = 0; node < nodes.size(); ++node) {
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
@@ -35,7 +35,7 @@ void store_axes(const PosedNodes& nodes, bool of_receivers, AntennaImages& image
   }
 }
 
-// One more mirror: `from` and `to` count antennas of images.
+// Reflects one image in one more mirror: `from` and `to` are entries (image * num_antennas + antenna).
 void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, AntennaImages& images) {
   const size_t num_nodes = images.rows.num_nodes();
   for (size_t node = 0; node < num_nodes; ++node) {
@@ -120,7 +120,7 @@ void PosedPoints::find(const ChainPlan& plan, const PathPreparer& preparer, cons
   }
 }
 
-// What is smooth is so in the frame of its mesh: the point off its facet and the normal there move as any other.
+// A smooth surface is smooth in the frame of its mesh: the point off its facet and the normal there move as any other.
 void PosedPoints::pose_rigid(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point) {
   const PosedScene& trace = preparer.at_trace();
   const Mat3& mesh_from_trace = preparer.mesh_from_trace(hit.mesh_id);
@@ -199,7 +199,7 @@ LocalPath path_of(const ChainPlan::Inner& inner) {
 
 namespace {
 
-// Of hits as posed at a node.
+// Stores the inner part of a path whose hits are posed at a node.
 DiffuseInner store_inner(const LocalPath& path, const PosedHit* hits, size_t entry, size_t node, NodeRows& rows) {
   const InnerPart part = inner_part(path, hits);
   const auto set = [&](size_t row, double value) { rows.row(entry, row)[node] = value; };
@@ -272,13 +272,13 @@ void SlidingParts::move_points(const LocalPath& path, size_t first_entry, const 
 
 namespace {
 
-// An antenna turns the phase of what it sends or receives, by direction.
+// Returns whether an antenna turns the phase of what it sends or receives, by direction.
 bool any_phase(const AntennaImages& images) {
   return std::any_of(images.pattern.begin(), images.pattern.end(),
                      [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
 }
 
-// Axes of the world for the antennas themselves, and what each mirror makes of them.
+// Finds the axes of the world as the antennas themselves see them and as each image sees them over its mirrors.
 void find_axes(const ChainPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
   axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
   for (size_t image = 0; image < plan.images.size(); ++image) {

@@ -1,6 +1,6 @@
 #pragma once
-// Everything that the paths of a block share, at all nodes: posed points, images of antennas, legs, inner parts. Tables keep their
-// memory from block to block.
+// Holds everything that the paths of a block share, at all nodes: posed points, images of antennas, legs, inner parts.
+// Tables keep their memory from block to block.
 #include <deque>
 #include <span>
 
@@ -10,9 +10,9 @@
 namespace echopath {
 
 
-// Distinct points of a block.
+// Holds the distinct points of a block.
 struct PosedPoints {
-  // At the trace.
+  // Describes a point as it was at the trace.
   struct Traced {
     Vec3 position, normal;        // m, relative to the origin; unit
     const Mat3* curvature;        // PosedHit::curvature; null where the surface is flat or may stretch
@@ -31,36 +31,38 @@ struct PosedPoints {
   void pose_stretched(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point);
 };
 
-// Antennas of one end as they are seen over mirrors: a leg is a straight line from one of them.
+// Holds the antennas of one end and their images in mirrors: a leg is a straight line from one of them.
 struct AntennaImages {
   size_t num_antennas = 0;
   std::vector<const AntennaPattern*> pattern;  // [antenna]
   NodeRows rows;                               // of image * num_antennas + antenna, LegToMeasure::ImageRow
-  // Directions toward the image -> axes of the antenna, [image, antenna, node]; empty where no pattern needs it.
+  // Turns directions from the frame of the image into the axes of the antenna, [image, antenna, node]; it is empty where no
+  // pattern needs it.
   std::vector<Mat3> antenna_from_image;
 
-  // mirrors: rows [normal x, y, z, offset] of the planes normal.x = offset, m.
+  // `mirrors` has rows [normal x, y, z, offset] of the planes normal.x = offset, in m.
   void find(const ChainPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers);
   size_t entry(uint32_t image, size_t antenna) const { return image * num_antennas + antenna; }
-  // From an entry to a point (PointToPose::Row), as LegToMeasure::Row; phase: a row for that of the antenna, rad, or null.
+  // Measures the leg from an entry to a point (PointToPose::Row) and writes LegToMeasure::Row to `out`. `phase` is a row for
+  // the phase of the antenna in rad, or null.
   void measure(size_t entry, const double* point, double* out, double* phase) const;
 
  private:
   void finish(size_t entry, const double* point, double* out, double* phase) const;
 };
 
-// Legs from images of antennas to points.
+// Holds the legs from images of antennas to points.
 struct LegTable {
   NodeRows rows;        // [leg], LegToMeasure::Row
-  NodeRows phases;      // likewise, one row: of the antenna, rad; empty where none has one
-  NodeRows components;  // likewise, ComponentsToFind::Row; empty where polarisations are not asked for
+  NodeRows phases;      // [leg], one row: phase of the antenna, rad; empty where no antenna has one
+  NodeRows components;  // [leg], ComponentsToFind::Row; empty where polarisations are not asked for
   bool has_phases = false, has_components = false;
 
   void resize(size_t num_legs, size_t num_nodes, bool with_phases, bool with_components);
   size_t num_bytes() const { return rows.num_bytes() + phases.num_bytes() + components.num_bytes(); }
 };
 
-// Inner parts (DiffuseInner).
+// Holds the inner parts of the paths (DiffuseInner).
 struct ChainInner {
   std::vector<uint8_t> begins_specular, is_single;  // [inner]
   NodeRows rows;                                    // InnerRows::Row
@@ -68,24 +70,24 @@ struct ChainInner {
   void find(const ChainPlan& plan, const PosedPoints& points);
 };
 
-// What sliding points of reflection (specular_slide.h) make of the paths that have them: for each antenna at which a path begins,
-// these stand elsewhere. Entries: slide * ChainTables::stride + antenna.
+// Holds the parts of paths with sliding points of reflection (specular_slide.h). These points depend on the antenna at which
+// the path begins, so entries are counted by slide * ChainTables::stride + antenna.
 struct SlidingParts {
   NodeRows points;  // the first material point, PointToPose::Row
   LegTable legs;    // from the antenna to it
   NodeRows inner;   // InnerRows::Row
 
-  // Without the legs.
+  // Finds all but the legs.
   void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride);
 
  private:
   void move_points(const LocalPath& path, size_t first_entry, const PosedNodes& nodes);
 };
 
-// Of a gain, where it is a whole one that kernels can do, else LegToMeasure::kNoExponent.
+// Returns the exponent of a gain where it is a whole number that the kernels can evaluate, else LegToMeasure::kNoExponent.
 int exponent_of(const AntennaPattern& pattern);
 
-// An inner part as a path of its own, over the hits of `plan.inner_points`.
+// Returns an inner part as a path of its own, over the hits of `plan.inner_points`.
 LocalPath path_of(const ChainPlan::Inner& inner);
 
 struct ChainTables {
@@ -107,7 +109,8 @@ struct ChainTables {
     size_t antenna;
   };
   void measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const;
-  // Polarisations differ from path to path or from node to node (PosedNodes::is_upright).
+  // Returns whether polarisations must be evaluated at all nodes, because they differ from path to path or from node to node
+  // (PosedNodes::is_upright).
   static bool needs_polarizations(const Paths& paths, const PosedNodes& nodes) {
     return !paths.jones.empty() && !nodes.is_upright;
   }

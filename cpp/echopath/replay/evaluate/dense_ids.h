@@ -1,5 +1,5 @@
 #pragma once
-// Numbers for distinct keys.
+// Numbers distinct keys in the order in which they come.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@ namespace echopath {
 
 class DenseIds {
  public:
-  // Of the key (a, b): 0, 1, 2 ... in the order in which new keys come.
+  // Returns the number of the key (a, b): new keys are numbered 0, 1, 2 ... in the order in which they come.
   uint32_t operator()(uint64_t a, uint64_t b = 0) {
     if (2 * keys_.size() >= slots_.size()) grow();
     size_t slot = slot_of(a, b);
@@ -21,7 +21,7 @@ class DenseIds {
     return slots_[slot];
   }
   size_t size() const { return keys_.size(); }
-  // Forgets all, and keeps the memory.
+  // Forgets all keys but keeps the memory.
   void clear() {
     keys_.clear();
     slots_.assign(slots_.size(), kFree);
@@ -34,7 +34,7 @@ class DenseIds {
   static constexpr uint32_t kFree = ~uint32_t{0};
 
   size_t slot_of(uint64_t a, uint64_t b) const {
-    // Odd multipliers without a pattern; the high bits of a product depend on all bits of its factors.
+    // The multipliers are odd and without a pattern; the high bits of a product depend on all bits of its factors.
     const uint64_t mixed = (a ^ b * 0xD6E8FEB86659FD93u) * 0x9E3779B97F4A7C15u;
     return static_cast<size_t>((mixed ^ mixed >> 32) & (slots_.size() - 1));
   }

@@ -117,7 +117,8 @@ bool DirectEvaluation::is_monostatic(const PosedNodes& nodes) const {
   return true;
 }
 
-// From what stands still they look as they are, whatever its scale does to the digits of its matrix.
+// A mesh that stands still sees the antennas where they are in the world: they are copied, so that the scale of the mesh
+// adds no rounding.
 void DirectEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
   const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (const bool of_receivers : {false, true}) {
@@ -131,7 +132,7 @@ void DirectEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& prepar
   }
 }
 
-// The rotation of the mesh since the trace undone, as in `see_antennas`.
+// Undoes the rotation of the mesh since the trace, as `see_antennas` does.
 void DirectEvaluation::see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
   const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (size_t node = 0; node < axes_.num_nodes(); ++node) {
@@ -153,7 +154,7 @@ void DirectEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& preparer) 
   std::copy_n(trace.translation(mesh_id).data(), 3, trace_.translation);
 }
 
-// Slots behind the last are filled with the last.
+// Slots behind the last point repeat the last point.
 void DirectEvaluation::set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio) {
   const Paths& paths = preparer.paths();
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
@@ -169,7 +170,7 @@ void DirectEvaluation::set_slots(Points points, const PathPreparer& preparer, co
   }
 }
 
-// Polarised paths between upright antennas have no more to them than one entry of their matrix.
+// Polarised paths between upright antennas need only one entry of their matrix.
 void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
   const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
   for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
@@ -201,7 +202,7 @@ std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot
 
 bool has_path(const ChainPlan::Direct& point, size_t kind) { return point.path[kind] != ChainPlan::Direct::kNoPath; }
 
-// Nodes of eight points, each with two paths, that follow each other.
+// Points to the nodes of eight points with two paths each that follow each other.
 struct PairNodes {
   const double* values;  // [node, DirectToEvaluate::Row, slot]
   size_t count, stride;
@@ -209,7 +210,7 @@ struct PairNodes {
   double *length, *amplitude;  // of the first path at the first node
 };
 
-// Values of pairs side by side.
+// Writes the values of pairs side by side.
 ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
   const double* from = nodes->values;
   double* length = nodes->length;
@@ -222,7 +223,7 @@ ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
   }
 }
 
-// Sums of pairs are added to their echoes.
+// Adds the sums of pairs to their echoes.
 ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
   const double* from = nodes->values;
   double* length = nodes->length;
@@ -238,7 +239,8 @@ ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
   }
 }
 
-// All points have both paths, whose echoes follow each other at these steps: from kind to kind, from point to point.
+// Returns whether all points have both paths, and whether their echoes follow each other at these steps: `kinds` from kind
+// to kind, `pairs` from point to point.
 bool are_neighbours(std::span<const ChainPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
   if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
   const size_t first = to.echo(points[0]->place[0]);
@@ -255,7 +257,7 @@ PairNodes pair_nodes(const ChainPlan::Direct& first, const ChannelNodes& to, con
   return {values, num_nodes, to.stride, to.scale, to.length + echo, reinterpret_cast<double*>(to.amplitude + echo)};
 }
 
-// Both its paths go to one echo, or there is only one.
+// Returns whether both paths of a point go to one echo, or there is only one.
 bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
   return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
 }
@@ -277,7 +279,7 @@ void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* 
   }
 }
 
-// A path that is not there has amplitude 0.
+// A path that does not exist has amplitude 0.
 void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
   if (are_neighbours(points, to, 0, 1)) {
     const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);

@@ -1,5 +1,6 @@
 #pragma once
-// Paths of one point each at all nodes, eight points of a mesh at a time: they share nothing but the antennas as seen from there.
+// Evaluates paths of one point each at all nodes, eight points of a mesh at a time: they share only the antennas as seen
+// from the mesh.
 #include <vector>
 
 #include "echopath/replay/kernels/direct_kernels.h"
@@ -7,12 +8,12 @@
 
 namespace echopath {
 
-// Keeps its memory from block to block; for one thread at a time.
+// It keeps its memory from block to block and serves one thread at a time.
 class DirectEvaluation {
  public:
   struct Wanted {
     uint8_t* turned = nullptr;    // [P] or null, see ChainEvaluation::mark_turned
-    bool with_amplitudes = true;  // else they are of no interest
+    bool with_amplitudes = true;  // else they are not evaluated
   };
   // Writes the direct paths of the plan, for antennas that can_evaluate_directly.
   void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
@@ -45,7 +46,7 @@ class DirectEvaluation {
   double turned_[DirectSlots::kSlots];
 };
 
-// Antennas whose gains are whole powers of cosines.
+// Returns whether the gains of all antennas are whole powers of cosines.
 bool can_evaluate_directly(const Radar& radar);
 
 }  // namespace echopath

@@ -12,7 +12,7 @@ void set_cell(const PlacedCell& cell, CoherentPath& path) {
   for (int a = 0; a < 2; ++a) std::copy_n(cell.tangent[a].data(), 3, path.tangent[a]);
 }
 
-// A mesh in whose frame the tangents of stretching cells are.
+// Sets a mesh whose frame is that of the world: the tangents of stretching cells stand in it.
 void set_world(size_t num_nodes, NodeRows& world) {
   world.resize(1, PointToPose::kNumMeshRows, num_nodes);
   for (size_t row = 0; row < PointToPose::kNumMeshRows; ++row) {
@@ -59,7 +59,7 @@ ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, si
   return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
 }
 
-// Between upright antennas one entry of a matrix is all that counts.
+// Between upright antennas only one entry of the matrix counts.
 ComplexOf<double> ChainEvaluation::scaled_weight(const ChainPlan::Chain& chain, double scale) const {
   std::complex<double> weight = scale * chain.weight;
   if (!paths_->jones.empty() && !tables_.has_polarizations) {
@@ -77,7 +77,7 @@ ChainEvaluation::MeasuredLeg ChainEvaluation::end_of(const ChainPlan::Chain& cha
   return {tables_.legs, chain.end * tables_.stride + antenna};
 }
 
-// antenna: at the start; null where there is one material point.
+// `antenna` is the antenna at the start. The result is null where there is one material point.
 const double* ChainEvaluation::inner_of(const ChainPlan::Chain& chain, size_t antenna) const {
   if (chain.slide != ChainPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.stride + antenna, 0);
   return chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
@@ -118,7 +118,7 @@ void ChainEvaluation::evaluate_coherent(const ChainPlan& plan, const ChainPlan::
   else reflect_from_stretching(slot);
 }
 
-// Cells differ from node to node, and so does the area that the ray stands for.
+// Cells differ from node to node, and so does the area for which the ray stands.
 void ChainEvaluation::reflect_from_stretching(size_t slot) {
   CoherentPath path = coherent_[slot];
   const ComplexOf<double> weight = path.path.weight;
@@ -137,7 +137,7 @@ void ChainEvaluation::evaluate_diffuse(const ChainPlan::Chain& chain, const Ends
   kernels_->combine({path_of(chain, ends, scale, slot), begins_specular, is_single}, values_.stride());
 }
 
-// What polarisations and phases of the antennas at both ends make of a path, as far as its legs know them.
+// Applies the polarisations and phases of the antennas at both ends, where its legs hold them, to a path.
 void ChainEvaluation::turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
   if (start.table.has_components) polarize(path, start, end, slot);
   if (start.table.has_phases) turn_phase(start, end, slot);
@@ -163,11 +163,11 @@ void ChainEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& en
   }
 }
 
-// Each end sees the other over the mirrors: a leg from the transmitter's image to the receiver, and one back.
+// Each end sees the other over the mirrors: one leg leads from the transmitter's image to the receiver, and one back.
 void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                                        double scale) {
   constexpr size_t kSlot = 0;
-  // Between upright antennas the components count, too: straight up or down these send nothing.
+  // The components are needed between upright antennas too, because these send nothing straight up or down.
   mirror_legs_.resize(2, nodes.size(), tables_.has_phases, !paths_->jones.empty());
   const MeasuredLeg start{mirror_legs_, 0}, back{mirror_legs_, 1};
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
@@ -177,7 +177,7 @@ void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const 
     for (const size_t end : {0, 1}) {
       const ChainTables::ImageOfAntenna& other = ends[1 - end];
       const AntennaImages& images = tables_.images[other.of_receivers];
-      // An antenna stands in the rows of an image where a point stands in its own.
+      // The position of an antenna stands in the same rows as the position of a point.
       const double* point = images.rows.row(images.entry(other.image, other.antenna), 0);
       tables_.measure(ends[end], point, nodes, end, mirror_legs_);
     }
@@ -196,7 +196,7 @@ void ChainEvaluation::mark_turned(const ChainPlan& plan, uint8_t* turned) const 
   for (const ChainPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
 }
 
-// The values of some paths to their places, node by node: neighbours share the lines of the cache.
+// Writes the values of some paths to their places, node by node, because neighbours share the lines of the cache.
 template <class Path>
 void ChainEvaluation::put(std::span<const Path> paths, const ChannelNodes& to) const {
   const double* const values = values_.row(0, 0);

@@ -1,6 +1,6 @@
 #pragma once
-// Paths of a block at all nodes, from the legs that they share: a path costs a sum of lengths, a product of factors and, where it is
-// coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
+// Evaluates the paths of a block at all nodes from the legs that they share: a path costs a sum of lengths, a product of
+// factors and, where it is coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
 #include <array>
 
 #include "echopath/replay/evaluate/chain_tables.h"
@@ -9,14 +9,15 @@
 
 namespace echopath {
 
-// Where the values of one channel go, a row of echoes for each node: lengths (m) times `scale`, amplitudes in sqrt(W).
+// Says where the values of one channel are written, one row of echoes for each node: lengths (m) times `scale`, amplitudes
+// in sqrt(W).
 struct ChannelNodes {
   double* length;
   std::complex<double>* amplitude;
   size_t stride;      // between nodes
   size_t first_path;  // places count from there
   double scale;
-  const uint32_t* echo_of = nullptr;  // [path] to which it is added, amplitudes are 0 before; null: each has its own
+  const uint32_t* echo_of = nullptr;  // [path] echo that it is added to, which begins at 0; null: each has its own
 
   size_t echo(size_t place) const { return echo_of ? echo_of[first_path + place] : first_path + place; }
   void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
@@ -26,20 +27,21 @@ struct ChannelNodes {
   }
 };
 
-// Some channels [tx * num_rx + rx] for the antennas of the nodes: one after the other from `first` on.
+// Names some channels [tx * num_rx + rx] for the antennas of the nodes, one after the other from `first` on.
 struct ChannelSpan {
   size_t first;
   std::span<const ChannelNodes> nodes;
 };
 
-// Keeps its memory from block to block; for one thread at a time.
+// It keeps its memory from block to block and serves one thread at a time.
 class ChainEvaluation {
  public:
   // Writes the chains and mirror paths of the plan.
   void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                   const ChannelSpan& channels);
-  // Of the plan and the nodes of the last call: sets turned [place] to 1 where the surface at an end of the path turns its other side to
-  // the first antenna there between the first and the last node. Its amplitude has a root on the way.
+  // Reads the plan and the nodes of the last call: sets turned[place] to 1 where the surface at an end of the path turns its
+  // other side to the first antenna there between the first and the last node, so that the amplitude of the path passes
+  // through zero.
   void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
   size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLambert = 1.0 / kPi;
 
-// Area of the triangles over that at the trace, of all diffuse hits together.
+// Returns the area of the triangles over that at the trace, multiplied over all diffuse hits.
 double diffuse_area_ratio(const LocalPath& path, const PosedHit* hits) {
   double ratio = 1.0;
   for (int k = path.first_material; k <= path.last_material; ++k) {

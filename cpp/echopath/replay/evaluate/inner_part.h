@@ -1,5 +1,5 @@
 #pragma once
-// What lies between the first and the last material point of a path; the same for all antennas.
+// Describes the part of a path between its first and its last material point; it is the same for all antennas.
 #include "echopath/replay/posed/path_geometry.h"
 
 namespace echopath {
@@ -16,10 +16,10 @@ struct InnerPart {
   bool lit = true;                // every diffuse hit between is seen from one side
 };
 
-// Asks of the path for its events and material points alone, and of the hits for points and normals.
+// Reads only the events and material points of the path, and only points and normals of the hits.
 InnerPart inner_part(const LocalPath& path, const PosedHit* hits);
 
-// What of it a diffuse path needs, as path_formula.h asks for it.
+// Holds the values of an inner part that a diffuse path needs (path_formula.h).
 struct DiffuseInner {
   bool begins_specular = false;  // the first material point is none of the diffuse hits
   bool is_single = true;         // there is one diffuse hit

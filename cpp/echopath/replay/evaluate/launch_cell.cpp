@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatRatio = 1e-3;         // of both principal curvatures: below it the lesser direction is flat
+constexpr double kFlatRatio = 1e-3;         // ratio of the principal curvatures below which the lesser direction is flat
 constexpr double kFlatCurvature = 1e-6;     // 1/m: below it a surface is flat
 
 Flatness flatness_of(const PosedHit& hit) {
@@ -21,7 +21,7 @@ Flatness flatness_of(const PosedHit& hit) {
   return small < kFlatRatio * large ? Flatness::kFlatOneWay : Flatness::kCurved;
 }
 
-// The direction of curvature of a cylinder, in cells.
+// Finds the direction of curvature of a cylinder, in cells.
 void find_across(const CellShape& cell, double* across) {
   Eigen::Matrix2d bend;
   bend << cell.bend[0], cell.bend[1], cell.bend[1], cell.bend[2];
@@ -65,7 +65,7 @@ CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTang
   return shape;
 }
 
-// Tangents stretch with their triangle, and so does the solid angle that it takes of the source.
+// Tangents stretch with their triangle, and so does the solid angle that it takes up as seen from the source.
 double root_area(const CellTangents& tangents, const PosedHit& hit, double density) {
   return std::sqrt(tangents[0].cross(tangents[1]).norm() / hit.area_ratio * density);
 }

@@ -1,18 +1,19 @@
 #pragma once
-// Lengths and amplitudes of blocks of paths at the nodes of a time grid: plans what the paths share, and evaluates it.
+// Evaluates lengths and amplitudes of blocks of paths at the nodes of a time grid: it plans what the paths share and
+// evaluates that once.
 #include "echopath/replay/evaluate/direct_evaluation.h"
 
 namespace echopath {
 
-// Keeps its memory from block to block; for one thread at a time.
+// It keeps its memory from block to block and serves one thread at a time.
 class PathEvaluator {
  public:
   using Wanted = DirectEvaluation::Wanted;
-  // For blocks of this record, played back with `radar`, from now on. All must outlive its use. With SpecularPoints::kFermat
-  // lengths, cosines, gains and spreading are those over the moved points, for each antenna at which a path begins; reflection
-  // coefficients and launch cells stay those of the trace.
+  // Sets the record whose blocks are evaluated from now on, and the `radar` to which it is played back. All must outlive
+  // this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved points, for each
+  // antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
   void begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular);
-  // The paths that are evaluated next, which must outlive that.
+  // Plans the paths that are evaluated next; the indices must outlive that evaluation.
   void plan(std::span<const int64_t> indices) { plan_ = &planner_(indices); }
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted = {});
   size_t num_bytes() const { return chains_.num_bytes() + direct_.num_bytes(); }  // of its memory, nearly all

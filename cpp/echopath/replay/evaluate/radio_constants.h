@@ -1,5 +1,5 @@
 #pragma once
-// What amplitudes ask of the radar and of the settings of a replay.
+// Holds the constants of the radar and of the replay settings that amplitudes depend on.
 #include "echopath/replay/kernels/cell_formula.h"
 #include "echopath/trace/record/paths.h"
 
@@ -14,14 +14,14 @@ struct RadioConstants {
   CellView cells;
 
   CellFilter filter() const { return {wavenumber, spread, footprint, cells}; }
-  // What of the amplitude (path_formula.h) is the same for all paths of a kind: of coherent ones in sqrt(W), of diffuse ones and
-  // of those over mirrors alone in sqrt(W) m.
+  // Return the factor of the amplitude (path_formula.h) that all paths of a kind share: in sqrt(W) for coherent paths, in
+  // sqrt(W) m for diffuse paths and for paths over mirrors alone.
   double coherent_scale() const;
   double diffuse_scale() const;
   double mirror_scale() const { return wavelength * coherent_scale(); }
 };
 
-// Those of a record played back with `radar`.
+// Returns the constants for a record that is played back with `radar`.
 RadioConstants radio_constants(const Paths& paths, const Radar& radar);
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// Values by runs of neighbouring hits of a record, told apart by their contents.
+// Stores a value for each distinct run of neighbouring hits of a record; runs are told apart by their contents.
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -12,8 +12,8 @@ class SegmentIds {
  public:
   static constexpr uint32_t kNone = ~uint32_t{0};
 
-  // The value of `count` hits (which must stay where they are) under `kind`; kNone where they are new, for the caller to set.
-  // Valid until the next call.
+  // Returns the value of `count` hits under `kind`; it is kNone for a new run, and the caller then sets it. The hits must
+  // stay where they are. The reference is valid until the next call.
   uint32_t& operator()(const Hit* hits, int count, uint64_t kind) {
     if (2 * size_ >= entries_.size()) grow();
     const uint64_t hash = hash_of(hits, count, kind);
@@ -27,7 +27,7 @@ class SegmentIds {
     return entry.value;
   }
 
-  // Forgets all, and keeps the memory.
+  // Forgets all runs but keeps the memory.
   void clear() {
     size_ = 0;
     if (++turn_ != 0) return;
@@ -40,7 +40,7 @@ class SegmentIds {
     const Hit* hits = nullptr;
     uint64_t hash = 0, kind = 0;
     uint32_t value = kNone;
-    uint16_t count = 0, turn = 0;  // of `clear` in which it was taken
+    uint16_t count = 0, turn = 0;  // turn: number of the `clear` since which it is taken
   };
 
   bool is_taken(const Entry& entry) const { return entry.turn == turn_; }
@@ -48,7 +48,8 @@ class SegmentIds {
     return entry.hash == hash && entry.kind == kind && entry.count == count &&
            (entry.hits == hits || std::memcmp(entry.hits, hits, static_cast<size_t>(count) * sizeof(Hit)) == 0);
   }
-  // Odd multipliers without a pattern; high bits of a product depend on all bits of its factors, and are brought down.
+  // The multipliers are odd and without a pattern; the high bits of a product depend on all bits of its factors, and the
+  // shifts bring them down.
   static uint64_t hash_of(const Hit* hits, int count, uint64_t kind) {
     uint64_t hash = kind * 0xD6E8FEB86659FD93u + static_cast<uint64_t>(count);
     for (int k = 0; k < count; ++k) {

@@ -9,7 +9,7 @@
 namespace echopath {
 namespace {
 
-// hit: as posed; curved cells have edges there, of which the root of their area is asked.
+// `hit` is posed; for curved cells it has edges, because the root of their area is needed.
 PlacedCell place(const LaunchCell& cell, const CellTangents& tangents, const PosedHit& hit, double density) {
   PlacedCell out;
   out.shape = cell_shape(cell, hit, tangents);
@@ -60,7 +60,7 @@ TraceCells::Arrival TraceCells::arrival_of(const ChainPlan::Chain& chain) const 
   return {length + part.length, part.last_arrival};
 }
 
-// Of the cell of the path's own stratum, on the plane of the surface.
+// Returns the tangents of the cell of the path's own stratum, on the plane of the surface.
 CellTangents TraceCells::flat_tangents(const ChainPlan::Chain& chain, const PosedHit& hit, double density) const {
   const Arrival arrival = arrival_of(chain);
   const double cos_in = hit.normal.dot(arrival.direction), side = arrival.length / std::sqrt(density);  // of the tube, m
@@ -94,7 +94,7 @@ PlacedCell TraceCells::on_rigid(const ChainPlan::Chain& chain) const {
   return out;
 }
 
-// Tangents stretch with their triangle.
+// Tangents stretch with their triangle, so each node has its own cell.
 std::vector<PlacedCell> TraceCells::on_stretching(const ChainPlan::Chain& chain, const PosedNodes& nodes) const {
   std::vector<PlacedCell> out(nodes.size());
   if (!has_cell(chain)) return out;

@@ -1,11 +1,11 @@
 #pragma once
-// Launch cells of the coherent paths of a block, found by what these paths share.
+// Finds the launch cells of the coherent paths of a block from what these paths share.
 #include "echopath/replay/evaluate/chain_tables.h"
 #include "echopath/replay/evaluate/launch_cell.h"
 
 namespace echopath {
 
-// A launch cell where it lies.
+// Describes a launch cell and where it lies.
 struct PlacedCell {
   CellShape shape;
   Vec3 tangent[2];         // T_a, m: in the mesh's frame where the mesh is rigid, else in the world
@@ -14,12 +14,12 @@ struct PlacedCell {
 
 class TraceCells {
  public:
-  // All must outlive it.
+  // All arguments must outlive it.
   TraceCells(const ChainPlan& plan, const PathPreparer& preparer, const PosedPoints& points);
   bool may_stretch(uint32_t mesh_id) const { return preparer_.may_stretch(mesh_id); }
-  // On a mesh that moves rigidly: the same at all times.
+  // Returns the cell on a mesh that moves rigidly; it is the same at all times.
   PlacedCell on_rigid(const ChainPlan::Chain& chain) const;
-  // On a mesh that may stretch, at each of the nodes.
+  // Returns the cell on a mesh that may stretch, at each of the nodes.
   std::vector<PlacedCell> on_stretching(const ChainPlan::Chain& chain, const PosedNodes& nodes) const;
 
  private:
@@ -32,7 +32,7 @@ class TraceCells {
   const Hit& hit_of(const ChainPlan::Chain& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
   bool has_cell(const ChainPlan::Chain& chain) const;
   double density_of(const ChainPlan::Chain& chain) const;  // rays per sr
-  // As recorded behind a curved bounce; null where chains are flat.
+  // Returns the cell that was recorded behind a curved bounce, or null where the chain is flat.
   const std::array<float, 7>* curved_cell_of(const ChainPlan::Chain& chain) const;
 
   const ChainPlan& plan_;

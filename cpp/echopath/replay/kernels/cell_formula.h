@@ -1,5 +1,6 @@
 #pragma once
-// The footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles: Math as in base/scalar_math.h.
+// The footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles; Math is as in
+// base/scalar_math.h.
 #include "echopath/em/footprint_formula.h"
 
 namespace echopath {
@@ -8,16 +9,16 @@ namespace echopath {
 // would draw an edge across the surface, and the edge would radiate.
 enum class Flatness { kFlat, kFlatOneWay, kCurved };
 
-// What a launch cell weighs its ray with.
+// Says with what a launch cell weights its ray.
 enum class CellWeight {
   kFilter,  // the footprint filter
   kPoints,  // BetweenRays::points, without a filter
   kEdges,   // BetweenRays::edges
 };
 
-// How launch cells are looked at.
+// Says how launch cells are looked at.
 struct CellView {
-  double side = 1.0;  // relative to those of the launch, for kFilter: what finer or coarser ones would do
+  double side = 1.0;  // relative to those of the launch, for kFilter: shows the effect of finer or coarser cells
   CellWeight weight = CellWeight::kFilter;
 };
 
@@ -30,7 +31,8 @@ struct CellFilter {
 
 inline constexpr double kNoFacets = 1e150;  // m^2, of a surface whose triangles go on as one
 
-// A cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. Does not change while its mesh moves rigidly.
+// Describes a cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. The shape does not change while its mesh
+// moves rigidly.
 struct CellShape {
   bool is_known = false;           // else the filter is off
   bool is_curved = false;          // behind a curved specular bounce: `turn` is that of the trace
@@ -42,7 +44,7 @@ struct CellShape {
   bool is_coarse = false;          // is_coarse_cell
 };
 
-// A cell as waves meet and leave it.
+// Describes the cell as waves meet and leave it.
 template <class Real>
 struct CellWaves {
   Real cos_in, cos_out;                          // positive
@@ -51,8 +53,8 @@ struct CellWaves {
   Real along_arrival[2], along_departure[2];     // of unit directions of travel, T_a.u and T_a.s, m
 };
 
-// Gradient g of the cell, in rad per cell, and matrix h, in rad per cell^2.
-// Shape: CellShape, or one like it for as many cells as Real has lanes.
+// Returns the gradient g of the phase in rad per cell, and the matrix h in rad per cell^2. Shape is CellShape, or a type
+// like it that holds as many cells as Real has lanes.
 template <class Shape, class Real>
 ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
   const double per_side = filter.wavenumber * filter.view.side, per_area = per_side * filter.view.side;
@@ -76,7 +78,7 @@ ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>
                                            : second_order_footprint_of<Math>(phase, filter.spread);
 }
 
-// Flat-top where the phase is nearly linear, else quadratic.
+// A flat facet has a flat-top filter where the phase is nearly linear, else the quadratic one.
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
   constexpr double kFlatPhase = 0.05;  // rad: quadratic phase (spread^2 h) below which a flat facet is flat-top
@@ -88,7 +90,8 @@ ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& p
   return {is_bent ? bent.re : flat, is_bent ? bent.im : flat * 0.0};
 }
 
-// Along the axis of a cylinder the facets are as long as the cylinder: flat-top there, second order across.
+// Along the axis of a cylinder the facets are as long as the cylinder: the filter is flat-top there and of second order
+// across.
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
   const double x = cell.across[0], y = cell.across[1];
@@ -100,19 +103,21 @@ ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, cons
   return {flat * bent.re, flat * bent.im};
 }
 
-// What a curved surface radiates fades out toward the lines where it stops being lit or seen: 4 cos_in cos_out/(cos_in +
-// cos_out)^2, one where the surface mirrors, with a level slope there, so that the echo by geometrical optics stays, and one
-// everywhere for antennas at one place. The currents that are cut off at the line where the receiver loses sight of them would
-// radiate an edge wave that the body does not have: without the taper a sphere of ka 161 errs by up to .9 dB up to 120
-// degrees between both ways, and the more the better the rays resolve the line, with it by .03 dB (against Mie).
+// The currents of a curved surface fade out toward the lines where it stops being lit or seen, by the factor 4 cos_in
+// cos_out/(cos_in + cos_out)^2. The factor is one where the surface mirrors and has no slope there, so that the echo of
+// geometrical optics stays; for antennas at one place it is one everywhere. Currents that end at the line where the receiver
+// loses sight of them would radiate an edge wave that the body does not have: without the taper a sphere of ka 161 errs by
+// up to .9 dB up to 120 degrees between both ways, the more the better the rays resolve the line; with it by .03 dB (against
+// Mie).
 template <class Real>
 ECHOPATH_INLINE Real shadow_taper(const CellWaves<Real>& at) {
   const Real sum = at.cos_in + at.cos_out;
   return 4.0 * at.cos_in * at.cos_out / (sum * sum);
 }
 
-// Whether a cell is wider than the facets of its mesh, so that its own one tells nothing of the rest; by its narrower side,
-// since toward grazing the other one says how the ray lies, not how far apart rays are. product: CellShape::product.
+// Returns whether a cell is wider than the facets of its mesh, so that its own facet tells nothing of the others. Its
+// narrower side counts, because toward grazing the other side says how the ray lies, not how far apart rays are. `product`
+// is CellShape::product.
 template <class Math, class Real>
 ECHOPATH_INLINE auto is_coarse_cell(const Real* product, double facet_area) {
   const Real half = 0.5 * (product[0] - product[2]);
@@ -120,7 +125,7 @@ ECHOPATH_INLINE auto is_coarse_cell(const Real* product, double facet_area) {
   return narrow > facet_area;
 }
 
-// BetweenRays of a cell, of which a coarse one may hold all. is_coarse: a truth value, or a mask of lanes.
+// Returns the BetweenRays of a cell; a coarse cell may hold any wave. `is_coarse` is a truth value or a mask of lanes.
 template <class Math, class Shape, class Mask, class Real>
 ECHOPATH_INLINE Real between_rays_of_cell(const Shape& cell, const Mask& is_coarse, const CellWaves<Real>& at,
                                           const CellFilter& filter) {

@@ -22,7 +22,7 @@ extern const DirectKernels kDirectKernels, kDirectKernelsOfOne;
 
 namespace {
 
-// Those of instruction_set().
+// Holds the kernels of instruction_set().
 struct KernelsOfSet {
   const ChainKernels &chains, &chains_of_one;
   const DirectKernels &direct, &direct_of_one;

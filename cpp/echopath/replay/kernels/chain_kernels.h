@@ -1,6 +1,7 @@
 #pragma once
-// The inner loops of replay along nodes, compiled once per instruction set from chain_kernels_body.h. The headers that this one
-// includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
+// The inner loops of replay along nodes, compiled once for each instruction set from chain_kernels_body.h. The headers that
+// this one includes define no functions with code: what is compiled for one instruction set must not be linked into
+// another's.
 //
 // Pointers to constant or written doubles are the first of several rows of `stride` nodes each (node_rows.h).
 #include <cstddef>
@@ -10,7 +11,7 @@
 
 namespace echopath {
 
-// A point and its normal that move with a mesh.
+// Describes a point and its normal that move with a mesh.
 struct PointToPose {
   enum MeshRow { kLinear, kTranslation = 9, kNumMeshRows = 12 };  // world from mesh: matrix row by row; m
   enum Row { kPosition, kNormal = 3, kAreaRatio = 6, kNumRows };
@@ -19,26 +20,26 @@ struct PointToPose {
   double* out;                    // area ratio 1
 };
 
-// From the image of an antenna to a point.
+// Describes a leg from the image of an antenna to a point.
 struct LegToMeasure {
   enum ImageRow { kImagePosition, kBoresight = 3, kNumImageRows = 6 };  // m; unit
-  // Length in m, diffuse_leg (path_formula.h), root of the gain.
+  // The rows hold the length in m, the diffuse_leg (path_formula.h) and the root of the gain.
   enum Row { kLength, kFactor, kGain, kNumRows };
   static constexpr int kNoExponent = -1;
   const double *image, *point;
-  // gain = root_peak^2 cos^exponent in front of the antenna; kNoExponent: cosines of the boresight and of the point stand in
-  // the places of gain and factor.
+  // The gain is root_peak^2 cos^exponent in front of the antenna. With kNoExponent the cosine of the boresight takes the
+  // place of the gain, and the cosine at the point that of the factor.
   int exponent;
   double root_peak;
   double* out;
 };
 
-// Between the first and the last material point (DiffuseInner, InnerPart::last_arrival).
+// Describes the part between the first and the last material point (DiffuseInner, InnerPart::last_arrival).
 struct InnerRows {
   enum Row { kLength, kToFirst, kRootCosFirst, kFactor, kFirstSign, kLastSign, kArrival, kNumRows = 9 };
 };
 
-// Two legs and what lies between.
+// Describes a path of two legs and the part between them.
 struct PathToCombine {
   enum Row { kLength, kRe, kIm, kNumRows };  // m, sqrt(W)
   const double *start, *end;
@@ -52,7 +53,7 @@ struct DiffusePath {
   bool begins_specular, is_single;  // of `inner`
 };
 
-// Physical optics at the last material point.
+// Describes a path with physical optics at the last material point.
 struct CoherentPath {
   PathToCombine path;
   const double *start_image, *end_image, *point;
@@ -63,8 +64,8 @@ struct CoherentPath {
   double root_area;                 // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
 };
 
-// The polarisation of an antenna across a leg, as it departs: horizontal and vertical components at the antenna. Of what
-// arrives over the same leg the horizontal one is the opposite.
+// Describes the polarisation of an antenna across a leg, as the wave departs: its horizontal and vertical components at the
+// antenna. For a wave that arrives over the same leg the horizontal component changes its sign.
 struct ComponentsToFind {
   enum AxisRow { kAxes, kNumAxisRows = 9 };          // of the world as they look over the mirrors of the image, one by one; unit
   enum PolarizationRow { kNumPolarizationRows = 3 };  // of the antenna, in the world
@@ -73,7 +74,7 @@ struct ComponentsToFind {
   double* out;
 };
 
-// What the polarisations of both ends make of a path that is combined.
+// Describes a path that is combined, with the polarisations of both ends.
 struct PathToPolarize {
   const double *start, *end;  // ComponentsToFind::Row
   double re[4], im[4];        // JonesMatrix
@@ -90,9 +91,9 @@ struct ChainKernels {
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };
 
-// Those of instruction_set() for rows of that many nodes.
+// Returns the kernels of instruction_set() for rows of that many nodes.
 const ChainKernels& chain_kernels(size_t stride);
-// For one node after the other.
+// Returns the kernels that take one node after the other.
 const ChainKernels& chain_kernels_of_one();
 
 }  // namespace echopath

@@ -68,14 +68,14 @@ struct LaneMath {
   }
 };
 
-// One node.
+// Evaluates one node at a time.
 struct OneMath : ScalarMath {
   static constexpr size_t kCount = 1;
   static ECHOPATH_INLINE double load(const double* from) { return *from; }
   static ECHOPATH_INLINE void store(double* to, double x) { *to = x; }
 };
 
-// Rows at some neighbouring nodes.
+// Reads and writes rows at some neighbouring nodes.
 template <class Math>
 struct At {
   using Real = typename Math::Real;
@@ -91,7 +91,7 @@ struct At {
     set(rows, row + 1, v.y);
     set(rows, row + 2, v.z);
   }
-  // A vector of a mesh's frame in the world.
+  // Turns a vector from the frame of a mesh to the world.
   ECHOPATH_INLINE VectorOf<Real> turned(const double* mesh, const double* v) const {
     const auto along = [&](int axis) {
       return value(mesh, 3 * axis) * v[0] + value(mesh, 3 * axis + 1) * v[1] + value(mesh, 3 * axis + 2) * v[2];

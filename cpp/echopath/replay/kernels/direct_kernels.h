@@ -1,21 +1,21 @@
 #pragma once
-// The inner loops of replay over paths of one point each, side by side in vectors, compiled once per instruction set from
-// direct_kernels_body.h (see chain_kernels.h).
+// The inner loops of replay over paths of one point each, side by side in vectors, compiled once for each instruction set
+// from direct_kernels_body.h (see chain_kernels.h).
 #include <cstddef>
 
 #include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {
 
-// Points of one mesh that both antennas see, and what comes back from each: a coherent and a diffuse path. The mesh is rigid:
-// what moves, seen from it, are the antennas, and its points stay where they were at the trace.
+// Holds points of one mesh that both antennas see, each with a coherent and a diffuse path back. The mesh is rigid: seen
+// from it, the antennas move, and its points stay where they were at the trace.
 struct DirectSlots {
   static constexpr size_t kSlots = 8;  // whatever the instruction set
   enum Kind { kCoherent, kDiffuse, kNumKinds };
   typedef double Row[kSlots];
 
-  // Given: the triangle in the mesh's frame, m, and where the point is in it; rays per sr of the launch cell's stratum, 0
-  // where there is no cell; weights with all that does not change, re and im.
+  // The caller gives the triangle in the mesh's frame, in m, and where the point is in it; the rays per sr of the launch
+  // cell's stratum, 0 where there is no cell; and the weights with all that does not change, re and im.
   alignas(64) Row corner[3];
   alignas(64) Row edge[2][3];
   alignas(64) Row along_edge[2];
@@ -23,7 +23,8 @@ struct DirectSlots {
   alignas(64) Row weight[kNumKinds][2];
   alignas(64) Row matrix[kNumKinds][4][2];  // polarised: the same times the path's JonesMatrix
 
-  // Found, at the trace: m; unit; tangents of the launch cell and their products, m and m^2; 1 or 0.
+  // The kernel `prepare` finds, at the trace: point (m); normal (unit); tangents of the launch cell (m) and their products
+  // (m^2); and has_cell (1 or 0).
   alignas(64) Row point[3];
   alignas(64) Row normal[3];
   alignas(64) Row tangent[2][3];
@@ -31,14 +32,14 @@ struct DirectSlots {
   alignas(64) Row has_cell;
 };
 
-// A mesh at the trace, relative to the mean transmitter: matrices row by row.
+// Describes a mesh at the trace, relative to the mean transmitter; matrices stand row by row.
 struct DirectTrace {
   double linear[9], translation[3];
   double normal[9];           // of normals, not normalised
   double mesh_from_trace[9];  // undoes `linear`
 };
 
-// How an antenna moves about the mesh, as if that stayed where it was at the trace.
+// Describes the motion of an antenna about the mesh, as if the mesh stayed where it was at the trace.
 struct AntennaToSee {
   const double* mesh;         // PointToPose::MeshRow
   const double* antenna;      // LegToMeasure::ImageRow, in the world
@@ -78,7 +79,7 @@ struct DirectKernels {
   void (*evaluate)(const DirectToEvaluate& paths);
 };
 
-// Those of instruction_set() for rows of that many nodes.
+// Returns the kernels of instruction_set() for rows of that many nodes.
 const DirectKernels& direct_kernels(size_t stride);
 
 }  // namespace echopath

@@ -1,4 +1,5 @@
-// The loops of direct_kernels.h for one instruction set; stands behind chain_kernels_body.h (no include guard).
+// The loops of direct_kernels.h for one instruction set; this file is included behind chain_kernels_body.h (no include
+// guard).
 #include "echopath/replay/kernels/direct_kernels.h"
 
 namespace echopath::ECHOPATH_KERNELS {
@@ -6,8 +7,8 @@ namespace {
 
 using Rows3 = const DirectSlots::Row*;
 
-// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kLeastSquare as if
-// it were that. Roots and divisions of eight lanes take the place of twenty multiplications.
+// Holds the root of a value and one over it, with an error in the last digits, for values that are not negative; those below
+// kLeastSquare count as kLeastSquare. Roots and divisions of eight lanes would cost as much as twenty multiplications.
 struct Roots {
   Vec root, inverse;
 };
@@ -25,7 +26,7 @@ ECHOPATH_INLINE Roots roots_of(Vec square) {
 #endif
 }
 
-// A launch cell on a flat triangle.
+// Describes a launch cell on a flat triangle.
 struct FlatCell {
   static constexpr bool is_curved = false;
   static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
@@ -50,7 +51,7 @@ ECHOPATH_INLINE VectorOf<Vec> choose(Mask first, const VectorOf<Vec>& a, const V
   return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
 }
 
-// Any unit vector across a unit vector.
+// Returns any unit vector across a unit vector.
 ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
   const Vec least = 1e-12 * LaneMath::magnitude(v.z);
   const Mask is_upright = (LaneMath::magnitude(v.x) <= least) & (LaneMath::magnitude(v.y) <= least);
@@ -60,7 +61,7 @@ ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
 
 ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
 
-// Where the point is, and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
+// Finds the point and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
 void prepare(const DirectTrace& trace, DirectSlots& slots) {
   for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
     const VectorOf<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
@@ -90,14 +91,15 @@ void prepare(const DirectTrace& trace, DirectSlots& slots) {
   }
 }
 
-// v times the matrix.
+// Multiplies v by the transposed matrix.
 template <class Real>
 ECHOPATH_INLINE VectorOf<Real> times_transposed(const double* matrix, const VectorOf<Real>& v) {
   const auto along = [&](int axis) { return matrix[axis] * v.x + matrix[3 + axis] * v.y + matrix[6 + axis] * v.z; };
   return {along(0), along(1), along(2)};
 }
 
-// The motion since the trace is a rotation, linear * mesh_from_trace, and a shift: what undoes it is the transposed matrix.
+// The motion since the trace is a rotation, linear * mesh_from_trace, and a shift; the transposed matrix undoes the
+// rotation.
 template <class Math>
 void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
@@ -127,7 +129,7 @@ ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
           {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
-// ComponentsToFind of a leg along `line`.
+// Returns the components (ComponentsToFind) of a leg along `line`.
 ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
                                                   const VectorOf<Vec>& line) {
   const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
@@ -187,13 +189,13 @@ ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t s
   return {has_cell ? found.re : without, has_cell ? found.im : Vec{}};
 }
 
-// Rows of one leg.
+// Reads the rows of one leg.
 struct LegLanes {
   const double* rows;
   ECHOPATH_INLINE Vec operator()(int row) const { return load(rows + static_cast<size_t>(row) * DirectSlots::kSlots); }
 };
 
-// Physical optics over in and out legs, relative to the weight.
+// Returns the physical-optics factor over the legs in and out, relative to the weight.
 ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
   using D = DirectToEvaluate;
   const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
@@ -208,7 +210,7 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const 
   return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, lit);
 }
 
-// Weights of both kinds, with what the polarisations of both ends make of them.
+// Holds the weights of both kinds, multiplied by the polarisations of both ends.
 template <bool kIsPolarized>
 struct WeightLanes;
 template <>
@@ -262,7 +264,7 @@ ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int e
   return paths.legs + leg * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
 }
 
-// Sides that the points show to the first antennas: at the first node, and whether others are shown at the last.
+// Notes at node 0 which sides the points show to the first antennas, and at the last node whether these have changed.
 ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_t slot, Mask* first) {
   Mask turned = {};
   for (int end = 0; end < 2; ++end) {
@@ -295,8 +297,8 @@ ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, si
   }
 }
 
-// First the legs of some nodes, then what they make: the processor has several nodes of either in hand while each waits for
-// its own results.
+// The legs of several nodes come first, then the paths over them: so the processor works on several nodes at a time while
+// each waits for its own results.
 template <bool kIsPolarized>
 void evaluate_all(const DirectToEvaluate& paths) {
   constexpr size_t kTogether = DirectToEvaluate::kNodesTogether;

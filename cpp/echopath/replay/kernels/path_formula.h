@@ -1,6 +1,6 @@
 #pragma once
-// The amplitude of a path in factors of its legs and of what lies between: the only home of the formula, for doubles and for
-// vectors of doubles (Math as in base/scalar_math.h).
+// Makes the amplitude of a path from factors of its legs and of the part between them. The formula stands only here, for
+// doubles and for vectors of doubles (Math as in base/scalar_math.h).
 //
 // Coherent path (regime C), physical optics at its last material point:
 //   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
@@ -26,8 +26,8 @@
 
 namespace echopath {
 
-// Every amplitude is made here, of the path's weight and of what its legs make of it; length: m, of the whole path, for what acts
-// along the way.
+// Makes every amplitude from the weight of the path and the factor of its legs. `length` is that of the whole path in m, for
+// effects that act along the way.
 template <class Math, class Weight, class Real>
 ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size, Real /*length*/) {
   return {weight.re * size, weight.im * size};
@@ -40,8 +40,8 @@ ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf
 
 // --- antennas ---
 
-// Root of a gain that is root_peak^2 cos^exponent in front of the antenna and 0 behind; an exponent of 0 is a gain all around.
-// cosine: of the boresight.
+// Returns the root of a gain that is root_peak^2 cos^exponent in front of the antenna and 0 behind; an exponent of 0 is a
+// gain all around. `cosine` is that of the angle from the boresight.
 template <class Math, class Real>
 ECHOPATH_INLINE Real root_gain_of(double root_peak, int exponent, Real cosine) {
   Real power = Real{} + root_peak;
@@ -51,12 +51,13 @@ ECHOPATH_INLINE Real root_gain_of(double root_peak, int exponent, Real cosine) {
   return cosine > 0.0 ? power : Real{};
 }
 
-// Of a path: (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v), the products of its ends' components (JonesMatrix).
+// Holds the products of the components of a path's two ends: (rx h, tx h), (rx h, tx v), (rx v, tx h), (rx v, tx v), as in
+// JonesMatrix.
 template <class Real>
 struct PairOfPolarizations {
   Real product[4];
 
-  // Components of both ends as they depart: what arrives has the opposite horizontal one.
+  // The components of both ends are those of departing waves; an arriving wave has the opposite horizontal component.
   ECHOPATH_INLINE PairOfPolarizations(const TransverseOf<Real>& start, const TransverseOf<Real>& end)
       : product{-end.horizontal * start.horizontal, -end.horizontal * start.vertical, end.vertical * start.horizontal,
                 end.vertical * start.vertical} {}
@@ -68,7 +69,8 @@ struct PairOfPolarizations {
 
 // --- coherent paths ---
 
-// Signed cosines at the point, of the arrival and of the departure, and one over the unfolded lengths, 1/m.
+// Sets the waves from the signed cosines at the point, of the arrival and of the departure, and from one over the unfolded
+// lengths, in 1/m.
 template <class Math, class Real>
 ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real inverse_out,
                                CellWaves<Real>& waves) {
@@ -79,13 +81,14 @@ ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real 
   waves.inverse_out = inverse_out;
 }
 
-// Whether the surface is seen from one side, by antennas that are not near; lengths: m, of the legs to both.
+// Returns whether both antennas see the same side of the surface and neither is near; the lengths are those of the legs to
+// both, in m.
 template <class Real>
 ECHOPATH_INLINE auto is_lit(Real cos_in, Real cos_out, Real first_length, Real last_length) {
   return (cos_in * cos_out > 0.0) & (first_length >= kNearAntenna) & (last_length >= kNearAntenna);
 }
 
-// root_gains: sqrt(Gt Gr); inverse_tube: 1/sqrt(D), 1/m; is_lit: the above.
+// `root_gains` is sqrt(Gt Gr), `inverse_tube` is 1/sqrt(D) in 1/m, and `is_lit` is the result of the function above.
 template <class Real, class Truth>
 ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Real root_gains, Real inverse_tube,
                                                 const ComplexOf<Real>& filter, Truth is_lit) {
@@ -95,7 +98,8 @@ ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Re
 
 // --- diffuse paths ---
 
-// cosine: signed, at the diffuse hit; inverse: 1/m, over the length in m from the antenna to there.
+// Returns the factor of the leg between an antenna and a diffuse hit. `cosine` is signed, at the hit; `inverse` is one over
+// the length, in 1/m.
 template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, Real length,
                                  Real inverse) {
@@ -106,13 +110,13 @@ ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real cosine, Real length) {
   return diffuse_leg<Math>(root_gain, Math::root(Math::magnitude(cosine)), cosine, length, 1.0 / length);
 }
 
-// The same for legs to a specular point, from which it is `to_first` (m) to the first diffuse hit.
+// Returns the factor of a leg to a specular point, from which it is `to_first` (m) to the first diffuse hit.
 template <class Real>
 ECHOPATH_INLINE Real specular_leg(Real root_gain, Real length, Real to_first, Real root_cos_first) {
   return length < kNearAntenna ? Real{} : root_gain * root_cos_first / (length + to_first);
 }
 
-// One diffuse hit: its cosines must have one sign. Several: so must those of the first and those of the last hit.
+// With one diffuse hit, its cosines must have one sign. With several, this must hold at the first hit and at the last.
 template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_product(Real start, Real end) {
   return Math::larger(Real{}, start * end);

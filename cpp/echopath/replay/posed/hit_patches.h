@@ -1,5 +1,5 @@
 #pragma once
-// Which vertices of deforming meshes a record needs.
+// Finds which vertices of deforming meshes a record needs.
 #include <vector>
 
 #include "echopath/scene/surface_patch.h"
@@ -7,11 +7,11 @@
 
 namespace echopath {
 
-// By mesh ID: the corners of the triangles that the paths hit, and where the mesh is smooth their neighbours; empty for
-// meshes that do not deform. Costs one look at each hit and triangle, and nothing where no mesh deforms.
+// Returns by mesh ID the corners of the triangles that the paths hit and, where the mesh is smooth, their neighbours; it is
+// empty for meshes that do not deform. It looks once at each hit and triangle, and costs nothing where no mesh deforms.
 std::vector<SurfacePatch> hit_patches(const Paths& paths);
 
-// Of whole meshes, for those who leave the triangles that were hit.
+// Returns the patches of whole meshes, for paths that leave the triangles that were hit.
 std::vector<SurfacePatch> whole_patches(const Scene& scene);
 
 }  // namespace echopath

@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-// Specular hits between others that are not replayed by images.
+// Returns the specular hits before the last material point that are not replayed by images.
 uint64_t sliding_hits(const LocalPath& path) {
   uint64_t sliding = 0;
   for (int k = 0; k < path.last_material; ++k) {

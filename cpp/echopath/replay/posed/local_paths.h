@@ -1,5 +1,5 @@
 #pragma once
-// A block of a record's paths with all that does not depend on time: hits in the frames of their meshes.
+// Holds a block of a record's paths with all that does not depend on time: its hits stand in the frames of their meshes.
 #include <array>
 #include <deque>
 #include <span>
@@ -14,38 +14,39 @@ struct LocalPaths {
   std::vector<LocalPath> paths;
   int longest = 0;  // hits of a path at most
 
-  // What the paths point into.
+  // The paths point into these arrays.
   std::vector<LocalHit> hits;
   std::deque<std::array<Vec3, 3>> normals;
 };
 
-// Thread-safe.
+// Its functions are thread-safe.
 class PathPreparer {
  public:
-  // The record must outlive it. patches: of its deforming meshes (hit_patches.h), those of the instants that its paths are
-  // posed by.
+  // The record must outlive it. `patches` are those of its deforming meshes (hit_patches.h), the same with which the scenes
+  // are posed that pose its paths.
   PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches);
-  // The paths of these indices, hits in the order in which they were traced.
+  // Returns the paths of these indices, with their hits in the order in which they were traced.
   LocalPaths operator()(std::span<const int64_t> indices) const;
-  // A hit in the frame of its mesh, without its normals.
+  // Returns a hit in the frame of its mesh, without its normals.
   LocalHit hit(const Hit& hit) const;
-  // With them, which `normals` keeps.
+  // Returns a hit with its normals, which are stored in `normals`.
   LocalHit hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const;
   bool is_mirror(uint32_t mesh_id) const { return mesh_is_mirror_[mesh_id] != 0; }
   bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
-  // Each of its triangles is a plane in the mesh's frame for good.
+  // Returns whether each triangle of the mesh stays a plane in the mesh's frame: the mesh is neither smooth nor deforming.
   bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }
-  // m^2, mean of the triangles of a mesh, with the scale that it has at the trace and the shape that it has at rest;
-  // kNoFacets where the mesh is smooth or a plane.
+  // Returns the mean area in m^2 of the triangles of a mesh, with the scale that it has at the trace and the shape that it
+  // has at rest; it is kNoFacets where the mesh is smooth or a plane.
   double facet_area(uint32_t mesh_id) const { return facet_area_[mesh_id]; }
-  // Normals of its corners; false where facets are meant or the crease guard refuses this one.
+  // Finds the normals at the corners of the hit's triangle; returns false where the mesh is not smooth or the crease guard
+  // refuses this triangle.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
-  // Unit vertex normals by mesh ID; empty where facets are meant. As the rays saw the mesh: at rest, or deformed as at the
-  // trace, and then zero outside of its patch.
+  // Returns the unit vertex normals by mesh ID; they are empty where the mesh is not smooth. The mesh is as the rays saw it:
+  // at rest, or deformed as at the trace, and then normals outside of its patch are zero.
   const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }
   const PosedScene& at_trace() const { return at_trace_; }
-  // Undoes the matrix of the instant of the trace.
+  // Returns the inverse of the matrix that the mesh had at the time of the trace.
   const Mat3& mesh_from_trace(uint32_t mesh_id) const { return mesh_from_trace_[mesh_id]; }
   const Paths& paths() const { return paths_; }
 

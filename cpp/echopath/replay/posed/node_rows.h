@@ -1,5 +1,5 @@
 #pragma once
-// Values over the nodes of a level, side by side: what loops over nodes run along.
+// Holds values at the nodes of a time grid side by side, so that loops can run along the nodes.
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -7,13 +7,14 @@
 
 namespace echopath {
 
-// [entry, row, stride]: the nodes of a row, and behind them what fills the last vector, whose values are of no interest.
+// The values are [entry, row, stride]: a row has one value for each node, and behind them values that fill its last vector
+// and are not used.
 class NodeRows {
  public:
   static constexpr size_t kVector = 8;  // nodes, whatever the instruction set
   static size_t stride_of(size_t num_nodes) { return num_nodes == 1 ? 1 : (num_nodes + kVector - 1) / kVector * kVector; }
 
-  // Keeps memory that it had; values are not set.
+  // Keeps the memory that it has where this suffices; the values are not set.
   void resize(size_t num_entries, size_t num_rows, size_t num_nodes) {
     num_rows_ = num_rows;
     num_nodes_ = num_nodes;
@@ -26,7 +27,7 @@ class NodeRows {
   size_t stride() const { return stride_; }
   double* row(size_t entry, size_t row) { return values_.get() + (entry * num_rows_ + row) * stride_; }
   const double* row(size_t entry, size_t row) const { return values_.get() + (entry * num_rows_ + row) * stride_; }
-  // Fills the last vector of a row.
+  // Fills the last vector of a row with the value of its last node.
   void pad(size_t entry, size_t row) {
     double* values = this->row(entry, row);
     for (size_t node = num_nodes_; node < stride_; ++node) values[node] = values[num_nodes_ - 1];

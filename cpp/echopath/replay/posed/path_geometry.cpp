@@ -6,13 +6,13 @@
 namespace echopath {
 namespace {
 
-// Image of a point over the mirrors [first, last) in order of travel.
+// Returns the image of a point over the mirrors [first, last) in order of travel.
 Vec3 forward_image(Vec3 point, const PosedHit* hits, int first, int last) {
   for (int k = first; k < last; ++k) point = Plane{hits[k].point, hits[k].normal}.image(point);
   return point;
 }
 
-// Direction before the mirrors [first, last) of a wave that travels along `direction` behind them.
+// Returns the direction before the mirrors [first, last) of a wave that travels along `direction` behind them.
 Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last) {
   for (int k = last; k-- > first;) direction = mirrored(direction, hits[k].normal);
   return direction;
@@ -40,7 +40,7 @@ void pose_triangle(const LocalHit& hit, const PosedScene& scene, PosedHit& posed
   if (posed.is_smooth) curve(hit, scene, posed);
 }
 
-// Most hits are on rigid facets and need no more than this.
+// Most hits are on rigid facets and need only this.
 void pose_point(const LocalHit& hit, const PosedScene& scene, PosedHit& posed) {
   posed.point = scene.linear(hit.mesh_id) * hit.point + scene.translation(hit.mesh_id);
   posed.normal = (scene.normal_matrix(hit.mesh_id) * hit.normal).normalized();

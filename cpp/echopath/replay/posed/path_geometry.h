@@ -1,5 +1,5 @@
 #pragma once
-// Hits of paths, posed: points, normals and the legs between them, with images for flagged mirrors.
+// Poses the hits of paths: points, normals and the legs between them, with images for flagged mirrors.
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
@@ -7,16 +7,17 @@
 
 namespace echopath {
 
-// A hit in the frame of its mesh.
+// Describes a hit in the frame of its mesh.
 struct LocalHit {
   uint32_t mesh_id = 0, triangle_id = 0;
   bool deformed = false;        // the corners are those of the scene, `triangle` counts places in the mesh's patch
   Triangle triangle{};
   double u = 0.0, v = 0.0;
-  Vec3 corner, edge_u, edge_v;  // of its triangle at rest, of deformed ones as at the trace
-  Vec3 point, normal;           // likewise, on the facet; unit
+  Vec3 corner, edge_u, edge_v;  // of its triangle at rest; of a deforming mesh, as at the trace
+  Vec3 point, normal;           // on the facet, at the same time; unit
   double trace_area = 0.0;      // m^2, |edge_u x edge_v| in the world at the trace; 0: its area never changes
-  // Unit vertex normals at rest where the triangle is taken as smooth (of deformed ones: any), else null.
+  // Unit vertex normals at rest where the triangle is taken as smooth, else null. On deforming meshes only this difference
+  // counts: their normals are those of the posed scene.
   const std::array<Vec3, 3>* normals = nullptr;
 };
 
@@ -29,7 +30,7 @@ struct PosedHit {
   double area_ratio = 1.0;  // of its triangle, over that at the trace
 };
 
-// What of a path does not depend on time.
+// Holds the part of a path that does not depend on time.
 struct LocalPath {
   const LocalHit* hits = nullptr;
   const Hit* recorded = nullptr;   // the same in the order of the record
@@ -42,26 +43,26 @@ struct LocalPath {
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
   bool is_sliding(int hit) const { return sliding >> hit & 1; }
-  // First and last hit that are not images; -1 where the path has mirrors only. The last one is a material point.
+  // First and last hit that are not images; they are -1 where the path has mirrors only. The last one is a material point.
   int first_material = -1, last_material = -1;
 };
 
-// Point, edges and normal of a hit on its flat triangle.
+// Finds point, edges and normal of a hit on its flat triangle.
 void pose_facet(const LocalHit& hit, const PosedScene& scene, PosedHit& out);
-// with_triangle: the edges are needed too.
+// `with_triangle` says that the edges are needed too.
 void pose_hit(const LocalHit& hit, const PosedScene& scene, bool with_triangle, PosedHit& out);
 void pose_hits(const LocalPath& path, const PosedScene& scene, PosedHit* out);
 
-// From one point to another over the mirrors `first` to `last` - 1 of a path, unfolded.
+// An unfolded leg runs from one point to another over the mirrors `first` to `last` - 1 of a path.
 struct UnfoldedLeg {
   double length;            // m
   Vec3 departure, arrival;  // unit directions of travel at both ends
 };
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to);
-// A vector as it stands behind these mirrors.
+// Returns the vector after its reflection at these mirrors.
 Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last);
 
-// Between the hits `from` < `to` of a path, which are not images, over the mirrors between.
+// Returns the leg between the hits `from` < `to` of a path, which are not images, over the mirrors between them.
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);
 
 }  // namespace echopath

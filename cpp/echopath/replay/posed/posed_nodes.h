@@ -1,6 +1,6 @@
 #pragma once
-// The scene and the radar at all nodes of a time grid: one PosedScene for each node, and the same in rows that loops along the
-// nodes read.
+// Holds the scene and the radar at all nodes of a time grid: one PosedScene for each node, and the same values in rows for
+// loops along the nodes.
 #include <memory>
 #include <vector>
 

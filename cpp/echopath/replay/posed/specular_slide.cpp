@@ -20,7 +20,7 @@ SpecularSlide::Point* SpecularSlide::point_at(int hit) {
   return found == points_.rend() ? nullptr : &*found;
 }
 
-// What a leg between the hits `from` and `to` (-1: the antenna) adds at its ends.
+// Adds the contribution of a leg between the hits `from` and `to` (-1: the antenna) to the points at its ends.
 void SpecularSlide::add_leg(const LocalPath& path, const PosedHit* hits, int from, int to, const UnfoldedLeg& leg) {
   Point* before = from >= 0 && path.is_sliding(from) ? point_at(from) : nullptr;
   Point* behind = path.is_sliding(to) ? point_at(to) : nullptr;
@@ -71,7 +71,7 @@ bool SpecularSlide::solve(const LocalPath& path, const PosedHit* hits, const Vec
   return eliminate();
 }
 
-// Block elimination (LDL^T); sums e on the way.
+// Solves for the slides by block elimination (LDL^T) and sums e on the way.
 bool SpecularSlide::eliminate() {
   Eigen::Matrix2d pivot;
   Eigen::Vector2d rest;
@@ -105,7 +105,8 @@ bool SpecularSlide::eliminate() {
 Vec3 SpecularSlide::step(size_t i) const {
   const Point& at = points_[i];
   const Vec3 step = at.slide[0] * at.axis[0] + at.slide[1] * at.axis[1];
-  // Far beyond the legs the expansion says nothing. Fading is smooth, so that lengths remain smooth in time.
+  // Far beyond the legs the expansion does not hold, so the step fades out. Fading is smooth, so that lengths remain smooth
+  // in time.
   const double share = step.squaredNorm() / (at.reach * at.reach);
   return step / (1.0 + share * share);
 }

@@ -8,13 +8,13 @@
 namespace echopath {
 namespace {
 
-// Vectors by name: compilers round sums of plain numbers in one way or another as they see fit, and the rates of an echo would
+// The sums are written in vectors, because compilers round sums of plain numbers as they see fit: the rates of an echo would
 // depend on its place among the others.
 constexpr size_t kLeast = 8;
 typedef double Lanes __attribute__((vector_size(kLeast * sizeof(double))));
 typedef double Unaligned __attribute__((vector_size(kLeast * sizeof(double)), aligned(alignof(double)), may_alias));
 
-// kVectors sums that stay in registers.
+// Computes kVectors sums that stay in registers.
 template <size_t kVectors>
 ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_t order, size_t stride, double* __restrict sum) {
   Lanes some[kVectors] = {};
@@ -25,7 +25,8 @@ ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_
   for (size_t i = 0; i < kVectors; ++i) reinterpret_cast<Unaligned*>(sum)[i] = some[i];
 }
 
-// sum [count] = weights [order] times values [order, count], count >= kLeast. The last vector overlaps the one before.
+// Computes sum [count] = weights [order] times values [order, count], for count >= kLeast. The last vector overlaps the one
+// before.
 ECHOPATH_INLINE void weighted_sum(const double* values, const double* weights, size_t order, size_t count, double* __restrict sum) {
   constexpr size_t kVectors = 4, kTogether = kVectors * kLeast;
   size_t i = 0;
@@ -34,7 +35,7 @@ ECHOPATH_INLINE void weighted_sum(const double* values, const double* weights, s
   if (i < count) sum_some<1>(values + count - kLeast, weights, order, count, sum + count - kLeast);
 }
 
-// Rows of kLeast, zeros behind the values [num_rows, count].
+// Returns the values [num_rows, count] in rows of kLeast, with zeros behind them.
 std::vector<double> widened(const double* values, size_t num_rows, size_t count) {
   std::vector<double> wide(num_rows * kLeast);
   for (size_t row = 0; row < num_rows; ++row) std::copy_n(values + row * count, count, wide.data() + row * kLeast);

@@ -10,10 +10,10 @@
 namespace echopath {
 namespace {
 
-// Chebyshev-Lobatto points x_k = cos(pi k / (K-1)), k = 0 .. K-1.
+// Returns the Chebyshev-Lobatto point x_k = cos(pi k / (K-1)), k = 0 .. K-1.
 double lobatto(int k, int order) { return std::cos(kPi * k / (order - 1)); }
 
-// Coefficient n of the interpolant in T_n from the values at the Lobatto points: row [order].
+// Returns the row [order] that gives coefficient n of the interpolant in T_n from the values at the Lobatto points.
 std::vector<double> coefficient_row(int n, int order) {
   std::vector<double> row(static_cast<size_t>(order));
   const bool end_row = n == 0 || n == order - 1;
@@ -25,7 +25,7 @@ std::vector<double> coefficient_row(int n, int order) {
   return row;
 }
 
-// T_n(x) and its first three derivatives, n = 0 .. order-1.
+// Returns T_n(x) and its first three derivatives, n = 0 .. order-1.
 std::vector<std::array<double, 4>> chebyshev(int order, double x) {
   std::vector<std::array<double, 4>> values = {{1.0, 0.0, 0.0, 0.0}, {x, 1.0, 0.0, 0.0}};
   for (int n = 2; n < order; ++n) {
@@ -59,7 +59,7 @@ void append_times(const Piece& piece, int order, std::vector<double>& times) {
   for (int k = 0; k < order; ++k) times.push_back(piece.middle() + piece.half() * lobatto(k, order));
 }
 
-// Weights for values and derivatives inside one piece.
+// Computes the weights that give values and derivatives inside one piece.
 class NodeSet {
  public:
   NodeSet(int order, ChirpDerivatives derivatives)
@@ -68,7 +68,7 @@ class NodeSet {
     for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
   }
 
-  // One more chirp, at `time` in `piece`, whose nodes begin at `first_node`.
+  // Appends one more chirp, at `time` in `piece`, whose nodes begin at `first_node`.
   void append_chirp(const Piece& piece, double time, int first_node, TimeSampling& sampling) const {
     // A frame of one sample has no duration and no derivatives.
     const double scale = piece.half() > 0 ? 1.0 / piece.half() : 0.0;
@@ -94,7 +94,7 @@ class NodeSet {
   std::vector<std::vector<double>> rows_;  // [n, k]: Chebyshev coefficient n from the values at the nodes
 };
 
-// At the nodes of all pieces, without the chirps.
+// Returns the nodes of all pieces, without the weights of the chirps.
 FrameNodes nodes_of(const std::vector<Piece>& pieces, int order) {
   require(order >= 2, "order", "must be >= 2", order);
   FrameNodes nodes;

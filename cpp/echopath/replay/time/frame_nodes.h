@@ -1,5 +1,5 @@
 #pragma once
-// At which times of a frame paths are evaluated, and how values at each chirp follow from them.
+// Says at which times of a frame paths are evaluated, and how values at each chirp follow from them.
 #include <vector>
 
 #include "echopath/radar/radar.h"
@@ -13,32 +13,33 @@ struct FrameNodes {
   int order = 1;                        // nodes per piece; 1: one node for all
   bool is_exact = false;                // nodes in every chirp
 
-  // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: what the polynomial
-  // has left. Empty for order 1 and exact nodes.
+  // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: they measure what the
+  // polynomial leaves out. It is empty for order 1 and for exact nodes.
   std::vector<double> tail;
   int num_pieces() const { return order > 1 && !is_exact ? static_cast<int>(times.size()) / order : 0; }
 };
 
-// Which derivatives inside a chirp are wanted: the slope, or the second and the third too (TimeSampling).
+// Says which derivatives inside a chirp are wanted: the slope, or the second and the third too (TimeSampling).
 enum class ChirpDerivatives { kFirst, kThird };
 
-// One node, at `time`.
+// Returns one node, at `time` (s).
 FrameNodes static_nodes(const Radar& radar, double time);
-// `order` Chebyshev-Lobatto nodes in each piece between the breakpoints (s, ascending) that lie inside the frame that starts
-// at start_time. Derivatives are those of the same polynomial.
+// Returns `order` Chebyshev-Lobatto nodes in each piece between the breakpoints (s, ascending) that lie inside the frame
+// that starts at start_time. Derivatives are those of the same polynomial.
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives = ChirpDerivatives::kThird);
-// The same without their sampling, which is what costs.
+// Returns the same nodes without their sampling, which is the costly part.
 FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
-// `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle one at the window centre.
+// Returns `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle node is at the
+// window centre.
 FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter,
                        ChirpDerivatives derivatives = ChirpDerivatives::kThird);
-// One node in each chirp of one transmitter, at its window centre; no sampling.
+// Returns one node in each chirp of one transmitter, at its window centre, without a sampling.
 FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter);
-// Nodes in the place of those of centre_nodes that hold a value and then its derivatives: 1 of the first kind, 3 of the third.
-// They stand at chirp * (1 + derivatives) of the nodes.
+// Returns the sampling of nodes that hold, for each node of centre_nodes, a value and then its derivatives: 1 for kFirst, 3
+// for kThird. The nodes of a chirp begin at chirp * (1 + derivatives).
 TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives);
-// Pieces into which breakpoints cut the frame that starts at start_time.
+// Returns into how many pieces the breakpoints cut the frame that starts at start_time.
 int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints);
 
 }  // namespace echopath

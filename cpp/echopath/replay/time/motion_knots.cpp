@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-// The parts of one body share their times, which then come but once.
+// Appends `times`, unless they stand at the end already: the parts of one body share their times.
 void append(const std::vector<double>& times, std::vector<double>& all) {
   const auto count = static_cast<ptrdiff_t>(times.size());
   if (all.size() >= times.size() && std::equal(times.begin(), times.end(), all.end() - count)) return;

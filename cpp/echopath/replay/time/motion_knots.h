@@ -1,5 +1,5 @@
 #pragma once
-// Where the motions of a scene change from one cubic to the next.
+// Finds where the motions of a scene change from one cubic to the next.
 #include <vector>
 
 #include "echopath/radar/radar.h"
@@ -7,11 +7,12 @@
 
 namespace echopath {
 
-// Times (s, ascending) between which all motions of scene and radar are analytic: breakpoints and knots of splines. A
-// polynomial across a knot, where a third derivative jumps, converges with the cube of its order; between knots geometrically.
+// Returns the times (s, ascending) between which all motions of scene and radar are analytic: breakpoints and knots of
+// splines. Across a knot, where a third derivative jumps, the error of a polynomial falls with the cube of its order;
+// between knots it falls geometrically.
 std::vector<double> motion_knots(const Scene& scene, const Radar& radar);
 
-// Where they are not smooth: the breakpoints alone.
+// Returns the times where motions are not smooth: the breakpoints alone.
 std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar);
 
 }  // namespace echopath

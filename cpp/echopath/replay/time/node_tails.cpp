@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kShareOfBeforeLast = 0.25;
 
-// Values relative to those of the first node: the sums must not drown in the rounding of whole delays.
+// Adds values relative to those of the first node, so that the sums do not drown in the rounding of whole delays.
 ECHOPATH_INLINE void add_node(const double* values, const double* first, double weight_before_last, double weight_last, size_t count,
                             double* __restrict before_last, double* __restrict last) {
   for (size_t i = 0; i < count; ++i) {
@@ -46,7 +46,7 @@ ECHOPATH_INLINE void divide_by_roots(const double* norm, size_t count, double* _
   for (size_t i = 0; i < count; ++i) values[i] = norm[i] > 0.0 ? values[i] / std::sqrt(norm[i]) : 0.0;
 }
 
-// Last two coefficients of one piece, for `count` neighbouring sequences at its nodes, `stride` values apart.
+// Finds the last two coefficients of one piece, for `count` neighbouring sequences at its nodes, `stride` values apart.
 class Coefficients {
  public:
   Coefficients(const FrameNodes& nodes, size_t count) : nodes_(nodes), before_last_(count), last_(count) {}

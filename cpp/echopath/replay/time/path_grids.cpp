@@ -8,8 +8,8 @@
 namespace echopath {
 namespace {
 
-constexpr int kNodesBeyondTurns = 2;  // of a polynomial that follows a turning: where its coefficients begin to fall
-// Amplitudes in this many chirps cost as much as one more node, with what a polynomial costs that is tried in vain.
+constexpr int kNodesBeyondTurns = 2;  // nodes beyond w T / 2 from which on coefficients fall (is_quick_enough)
+// Evaluating amplitudes in this many chirps costs as much as one more node, counting polynomials that are tried in vain.
 constexpr int64_t kWorthOfANode = 5;
 
 }  // namespace
@@ -28,15 +28,16 @@ PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& gr
   }
 }
 
-// The Chebyshev coefficients of a turning by w over a piece of length T are Bessel functions of w T / 2, which fall but for orders
-// above that: with fewer nodes it may look as if it stood still, as four of them find what turns four times.
+// The Chebyshev coefficients of a rotation at w over a piece of length T are Bessel functions of w T / 2, which fall only
+// for orders above that. With fewer nodes the mesh may seem to stand still, as when four nodes see a mesh that turns four
+// times.
 bool PathGrids::is_quick_enough(int polynomial, double turn_rate) const {
   const PolynomialGrid& grid = grids_.polynomial(polynomial);
   return grid.order >= kNodesBeyondTurns + 0.5 * turn_rate * grid.longest_piece;
 }
 
-// The distances of vertices all over a mesh from the first transmitter tell how many nodes its motion needs: the length of a path is
-// made of such distances.
+// The length of a path is made of distances, so those of vertices all over a mesh from the first transmitter tell how many
+// nodes its motion needs.
 bool PathGrids::follows(int polynomial, uint32_t mesh_id) const {
   const auto& [nodes, scenes] = posed_.trial(polynomial);
   const size_t num_vertices = scenes->front().local_vertices(mesh_id).size();
@@ -67,7 +68,8 @@ void PathGrids::first(int64_t begin, std::span<uint8_t> first) const {
     const Hit* hits = paths_.hits_of(path);
     const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
     int needed = least;
-    // Most paths have one to four hits, and a branch on the number would be mispredicted: the last of them stands for those beyond.
+    // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
+    // place of those that are missing.
     for (int k = 0; k < num_hits; k += 4) {
       for (int step = 0; step < 4; ++step) needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
     }
@@ -75,8 +77,8 @@ void PathGrids::first(int64_t begin, std::span<uint8_t> first) const {
   }
 }
 
-// Amplitudes that a polynomial follows late or never are left to the chirps: those of surfaces that turn, and those that an order
-// named by their own tail did not follow.
+// Amplitudes that a polynomial follows late or never are evaluated in every chirp: those of surfaces that turn their other
+// side, and those that a polynomial of the order that their own tail called for did not follow.
 NextGrid PathGrids::next(const UnfollowedPath& path, int polynomial) const {
   const double needed_order = std::max(path.order_for_length, path.is_turned ? 0.0 : path.order_for_amplitude);
   const int next = grids_.next_polynomial(polynomial, needed_order);

@@ -1,5 +1,6 @@
 #pragma once
-// Which time grid follows a path: where to begin, from the motion of the meshes that it touches, and how to go on.
+// Finds the time grid that follows a path: it begins with the motion of the meshes that the path touches, and says how to go
+// on.
 #include <span>
 #include <vector>
 
@@ -7,7 +8,7 @@
 
 namespace echopath {
 
-// A path that a polynomial did not follow.
+// Names a path that a polynomial did not follow.
 struct UnfollowedPath {
   int64_t path;
   // Orders at which polynomials would follow it; 0 where this one does.
@@ -15,23 +16,24 @@ struct UnfollowedPath {
   bool is_turned;  // the surface at an end of it shows its other side within the frame
 };
 
-// How to go on with such a path.
+// Says how to go on with such a path.
 struct NextGrid {
   int polynomial;
   bool by_chirp;  // lengths follow that polynomial, amplitudes are evaluated in every chirp
 };
 
-// Grids are those of TimeGrids: 0 for what does not move, then the polynomials, and num_polynomials() + 1 for what none of them
-// follows. All is found at once, when it is made; it is read by many threads.
+// Grids are numbered as in TimeGrids: 0 for paths that do not move, then the polynomials, and num_polynomials() + 1 for
+// paths that none of them follows. The constructor finds everything; after that many threads may read.
 class PathGrids {
  public:
-  // The record, the radar and the grids must outlive it. wavenumber: rad/m. Raises what motions raise.
+  // The record, the radar and the grids must outlive it. `wavenumber` is in rad/m, `phase_tolerance` in rad. Raises what
+  // motions raise.
   PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed, double wavenumber,
             double phase_tolerance);
 
   int num_grids() const { return grids_.num_polynomials() + 2; }
   int first(int64_t path) const;
-  // Those of paths [begin, begin + first.size()).
+  // Writes the first grids of paths [begin, begin + first.size()).
   void first(int64_t begin, std::span<uint8_t> first) const;
   NextGrid next(const UnfollowedPath& path, int polynomial) const;
 

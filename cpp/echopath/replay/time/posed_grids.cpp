@@ -8,7 +8,7 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
     : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer),
       polynomials_(static_cast<size_t>(grids.num_polynomials())) {}
 
-// transmitter: the only one that is posed, -1 for all.
+// Poses only this `transmitter`, or all where it is -1.
 std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times, int transmitter) const {
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());

@@ -1,5 +1,5 @@
 #pragma once
-// Time grids with the scene as it is posed at their nodes.
+// Poses the scene at the nodes of time grids.
 #include <memory>
 #include <vector>
 
@@ -16,17 +16,17 @@ struct PosedGrid {
   int transmitter = -1;  // the only one that is posed; -1: all are
 };
 
-// A polynomial as its order is tried on meshes: the nodes without their sampling, which is what costs.
+// Holds a polynomial whose order is tried on meshes: its nodes without their sampling, which is the costly part.
 struct TrialGrid {
   FrameNodes nodes;
   std::shared_ptr<const PosedScenes> scenes;
 };
 
-// Poses what is asked for. Polynomials and the time of the trace are posed once and kept; grids of chirps, which are large, belong
-// to whoever asks for them. Thread-safe.
+// Poses grids when they are asked for. Polynomials and the time of the trace are posed once and kept; grids of chirps, which
+// are large, belong to the caller. Its functions are thread-safe.
 class PosedGrids {
  public:
-  // All must outlive it.
+  // All arguments must outlive it.
   PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer);
 
   const PosedGrid& at_trace() const;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<int, 13> kOrders = {4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, TimeGrids::kHighestOrder};
 
-// Between neighbours of start, cuts (s, ascending) and end.
+// Returns the longest distance between neighbours of start, cuts (s, ascending) and end.
 double longest_piece(double start, double end, const std::vector<double>& cuts) {
   double longest = 0.0, from = start;
   for (const double cut : cuts) {
@@ -22,7 +22,7 @@ double longest_piece(double start, double end, const std::vector<double>& cuts) 
 
 }  // namespace
 
-// A chirp needs the value and the slope in its middle, or its delay throughout.
+// With three nodes a chirp has the value and the slope in its middle; with five its delay is known throughout.
 TimeGrids::TimeGrids(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : start_time_(paths.frame.start_time), trace_time_(paths.frame.trace_time), num_chirps_(radar.waveform.num_chirps),
       sample_order_(settings.per_sample ? 5 : 3),

@@ -1,5 +1,5 @@
 #pragma once
-// The time grids that a frame offers: polynomials by their number of nodes, and what stands at every chirp.
+// Lists the time grids that a frame offers: polynomials by their number of nodes, and grids with nodes in every chirp.
 #include <vector>
 
 #include "echopath/replay/replay_settings.h"
@@ -8,8 +8,9 @@
 
 namespace echopath {
 
-// Polynomials are counted from 1 in ascending order of their nodes: 0 stands for what does not move. There is none that has more
-// nodes than evaluation in every chirp, and none at all where that was asked for. The grids do not change once they are made.
+// Polynomials are counted from 1 in ascending order of their nodes; 0 stands for paths that do not move. None has more nodes
+// than evaluation in every chirp, and there is none at all where that was asked for. The grids do not change once they are
+// made.
 class TimeGrids {
  public:
   static constexpr int kHighestOrder = 32;

@@ -1,11 +1,11 @@
 #pragma once
-// The legs between the hit of a ray and both antennas.
+// Finds the legs between the hit of a ray and both antennas.
 #include "echopath/trace/sbr/ray.h"
 #include "echopath/trace/sbr/ray_context.h"
 
 namespace echopath {
 
-// The legs of one hit, kept from one to the next for their memory.
+// Holds the legs of one hit; it is kept from hit to hit for its memory.
 struct HitLegs {
   std::vector<Leg> transmit, receive;
   bool has_receive = false;  // `receive` is that of the hit where the ray is
@@ -15,13 +15,13 @@ struct HitLegs {
 class AntennaLegs {
  public:
   explicit AntennaLegs(const RayContext& context);
-  // Whether no flagged mirror gives either antenna an image: all legs are straight then.
+  // Returns whether no flagged mirror gives either antenna an image: then all legs are straight.
   bool are_straight() const { return transmitter_.frusta.empty() && receiver_.frusta.empty(); }
-  // The number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
+  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
   int64_t num_unfollowed_beams() const { return transmitter_.num_unfollowed + receiver_.num_unfollowed; }
   // Finds the visible receive legs of a hit.
   void find_receive(const SurfaceHit& surface, int max_mirrors, HitLegs& legs) const;
-  // Finds the visible transmit legs of a hit that rays can come over, but for the one over `skip`.
+  // Finds the visible transmit legs of a hit over which rays can come, except the one over `skip`.
   void find_transmit(const SurfaceHit& surface, int max_mirrors, MirrorSequence skip, HitLegs& legs) const;
 
  private:
@@ -29,7 +29,7 @@ class AntennaLegs {
   AntennaView transmitter_, receiver_;
 };
 
-// The leg over a sequence of mirrors, null where there is none.
+// Returns the leg over a sequence of mirrors, or null where there is none.
 inline const Leg* leg_over(const std::vector<Leg>& legs, MirrorSequence sequence) {
   for (const Leg& leg : legs) {
     if (leg.sequence == sequence) return &leg;
@@ -37,8 +37,8 @@ inline const Leg* leg_over(const std::vector<Leg>& legs, MirrorSequence sequence
   return nullptr;
 }
 
-// Rays per sr at the antenna's end of a transmit leg that come over it to a first hit on a mesh, and go on at all its mirrors:
-// those that aim there do.
+// Returns the rays per sr at the antenna's end of a transmit leg that come over it to a first hit on a mesh. Rays that aim
+// there go on at all mirrors of the leg.
 double density_over(const LaunchPlan& plan, uint32_t mesh_id, const Leg& leg);
 
 }  // namespace echopath

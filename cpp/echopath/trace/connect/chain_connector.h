@@ -1,5 +1,5 @@
 #pragma once
-// Joins the last hit of a chain of diffuse hits, in both orders of the chain (diffuse_chain.h).
+// Joins the last hit of a chain of diffuse hits to the antennas, in both orders of the chain (diffuse_chain.h).
 #include "echopath/trace/connect/diffuse_chain.h"
 #include "echopath/trace/connect/path_writer.h"
 
@@ -10,7 +10,7 @@ class ChainConnector {
  public:
   ChainConnector(const RayContext& context, const AntennaLegs& legs)
       : context_(context), legs_(legs), orders_(context), writer_(context), weight_(context) {}
-  // Adds the paths over the chain and each leg behind its last hit. The receive legs are there.
+  // Adds the paths over the chain and each leg behind its last hit. The receive legs must have been found.
   void connect(Connection& at) const;
 
  private:

@@ -1,26 +1,27 @@
 #pragma once
-// A hit that is being connected to the receiver, with all that its paths are made of.
+// Describes a hit that is being connected to the receiver, with all that its paths are made of.
 #include "echopath/em/hit_modes.h"
 #include "echopath/trace/connect/antenna_legs.h"
 #include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 
-// The modes of launches that arrive at a diffuse hit, as far as it keeps them.
+// Holds the modes that the fields of both launches excite at a diffuse hit, as far as the hit keeps them.
 struct ModesIn {
   VectorOf<double> direction;
   ModeAxes axes;
   std::complex<double> te[2], tm[2];  // [launch]
 };
 
-// Along which of the fields that leave a hit a receiver sees its two components, in parts across the way out.
+// Holds the fields that leave a hit along which a receiver sees its two components, in parts across the way out.
 struct AxesOut {
   VectorOf<double> direction;
   BasisAcross across;
   std::complex<double> horizontal[2], vertical[2];  // [component]
 };
 
-// What field vectors are seen along at one hit, where polarised; kept from one to the next for its memory.
+// Holds the axes along which field vectors are seen at one hit, in a polarised trace; it is kept from hit to hit for its
+// memory.
 struct HitFields {
   std::vector<FieldPair> axes;  // of the receive legs, as the receiver sees them
   std::vector<ModesIn> modes_in;
@@ -34,7 +35,7 @@ struct Connection {
   HitFields& fields;
   PathBlock& block;  // gets the paths
 
-  // Of one of the receive legs, where polarised.
+  // Returns the axes of one of the receive legs, in a polarised trace.
   const FieldPair& axes_of(const Leg& leg) const {
     return fields.axes[static_cast<size_t>(&leg - legs.receive.data())];
   }

@@ -7,11 +7,11 @@
 namespace echopath {
 namespace {
 
-// The sign of the field that comes back to the radar.
+// Returns the sign of the field that comes back to the radar.
 //
-// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h), which point opposite ways where a wave turns back, so
-// that what comes back changes its sign once: at normal incidence TE and TM then are the same. Conductors count as TE at every
-// angle: an odd number of them has made that change.
+// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h). These point opposite ways where a wave turns back, so
+// the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every angle: an odd
+// number of them has made that change already.
 double sign_of_return(const Ray& ray) { return ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0; }
 
 }  // namespace
@@ -37,7 +37,7 @@ void Connector<Weight>::connect(Connection& at) const {
   const bool radiates_power = surface.response.diffuse > 0 && ray.holds_zones;
   if (!radiates_field && !radiates_power) return;
   const bool is_in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
-  // Pairs need the receive legs for all transmit legs, shorter ones than the ray's own among them.
+  // Pairs need the receive legs for all transmit legs, some of which are shorter than the ray's own.
   legs_.find_receive(surface, context_.settings.max_bounces - (is_in_pairs ? 1 : ray.depth), at.legs);
   if (at.legs.receive.empty() && ray.coherent) return;
   weight_.find_receive_axes(at);
@@ -52,7 +52,7 @@ template <class Weight>
 void Connector<Weight>::connect_coherent(Connection& at) const {
   const Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
-  // The field holds 1/q for each bounce, the area of the launch must not: hence the density without the probabilities.
+  // The field holds 1/q for each bounce, but the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
   const double launch_area = ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
   const std::complex<double> coefficient =

@@ -5,16 +5,17 @@
 
 namespace echopath {
 
-// Coherent fields: each unflagged hit radiates by physical optics over every visible receive leg. Diffuse power: a first diffuse
-// hit gives the paths over all pairs of legs (pair_connector.h), a later one those of both orders of its chain
-// (chain_connector.h), one behind unflagged mirrors those over its receive legs, and their reversals, which no ray finds.
+// A coherent ray radiates by physical optics at each unflagged hit over every visible receive leg. A diffuse hit gives paths
+// of power: a first diffuse hit those over all pairs of legs (pair_connector.h), a later one those of both orders of its
+// chain (chain_connector.h), one behind unflagged mirrors those over its receive legs, and their reversals, which no ray
+// finds.
 template <class Weight>
 class Connector {
  public:
   Connector(const RayContext& context, const AntennaLegs& legs)
       : context_(context), legs_(legs), orders_(context), writer_(context), pairs_(context, legs), chains_(context, legs),
         weight_(context) {}
-  // Adds the paths of the hit to the block, and leaves the receive legs that it found.
+  // Adds the paths of the hit to the block, and keeps the receive legs that it found.
   void connect(Connection& at) const;
 
  private:

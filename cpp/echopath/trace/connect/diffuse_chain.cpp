@@ -3,7 +3,7 @@
 namespace echopath {
 namespace {
 
-// Makes the transmit leg of a ray, over whatever it is, its way back; the hits stay those of the ray.
+// Turns the transmit leg of a ray, whatever mirrors it goes over, into its way back; the hits stay those of the ray.
 void set_own_way_back(const Ray& ray, Leg& leg) {
   leg.sequence = kOther;
   leg.to_antenna = -ray.direction;
@@ -34,7 +34,7 @@ void ChainOrders::scatter(Ray& ray, const SurfaceHit& surface, const ScatterSamp
   DiffuseChain& chain = ray.chain;
   const SurfaceResponse response = response_toward(surface, context_.settings.polarization, sample.direction);
   chain.coefficient *= diffuse_coefficient(response);
-  // The opposite ray would be dropped.
+  // A ray in the opposite order would be dropped there, because it grazes the surface.
   if (surface.point.normal.dot(sample.direction) < kGrazing) chain.opposite_ratio = 0.0;
   if (ray.depth - 1 == chain.first) return;
   chain.opposite_ratio *=
@@ -49,8 +49,8 @@ void ChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const ScatterSamp
   chain.opposite_ratio *=
       chain.opposite_survival * context_.probabilities(*surface.model, response).specular / sample.probability();
   chain.opposite_survival = survival_probability(response, kRouletteBounce);
-  // Of several bounces in a row, whether unflagged surfaces are large enough is judged differently in the other order, which
-  // is left to its own rays.
+  // After several bounces in a row, the opposite order judges differently whether unflagged surfaces are large enough; it is
+  // left to its own rays.
   const bool is_second = !(ray.diffuse >> (ray.depth - 2) & 1);
   if (!is_second || ray.num_mirrors == 0) return;
   chain.opposite_ratio = 0.0;

@@ -9,15 +9,16 @@ namespace {
 // An unflagged surface that covers a smaller share of the Fresnel zone is no mirror for diffuse echoes.
 constexpr double kHeldShare = 0.5;
 
-// Quality of a family's own order over that of the opposite one: below the first it comes as the reversal, above the second from
-// its own rays, between them from both.
+// Limits of the quality of a family's own order over that of the opposite one: below the first it comes as the reversal,
+// above the second from its own rays, between them from both.
 constexpr double kReversed = 0.125, kOwn = 0.5;
 
-// Share of its zone from which on a mirror may take an order over for the density of its rays: denser rays do not mend what
-// geometrical optics errs.
+// With this share of its zone or more, a mirror may win an order by the density of its rays: denser rays do not mend the
+// error of geometrical optics.
 constexpr double kSound = 0.7;
 
-// Of an order over that of the opposite one, given the covers of their mirrors and the resolution of the first over the second.
+// Returns the quality of an order over that of the opposite one, from the covers of their mirrors and the resolution of the
+// first over that of the second.
 double quality_of_order(double cover, double opposite_cover, double resolution) {
   const double soundness = std::max(0.0, (opposite_cover - kSound) / (1.0 - kSound));
   const double ratio = cover / opposite_cover * std::pow(std::min(1.0, resolution), soundness);
@@ -30,7 +31,7 @@ double share_of_own_order(double quality) {
 
 }  // namespace
 
-// `target`: where fields are to be followed.
+// Follows fields where `target` is given.
 ZoneCover MirrorOrders::cover_of(const MirrorView& view, const ZoneTarget* target, int64_t& num_queries) const {
   const double wavelength = context_.wavelength;
   if (!view.point.is_smooth) return cover_of_zone(context_.geometry, view, target, wavelength, num_queries);
@@ -64,9 +65,9 @@ OrderShares MirrorOrders::shares(const Ray& ray, const SurfaceHit& surface, cons
   return {share_of_own_order(own), 1.0 - share_of_own_order(opposite)};
 }
 
-// Rays per Fresnel zone on the last surface over those on the first one in the opposite order. Both orders carry the same
-// field, which by stationary phase is that of the tube (density over root of its area) times the zone. 1 between facets: those
-// of a curved body do not tell how much they spread.
+// Returns the rays per Fresnel zone on the last surface over those on the first one in the opposite order. Both orders carry
+// the same field, which by stationary phase is that of the tube (density over root of its area) times the zone. It is 1
+// between facets, because the facets of a curved body do not tell how much they spread the rays.
 double MirrorOrders::resolution_of(const Ray& ray, const SurfaceHit& surface, const Leg& leg, const PathEnd& last) const {
   const PathEnd& first = ray.first_mirror;
   if (!first.is_smooth && !last.is_smooth) return 1.0;

@@ -9,7 +9,7 @@
 namespace echopath {
 namespace {
 
-// The echoes of one ray's cell by physical optics and of its patch with a random phase (Connector tells why).
+// Weighs the echoes of one ray's cell by physical optics and of its patch with a random phase (Connector tells why).
 ECHOPATH_INLINE void weigh_lanes(const FirstHits* first, EchoWeights* out) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -24,8 +24,8 @@ ECHOPATH_INLINE void weigh_lanes(const FirstHits* first, EchoWeights* out) {
   }
 }
 
-// The matrix of a hit between a launch, whose horizontal field is (x, y) of TE and TM and whose vertical one is (y, -x), and
-// straight ways on: re and im of each entry of a JonesMatrix.
+// Sets the matrix of a hit between a launch, whose horizontal field is (x, y) of TE and TM and whose vertical one is (y,
+// -x), and straight ways on: re and im of each entry of a JonesMatrix.
 ECHOPATH_INLINE void set_entries(const BasisAcross& launched, const ModeAxes& modes, const HitMatrix& hit, double scale,
                                  LanesOf<float> (*to)[2], int lane) {
   const double x = scale * dot(launched.horizontal, modes.te), y = scale * dot(launched.vertical, modes.te);
@@ -51,7 +51,7 @@ ECHOPATH_INLINE void weigh_lanes_without_coefficients(const FirstHits* first, Ec
   }
 }
 
-// The matrices of the same echoes (JonesWeight).
+// Finds the matrices of the same echoes (JonesWeight).
 ECHOPATH_INLINE void polarize_lanes(const FirstHits* first, const LaneModes* modes, VectorOf<double> receiver,
                                     LanesOf<float> (*field)[2], LanesOf<float> (*power)[2]) {
   ECHOPATH_SIDE_BY_SIDE
@@ -87,7 +87,7 @@ void JonesEchoes::find(const FirstHits& first, const Vec3& receiver) {
   run_simd<&polarize_lanes>(&first, &std::as_const(modes_), unpacked(receiver), field_matrices_, power_matrices_);
 }
 
-// What the surface makes of field vectors.
+// Finds how the surface of a lane's hit reflects and scatters field vectors.
 void JonesEchoes::find_modes(const FirstHits& first, int lane) {
   const SurfaceModel& model = *first.models[static_cast<size_t>(lane)];
   const ModeCoefficients modes = model.modes(first.cos_incidence[lane]);

@@ -1,17 +1,18 @@
 #pragma once
-// The echoes of plain first hits, all lanes at once: hits of no flagged mirror, which have no legs but straight ones.
+// Finds the echoes of plain first hits in all lanes at once: such a hit lies on no flagged mirror and has only straight
+// legs.
 #include "echopath/trace/sbr/first_hits.h"
 #include "echopath/trace/near_antenna.h"
 #include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 
-// Whether the hit of a lane is plain, where all legs are straight.
+// Returns whether the hit of a lane is plain, where all legs are straight.
 inline bool is_plain(const FirstHits& first, int lane) {
   return !first.models[static_cast<size_t>(lane)]->material().mirror && first.near_squared[lane] >= kNearAntenna * kNearAntenna;
 }
 
-// The weights of the coherent and of the diffuse echo to the receiver.
+// Holds the weights of the coherent and of the diffuse echo to the receiver.
 struct EchoWeights {
   LanesOf<float> field_re, field_im, power_re, power_im;
 
@@ -19,7 +20,8 @@ struct EchoWeights {
   std::complex<float> power(int lane) const { return {power_re[lane], power_im[lane]}; }
 };
 
-// Both policies (weight.h) find the echoes of all lanes, and add those of a lane over the first hit of the current ray.
+// This policy and the next (weight.h) find the echoes of all lanes, and add those of a lane over the first hit of the
+// current ray.
 class ScalarEchoes {
  public:
   void find(const FirstHits& first, const Vec3& receiver);
@@ -34,7 +36,7 @@ class ScalarEchoes {
   EchoWeights weights_;
 };
 
-// What the matrices of both echoes are made of.
+// Holds the modes from which the matrices of both echoes are made.
 struct LaneModes {
   LaneValues te_re, te_im, tm_re, tm_im;           // of reflection
   LaneValues cross_share, axis_cosine, axis_sine;  // of diffuse hits

@@ -15,8 +15,8 @@ void PairConnector<Weight>::connect(Connection& at) const {
   writer_.write(at, receive[0], last_bit(at.ray), own, OrderShares{});
 }
 
-// The balance weight: one over the number of hits per m^2 that all visible transmit legs together make here, the ray's own
-// way among them, times what the ray stands for.
+// Returns the balance weight: one over the number of hits per m^2 that all visible transmit legs together make here,
+// including the ray's own way, times the number of rays that this ray stands for.
 template <class Weight>
 double PairConnector<Weight>::material_area(const Connection& at) const {
   const Ray& ray = at.ray;

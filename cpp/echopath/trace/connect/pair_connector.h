@@ -4,14 +4,14 @@
 
 namespace echopath {
 
-// The ray came directly or over at most kMaxLegMirrors flagged mirrors. Rays could have found the hit over each of its transmit
-// legs: all pairs have the same balance weight over these ways (Veach 1997).
+// The ray came directly or over at most kMaxLegMirrors flagged mirrors. Rays could have found the hit over each of its
+// transmit legs, so all pairs have the same balance weight over these ways (Veach 1997).
 template <class Weight>
 class PairConnector {
  public:
   PairConnector(const RayContext& context, const AntennaLegs& legs)
       : context_(context), legs_(legs), writer_(context), weight_(context) {}
-  // Adds the paths over all pairs. The receive legs are there, at least one.
+  // Adds the paths over all pairs. The receive legs must have been found, at least one.
   void connect(Connection& at) const;
 
  private:

@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-// The hits of a ray and then those of a receive leg.
+// Returns the hits of a ray and then those of a receive leg.
 RayHits hits_over(const Ray& ray, const Leg& leg) {
   RayHits hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
@@ -17,7 +17,7 @@ RayHits hits_over(const Ray& ray, const Leg& leg) {
   return hits;
 }
 
-// The same, with the way back of the ray's chain in place of its transmit leg.
+// Returns the same hits, with the way back of the ray's chain in place of its transmit leg.
 RayHits hits_back_over(const Ray& ray, const Leg& leg) {
   const DiffuseChain& chain = ray.chain;
   RayHits hits = hits_over(ray, leg);
@@ -55,7 +55,7 @@ void PathWriter<Weight>::write_reversed(Connection& at, const Leg& leg, uint64_t
   weight_.set_reversed_matrix(at, leg);
 }
 
-// What the last path needs beside its weight, if the scene asks for it.
+// Sets the columns that the last path needs beside its weight, if the scene asks for them.
 template <class Weight>
 void PathWriter<Weight>::set_columns(Connection& at, const Leg& leg, uint64_t diffuse) const {
   if (diffuse != 0) return weight_.set_diffuse_matrix(at, leg);

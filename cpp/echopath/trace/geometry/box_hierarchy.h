@@ -1,5 +1,5 @@
 #pragma once
-// Boxes in a tree that tells which of them reach into a convex region.
+// Holds boxes in a tree that tells which of them reach into a convex region.
 #include <Eigen/Geometry>
 #include <vector>
 
@@ -12,8 +12,8 @@ struct HalfSpace {
   double offset;  // m; normal.dot(p) >= offset is inside
 };
 
-// Whether a corner of the box lies in each of the half-spaces. True for all boxes that reach into their intersection, and for
-// few others.
+// Returns whether the box has a corner in each of the half-spaces, not always the same one. This is true for all boxes that
+// reach into their intersection, and for few others.
 bool reaches_into(const Eigen::AlignedBox3d& box, const std::vector<HalfSpace>& region);
 
 class BoxHierarchy {

@@ -1,5 +1,5 @@
 #pragma once
-// Convex hulls of points of a plane.
+// Finds convex hulls of points of a plane.
 #include <Eigen/Core>
 #include <vector>
 
@@ -7,8 +7,8 @@ namespace echopath {
 
 using PlanePoints = std::vector<Eigen::Vector2d>;
 
-// Corners in order around it, counterclockwise (Andrew 1979). Points that are fewer than three, or the same, come back as
-// they are, each once.
+// Returns the corners of the hull in order around it, counterclockwise (Andrew 1979). Fewer than three distinct points come
+// back as they are, each once.
 PlanePoints convex_hull(PlanePoints points);
 
 }  // namespace echopath

@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-// Embree picks the best instruction set, too, unless another one is asked for (base/simd.h).
+// Embree picks the best instruction set itself, unless another one is asked for (base/simd.h).
 const char* device_options() {
 #if defined(ECHOPATH_THREAD_SANITIZER)
   return "threads=1";  // what TBB's workers do in libraries that are not instrumented would look like races

@@ -1,5 +1,5 @@
 #pragma once
-// The only header that knows Embree. Internal to the module and to `bench`, which looks at queries.
+// This is the only header that knows Embree. Internal to the module and to `bench`, which looks at queries.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -14,8 +14,8 @@
 namespace echopath {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// A hit is close when it lies this near its ray, a few units of single precision. More is due to (u, v): on a triangle 10 m long
-// and 1 mm high they are off by up to a millimetre.
+// A hit is close when it lies this near its ray, a few units of single precision. A larger distance comes from the rounding
+// of (u, v): on a triangle 10 m long and 1 mm high it is up to a millimetre.
 inline constexpr double kRoundedAbsolute = 1e-6;  // m
 inline constexpr double kRoundedRelative = 5e-7;
 
@@ -35,7 +35,7 @@ void set_ray(RTCRay& ray, const VectorOf<Real>& from, const VectorOf<Real>& dire
   ray.flags = 0;
 }
 
-// Lanes that are not in use hold numbers, too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
+// Lanes that are not in use get numbers too, and an empty interval: without AVX-512 Embree looks at them whatever `valid`
 // says.
 template <class Real>
 ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& from, const VectorOf<Real>& direction,
@@ -66,13 +66,13 @@ inline void forget_hits(RTCHit16& hits) {
   }
 }
 
-// -1 for each lane of a packet that is in use, else 0.
+// Holds -1 for each lane of a packet that is in use, else 0.
 struct alignas(64) ValidLanes {
   int lanes[kPacketSize];
 };
 
-// What is asked of Embree, one ray or a packet at a time. Closest hits of rays are written into what asks; a far end of -infinity
-// marks an occluded ray. Thread-safe.
+// Asks Embree, one ray or a packet at a time. It writes the closest hits of rays into the query; it marks an occluded ray
+// with a far end of -infinity. Thread-safe.
 class EmbreeScene::Queries {
  public:
   virtual ~Queries() = default;
@@ -93,8 +93,9 @@ struct EmbreeScene::Device final : EmbreeScene::Queries {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   void check(const char* what) const;
-  // One tree over all triangles, or (`tree_per_mesh`) one for each mesh and one over those: then a mesh that moves costs a new tree
-  // of its own and the upper one. Both are functions of the triangles alone, however often they were built before.
+  // Starts a scene with one tree over all triangles, or (`tree_per_mesh`) with one for each mesh and one over those: then a
+  // mesh that moves costs a new tree of its own and the upper one. Both depend on the triangles alone, however often they
+  // were built before.
   void start_scene(size_t num_meshes, bool tree_per_mesh);
   void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
   void build(Job* job);

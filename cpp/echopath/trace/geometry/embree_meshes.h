@@ -1,6 +1,6 @@
 #pragma once
-// What Embree reads: the vertices of all meshes at one time, relative to an origin. Brought up to another time, they are computed
-// anew only where they differ.
+// Holds what Embree reads: the vertices of all meshes at one time, relative to an origin. An update to another time computes
+// only those anew that differ.
 #include <memory>
 #include <vector>
 
@@ -10,21 +10,21 @@ namespace echopath {
 
 class EmbreeMeshes {
  public:
-  // Returns the IDs of the meshes that differ from those of the last call, ascending: all where the origin (m, world) or the
-  // number of meshes is another, none where nothing moves.
+  // Returns the IDs of the meshes that differ from those of the last call, ascending: all meshes where the origin (m, world)
+  // or the number of meshes has changed, none where nothing moves.
   std::vector<uint32_t> update(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
   uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }
   const std::vector<Triangle>& triangles(uint32_t mesh_id) const { return meshes_[mesh_id].source.mesh->triangles(); }
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_[mesh_id].vertices; }  // m
-  // Unit, of vertices; empty where facets are meant.
+  // Returns the unit normals of the vertices; they are empty where the mesh is not smooth.
   const std::vector<Vec3>& normals(uint32_t mesh_id) const { return meshes_[mesh_id].normals; }
   double largest_coordinate() const;  // m, of all vertices by magnitude
-  // In how many bounding boxes of meshes a point of the scene's bounding box lies on average.
+  // Returns the mean number of bounding boxes of meshes in which a point of the scene's bounding box lies.
   double mean_cover() const;
 
  private:
-  // What the vertices follow from: equal sources have equal vertices.
+  // Names all that the vertices follow from: equal sources have equal vertices.
   struct Source {
     MeshPtr mesh;
     std::shared_ptr<const Deformation> deformation;

@@ -1,4 +1,4 @@
-// Queries of whole packets.
+// Answers the queries of whole packets.
 #include <algorithm>
 
 #include "echopath/base/simd.h"
@@ -6,7 +6,7 @@
 
 namespace echopath {
 
-// The triangles that the rays of a packet met.
+// Holds the triangles that the rays of a packet met.
 struct PacketFacets {
   LaneVectors corner, corner_u, corner_v;  // where (u, v) is (0, 0), (1, 0) and (0, 1)
   LaneValues u, v;
@@ -19,7 +19,7 @@ struct RayLanes {
 
 namespace {
 
-// Lanes whose points are not close to their rays, and those that met nothing, are to be looked at one by one.
+// Lanes whose points are not close to their rays, and lanes that met nothing, must be looked at one by one.
 struct ConfirmedLanes {
   EmbreeScene::PacketHits* hits;
   LaneValues* is_close;
@@ -127,7 +127,7 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   }
 }
 
-// Of what was met, all at the same time. Lanes that met nothing get those of another.
+// Reads the triangles that were met, all at the same time. Lanes that met nothing read that of another lane.
 void EmbreeScene::fetch(const PacketHits& hits, PacketFacets& facets) const {
   std::array<const Hit*, kPacketSize> met;
   const Hit* any = std::find_if(hits.met.begin(), hits.met.end(), is_met);
@@ -151,7 +151,7 @@ void EmbreeScene::fetch(const PacketHits& hits, PacketFacets& facets) const {
   }
 }
 
-// Which of the segments are, as far as they are asked: negative where not.
+// Finds which of the segments that are asked about are blocked; a lane with a negative far end is not asked.
 void EmbreeScene::ask_segments(const RayLanes& rays, ValidLanes& blocked) const {
   alignas(64) RTCRay16 queries;
   ValidLanes valid;

@@ -14,11 +14,12 @@ namespace {
 constexpr double kFalseHitAbsolute = 1e-3;  // m
 constexpr double kFalseHitRelative = 1e-5;
 constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
-// Of EmbreeMeshes::mean_cover, with a tree per mesh: loose heaps of triangles over each other would cost queries 1.5 times the time
-// at 2, 4 times at 10; separate objects cost -15 to +10 %.
+// Largest EmbreeMeshes::mean_cover for a tree per mesh: where loose heaps of triangles lie over each other, queries take 1.5
+// times as long at 2 and 4 times at 10; with separate objects they take -15 to +10 %.
 constexpr double kMostCover = 1.5;
 
-// Meets the plane of a triangle in double; (u, v) of the point of the triangle next to there, each rounded once.
+// Meets the plane of a triangle in double precision and sets (u, v) of the point of the triangle next to there, each rounded
+// once.
 void meet_again(const Vec3& from, const Vec3& direction, const std::array<Vec3, 3>& corners, Hit& hit) {
   const Vec3 along_u = corners[1] - corners[0], along_v = corners[2] - corners[0], normal = along_u.cross(along_v);
   const double slope = normal.dot(direction), size = normal.squaredNorm();
@@ -97,7 +98,7 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& start,
   return confirm(from, direction, out);
 }
 
-// Rebuilds in double what Embree reports, the `out.hit` of a ray.
+// Rebuilds in double precision the hit that Embree reports in `out.hit`.
 EmbreeScene::Verdict EmbreeScene::confirm(const Vec3& from, const Vec3& direction, RayHit& out) const {
   const auto triangle = corners(out.hit.mesh_id, out.hit.triangle_id);
   const auto& [a, b, c] = triangle;
@@ -123,8 +124,8 @@ EmbreeScene::Verdict EmbreeScene::confirm(const Vec3& from, const Vec3& directio
   return Verdict::kHit;
 }
 
-// Moves the hit to the curved surface, unless a crease or a grazing ray forbids it. Where that lies behind the facet
-// (concave), rays that leave it would meet the facet: there the position stays.
+// Moves the hit to the curved surface, unless a crease or a grazing ray forbids it. The position stays where the surface
+// lies behind the facet (concave), because rays that leave it would meet the facet.
 void EmbreeScene::curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const {
   const Surface& surface = surfaces_[hit.hit.mesh_id];
   const Triangle& triangle = surface.triangles[hit.hit.triangle_id];

@@ -1,5 +1,5 @@
 #pragma once
-// The posed triangles of a scene, and what rays meet of them.
+// Holds the posed triangles of a scene and finds what rays meet of them.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -33,9 +33,8 @@ struct Segment {
   Vec3 from, to;
 };
 
-// Coordinates are relative to `origin` (world), so that single precision resolves what lies around it. A ray that starts far
-// outside the scene is moved up to it in double precision first.
-// Thread-safe for queries.
+// Coordinates are relative to `origin` (world), so that single precision resolves the space around it. A ray that starts far
+// outside the scene is first moved up to it in double precision. Queries are thread-safe.
 class EmbreeScene {
  public:
   // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build.
@@ -43,18 +42,18 @@ class EmbreeScene {
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
-  // As if made anew, with the same answers, but builds only what differs from before: where something moves and meshes overlap
-  // little, trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the constructor; then it
-  // may only be destroyed.
+  // Makes the scene as if anew, with the same answers, but builds only what differs from before: where something moves and
+  // meshes overlap little, the trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the
+  // constructor does; after that the scene may only be destroyed.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
-  // Closest hit from `from` along the unit vector `direction`. kFalseHit: Embree reported a point that double precision
-  // does not find on the ray (slivers near grazing); treated as lost.
+  // Finds the closest hit from `from` along the unit vector `direction`. kFalseHit means that Embree reported a point that
+  // double precision does not find on the ray (slivers near grazing); the ray counts as lost.
   Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
-  // Likewise from a point of the scene itself, on a surface or lifted off it.
+  // Finds the closest hit from a point of the scene itself, on a surface or lifted off it.
   Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out) const;
-  // What the rays of a packet meet, lane by lane.
+  // Holds what the rays of a packet meet, lane by lane.
   struct PacketHits {
     std::array<Verdict, kPacketSize> verdicts;
     std::array<Hit, kPacketSize> met;
@@ -66,29 +65,30 @@ class EmbreeScene {
     RayHit operator[](int lane) const;
     void set(int lane, const RayHit& hit);
   };
-  // Likewise of the first `count` rays of a packet, from one point; 4 times as fast where they are nearly parallel. Lanes
-  // behind them hold finite numbers, too, and meet nothing.
+  // Finds the closest hits of the first `count` rays of a packet, from one point; it is 4 times as fast where they are
+  // nearly parallel. The lanes behind them must hold finite numbers too, and meet nothing.
   void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
-  // Something lies on the open segment between the two points. Points on surfaces are to be lifted first.
+  // Returns whether something lies on the open segment between the two points. Points on surfaces must be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;
-  // Likewise of `count` segments; 4 times as fast, in whatever order.
+  // Answers this for `count` segments; it is 4 times as fast, in whatever order they come.
   void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
-  // Likewise between the points of a packet, in the lanes where `asked` is set, and one other point; elsewhere nothing is
+  // Answers this between the points of a packet and one other point, in the lanes where `asked` is set; elsewhere nothing is
   // blocked.
   using Lanes = std::array<bool, kPacketSize>;
   void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
-  // The way to Embree, in single precision: all that is asked goes through it. Another one can be put in its place, say one that
-  // looks at the queries and hands them on; it must outlive its use, and no query may be under way.
+  // All queries go through this interface to Embree, in single precision. Another one can take its place, for example one
+  // that looks at the queries and hands them on. It must outlive its use, and no query may be under way.
   class Queries;  // embree_device.h
   const Queries& queries() const { return *queries_; }
   void ask_through(const Queries& queries) { queries_ = &queries; }
-  // The point moved off its surface by a few units of single precision, so that it does not meet it again.
+  // Returns the point moved off its surface by a few units of single precision, so that a ray from there does not meet the
+  // surface again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
   double lift() const { return lift_; }  // m
 
-  // The point of the scene's bounding box next to `near` (world): the origin that serves rays from there best.
-  // Where something moves, or `near` does, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then
-  // it is the same for most times, and what is at rest need not be built again.
+  // Returns the point of the scene's bounding box next to `near` (world), the best origin for rays from there. Where
+  // something or `near` moves, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then it is
+  // the same at most times, and meshes at rest need not be built again.
   static Vec3 origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves = false);
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
@@ -96,7 +96,7 @@ class EmbreeScene {
     const Triangle& triangle = surface.triangles[triangle_id];
     return {surface.vertices[triangle[0]], surface.vertices[triangle[1]], surface.vertices[triangle[2]]};
   }
-  // Relative to the origin.
+  // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
 
  private:
@@ -112,10 +112,10 @@ class EmbreeScene {
   SegmentRay ray_between(const Vec3& from, const Vec3& to) const {
     return segment_ray(unpacked(from), unpacked(to), 2.0 * lift_, reach_);
   }
-  // Of packets (embree_packets.cpp).
+  // These two serve packets (embree_packets.cpp).
   void fetch(const PacketHits& hits, PacketFacets& facets) const;
   void ask_segments(const RayLanes& rays, ValidLanes& blocked) const;
-  // `start`: where Embree has the ray begin.
+  // Embree has the ray begin at `start`.
   Verdict intersect(const Vec3& from, const Vec3& start, const Vec3& direction, RayHit& out) const;
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;

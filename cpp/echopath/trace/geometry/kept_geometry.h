@@ -1,5 +1,5 @@
 #pragma once
-// Geometry kept from one trace of a scene to the next.
+// Keeps geometry from one trace of a scene to the next.
 #include <memory>
 #include <mutex>
 
@@ -9,11 +9,11 @@ namespace echopath {
 
 class KeptGeometry;
 
-// Geometry in use by one trace; goes back to where it was kept, if anywhere.
+// Holds the geometry that one trace uses; at its end it returns it to where it was kept, if anywhere.
 class GeometryLoan {
  public:
-  // Of the scene at the pose: the kept one brought up to it, or a new one where `kept` is null or lends its own to another.
-  // Raises as EmbreeScene; nothing is kept then.
+  // Takes the geometry of the scene at the pose: the kept one after an update, or a new one where `kept` is null or has lent
+  // its own to another trace. Raises as EmbreeScene does; nothing is kept then.
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
   ~GeometryLoan();
   GeometryLoan(const GeometryLoan&) = delete;

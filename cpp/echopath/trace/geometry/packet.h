@@ -1,5 +1,5 @@
 #pragma once
-// Rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
+// Holds rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
 #include <cstddef>
 
 #include "echopath/base/geometry.h"
@@ -13,7 +13,7 @@ struct LaneRange {
   int begin, end;
 };
 
-// Not set at first.
+// The values are not set at first.
 template <class Value>
 struct alignas(64) LanesOf {
   Value lanes[kPacketSize];

@@ -1,5 +1,5 @@
 #pragma once
-// The triangles of a flat mesh by where they lie, so that a point of its plane finds its own without a ray.
+// Sorts the triangles of a flat mesh by where they lie, so that a point of its plane finds its triangle without a ray.
 #include <array>
 #include <optional>
 #include <vector>
@@ -11,9 +11,11 @@ namespace echopath {
 class PlaneMesh {
  public:
   PlaneMesh() = default;
-  // `corners` [F]: of the triangles, m; `normal`: unit, of the plane. Triangles of no area hold no point.
+  // `corners` [F] are those of the triangles, in m; `normal` is the unit normal of the plane. Triangles of no area hold no
+  // point.
   PlaneMesh(uint32_t mesh_id, const std::vector<std::array<Vec3, 3>>& corners, const Vec3& normal);
-  // Of the triangles that hold the point (m, of the plane), 1 nm around them included, the first; none outside the mesh.
+  // Returns the hit in the first triangle that holds the point (m, in the plane), with 1 nm around it; returns nothing
+  // outside the mesh.
   std::optional<Hit> locate(const Vec3& point) const;
 
  private:

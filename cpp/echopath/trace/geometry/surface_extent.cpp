@@ -15,7 +15,7 @@ class SurfaceLine {
   SurfaceLine(const EmbreeScene& geometry, const RayHit& point, const Vec3& along, double gap, int64_t& num_queries)
       : geometry_(geometry), point_(point), along_(along), gap_(gap), num_queries_(num_queries) {}
 
-  // Where something that rises from the surface stands on the line, if nearer than `reach`.
+  // Returns where something that rises from the surface stands on the line, or `reach` if nothing is nearer.
   double distance_to_wall(double reach) {
     RayHit met;
     ++num_queries_;
@@ -23,7 +23,7 @@ class SurfaceLine {
     return meets ? std::min(met.distance, reach) : reach;
   }
 
-  // How far the triangle at that distance goes on along the line, if the surface is there; negative where it is not.
+  // Returns how far the triangle at that distance goes on along the line; it is negative where the surface is not there.
   double end_of_triangle_at(double distance) {
     RayHit met;
     ++num_queries_;
@@ -31,10 +31,10 @@ class SurfaceLine {
     if (geometry_.intersect_from_surface(from, -point_.normal, met) != EmbreeScene::Verdict::kHit) return -1.0;
     const double cos_bend = std::min(1.0, point_.normal.dot(met.normal));
     if (cos_bend < kCosBend) return -1.0;
-    // A surface that has turned by an angle has not sunk by more than its tangent.
+    // A surface that has turned by an angle has sunk by no more than the tangent of it per length.
     const double depth = met.distance - gap_, slope = std::sqrt(1.0 - cos_bend * cos_bend) / cos_bend;
     if (depth > gap_ + slope * distance) return -1.0;
-    // From the line itself, not from where it was met: that is known in single precision only.
+    // The distance starts from the line itself, because the point that was met is known in single precision only.
     const Vec3 tangent = (along_ - along_.dot(met.normal) * met.normal).normalized();
     return distance + distance_to_rim(geometry_, met.hit, point_.position + distance * along_, tangent);
   }
@@ -78,7 +78,7 @@ SurfaceEnd find_surface_end(const EmbreeScene& geometry, const RayHit& point, co
   if (is_wall && (known >= beyond || line.end_of_triangle_at(std::max(beyond - 2.0 * gap, 0.0)) >= 0)) return {beyond, true};
   const double step = 4.0 * geometry.lift();
   for (;;) {
-    // What lies right behind the rim may be narrower than the gap.
+    // A triangle right behind the rim may be narrower than the gap.
     double next = line.end_of_triangle_at(known + step);
     if (next < 0) next = line.end_of_triangle_at(known + gap);
     if (next < 0) return {known, false};

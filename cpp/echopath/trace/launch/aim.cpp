@@ -9,9 +9,9 @@
 namespace echopath {
 namespace {
 
-// Below kNoStratum, the field of view counted.
+// Largest number of aims: with the field of view they stay below kNoStratum.
 constexpr size_t kMostAims = 65000;
-// Differences of axes and solid angles, relative to the latter.
+// Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
 
 struct Target {
@@ -22,7 +22,7 @@ struct Target {
   bool moves = false;
 };
 
-// As the antenna sees it over a sequence of mirrors (in travel order from there).
+// Returns the image of the point as the antenna sees it over a sequence of mirrors (in travel order from the antenna).
 Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
   for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
   return point;
@@ -42,7 +42,7 @@ class Aimer {
 
   std::optional<Aim> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
 
-  // At each image that a frustum may show.
+  // Aims at each image that a frustum may show.
   std::vector<Aim> at_images(const Target& target) const {
     std::vector<Aim> images;
     std::vector<Vec3> vertices(target.vertices.size());
@@ -99,7 +99,7 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
   return target;
 }
 
-// Leaves out images over the most mirrors first, then the objects that fill least of the view.
+// Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
 void limit(std::vector<Aim>& objects, std::vector<Aim>& images, Aims& out) {
   const size_t all = objects.size() + images.size();
   std::stable_sort(images.begin(), images.end(), [](const Aim& a, const Aim& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });

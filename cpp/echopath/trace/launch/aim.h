@@ -1,5 +1,5 @@
 #pragma once
-// The objects of a scene and their images over mirrors, as targets of rays.
+// Finds the objects of a scene and their images over mirrors, as targets of rays.
 #include <vector>
 
 #include "echopath/trace/mirrors/mirror_frusta.h"
@@ -14,7 +14,7 @@ struct Aim {
   bool moves = false;
 };
 
-// Of the share of the rays of an image over that many mirrors (0: of the object itself), relative to others.
+// Returns the weight of an image over that many mirrors (0: of the object itself) in the sharing of the rays.
 double weight_of_aim(int num_mirrors);
 
 struct AimSettings {

@@ -1,6 +1,6 @@
-// Seen from a point, a triangle is the convex hull of its corners on the sphere of directions. What is convex there and holds all
-// vertices therefore holds the surface: a cone is convex, a strip is not, so that its height is looked for along the edges of
-// the hull. The hull is that of the gnomonic projection, which shows great circles as straight lines.
+// Seen from a point, a triangle is the convex hull of its corners on the sphere of directions. Any convex region there that
+// holds all vertices therefore holds the surface. A cone is convex, a strip is not, so that its height is found along the
+// edges of the hull. The hull is that of the gnomonic projection, which shows great circles as straight lines.
 #include "echopath/trace/launch/fit_stratum.h"
 
 #include <Eigen/Geometry>
@@ -15,8 +15,8 @@ namespace echopath {
 namespace {
 
 constexpr double kWidestCosine = 0.17364817766693033;  // of 80 degrees
-// Of an extent itself, and of the larger one: what single precision sees of a surface ends a little beside its edges, and a stratum
-// that ended there would lose a part of it.
+// Margins as a share of an extent itself, and of the larger extent: in single precision a surface ends a little beside its
+// edges, and a stratum without margins would lose a part of it.
 constexpr double kMargin = 1e-2, kMarginOfLarger = 1e-4;
 // Elevations at which cells of a strip become half as wide as they are high are left to cones.
 constexpr double kSteepestSine = 0.57;
@@ -27,7 +27,7 @@ constexpr int kOutwardDirections = 16;     // by which points inside the hull ar
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-// Nearly the axis of the smallest cone (Badoiu and Clarkson 2003): steps toward the farthest of some directions.
+// Returns nearly the axis of the smallest cone (Badoiu and Clarkson 2003): it steps toward the farthest of some directions.
 Vec3 middle_of(const std::vector<Vec3>& directions) {
   const size_t step = directions.size() / kSampledVertices + 1;
   Vec3 axis = Vec3::Zero();
@@ -48,8 +48,8 @@ bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
   return std::all_of(directions.begin(), directions.end(), [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
 }
 
-// Toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far aside toward the
-// middle of their directions.
+// Points toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far
+// aside toward the middle of their directions.
 std::optional<Vec3> axis_toward(const std::vector<Vec3>& vertices, const Vec3& apex, const std::vector<Vec3>& directions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : vertices) box.extend(vertex);
@@ -71,7 +71,8 @@ struct GnomonicPlane {
   }
 };
 
-// Those that may be corners of the convex hull: outside of the polygon of the outermost ones in some directions.
+// Returns the points that may be corners of the convex hull: those outside of the polygon of the outermost ones in some
+// directions.
 PlanePoints outer_points(const PlanePoints& points) {
   std::array<Eigen::Vector2d, kOutwardDirections> outermost;
   for (int k = 0; k < kOutwardDirections; ++k) {
@@ -116,7 +117,8 @@ struct Range {
   double middle() const { return 0.5 * (low + high); }
 };
 
-// Sines of the elevation over the great circle around `up` that the arc between two directions takes.
+// Extends the range by the sines of the elevation over the great circle around `up` that the arc between two directions
+// takes.
 void extend_along_arc(const Vec3& from, const Vec3& to, const Vec3& up, Range& heights) {
   heights.extend(from.dot(up));
   const Vec3 across = from.cross(to);
@@ -129,7 +131,7 @@ void extend_along_arc(const Vec3& from, const Vec3& to, const Vec3& up, Range& h
   }
 }
 
-// Along the direction `along` of the plane; holds the hull between the corners.
+// Returns the strip along the direction `along` of the plane that holds the hull between the corners.
 Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull,
                     const std::vector<Vec3>& corners) {
   const Eigen::Vector2d aside(-along[1], along[0]);
@@ -161,7 +163,7 @@ bool serves(const Stratum& strip) {
          std::max(std::abs(strip.low), std::abs(strip.high)) <= kSteepestSine;
 }
 
-// Unit vectors along which strips are tried: evenly turned, and along the edges of the hull where these are few.
+// Returns unit vectors along which strips are tried: evenly turned, and along the edges of the hull where these are few.
 PlanePoints turns_to_try(const PlanePoints& hull) {
   PlanePoints turns;
   for (int k = 0; k < kTriedTurns; ++k) turns.emplace_back(std::cos(kPi * k / kTriedTurns), std::sin(kPi * k / kTriedTurns));

@@ -17,7 +17,7 @@ namespace {
 constexpr double kFieldShare = 0.15;
 constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
-// Each batch has a shift of its own in each stratum.
+// Returns the shifts: each batch has one of its own in each stratum.
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
   std::vector<Eigen::Vector2d> shifts;
   for (int batch = 0; batch < batches; ++batch) {
@@ -38,13 +38,13 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sa
   plan.strata.push_back(std::move(stratum));
 }
 
-// A focus of an aim or, where `of` is their number, of the field of view.
+// Names a focus and the aim that it is in; where `of` is the number of aims, it is in the field of view.
 struct Focus {
   const LaunchFocus* asked;
   size_t of;
 };
 
-// The foci that are asked for in strata that there are, as far as a record can tell strata apart.
+// Returns the foci that are asked for in existing strata, up to the number of strata that a record can tell apart.
 std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<Aim>& aims, const Stratum& field) {
   std::map<std::string, size_t> index{{field.name, aims.size()}};
   for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, k);
@@ -56,7 +56,7 @@ std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vec
   return foci;
 }
 
-// Named by the order of the foci of one stratum.
+// The name counts the foci of one stratum.
 Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_of_owner, int number) {
   Stratum cone;
   cone.axis = asked.axis;
@@ -68,7 +68,8 @@ Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_
   return cone;
 }
 
-// Of the rays, by stratum, the field of view last: those of objects that move, of others, and of the field of view.
+// Returns the shares of the rays by stratum, the field of view last: it divides them among objects that move, others, and
+// the field of view.
 std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
   for (const Aim& aim : aims) (aim.moves ? moving : resting) += weight_of_aim(aim.stratum.num_mirrors);
@@ -83,7 +84,7 @@ std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns
   return shares;
 }
 
-// Those of the strata in the order of the plan.
+// Returns the shares of the strata in the order of the plan.
 std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector<Focus>& foci, const Stratum& field,
                                  const RayShares& shares) {
   double mean = 0.0;
@@ -99,7 +100,7 @@ std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector
   return out;
 }
 
-// Whole rays, which add up; what is too little for a stratum falls to the last one.
+// Returns whole rays, which add up; a share that is too small for a stratum falls to the last one.
 std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
   double all = 0.0, before = 0.0;
   for (const double share : shares) all += share;

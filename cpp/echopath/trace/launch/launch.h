@@ -1,5 +1,5 @@
 #pragma once
-// Where rays start: strata of directions and the low-discrepancy set inside each.
+// Plans where rays start: strata of directions and the low-discrepancy set inside each.
 #include <array>
 #include <memory>
 #include <vector>
@@ -13,18 +13,18 @@
 
 namespace echopath {
 
-// One stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over mirrors,
-// and the antenna's field of view, the last one. Objects are the children of the scene's root, without their mirrors; those that
-// surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes of mirrors. Each
-// stratum counts the echoes that it owns (ray_owners.h).
-// Unless told otherwise, objects that move have half of the rays that are aimed at least; otherwise objects
-// and images over one mirror share alike, and images over two have a quarter of that. The field of view has 15 % where it owns
-// anything. A stratum that would get fewer than kFewestRays has none: what it would own belongs to the field of view.
-// A guide may set foci into the strata (launch_focus.h), which stand between the images and the field of view.
+// Has one stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over
+// mirrors, and last the antenna's field of view. Objects are the children of the scene's root, without their mirrors.
+// Objects that surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes
+// of mirrors. Each stratum counts the echoes that it owns (ray_owners.h). By default objects that move get at least half of
+// the rays that are aimed; otherwise objects and images over one mirror share alike, and images over two get a quarter of
+// that. The field of view gets 15 % where it owns anything. A stratum that would get fewer than kFewestRays is left out: the
+// field of view then owns its echoes. A guide may set foci into the strata (launch_focus.h), which stand between the images
+// and the field of view.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 
-  // What belongs to each of a packet's rays.
+  // Holds what belongs to each of a packet's rays.
   struct Places {
     std::array<int, kPacketSize> strata, batches;
     LaneValues x, y;  // of the stratum's lattice
@@ -41,13 +41,13 @@ struct LaunchPlan {
 
   int stratum_of(int64_t ray) const;
   int batch_of(int stratum, int64_t ray) const;
-  // Rays per sr inside the stratum, of all batches together and of one of them.
+  // Returns the rays per sr inside the stratum, of all batches together; the next function those of one batch.
   double density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density; }
   double lattice_density(int stratum) const { return density(stratum) / batches; }
   Eigen::Vector2d point_of(int stratum, int64_t ray) const;
-  // Of `count` rays in a row.
+  // Finds the places of `count` rays in a row.
   void place(int64_t begin, int count, Places& out) const;
-  // The field of view, or a focus in it.
+  // Returns whether the stratum is the field of view, or a focus in it.
   bool is_field_of_view(int stratum) const { return foci.owner(stratum) == owners.field_of_view(); }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The strata of a launch plan, made ready to turn the points of a lattice into directions.
+// Turns the points of a lattice into directions of the strata of a launch plan.
 #include <vector>
 
 #include "echopath/base/phasor.h"
@@ -10,13 +10,14 @@
 
 namespace echopath {
 
-// A cone as the equal-area (Lambert) projection of the unit disc, or a strip as that of Archimedes' cylinder: x is the azimuth along
-// the great circle in rad, y the sine of the elevation over the middle of the strip.
+// Maps a cone by the equal-area (Lambert) projection of the unit disc, or a strip by that of Archimedes' cylinder: x is the
+// azimuth along the great circle in rad, y the sine of the elevation over the middle of the strip.
 class StratumFrame {
  public:
   explicit StratumFrame(const Stratum& stratum);
   bool is_strip() const { return is_strip_; }
-  // Unit. In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V (2 - versine)).
+  // Returns a unit vector. In a Lambert projection the versine is proportional to the squared radius: sine / radius = sqrt(V
+  // (2 - versine)).
   ECHOPATH_INLINE VectorOf<double> in_cone(double x, double y) const {
     const double here = size_ * ScalarMath::smaller(1.0, x * x + y * y);
     const double scale = ScalarMath::root(size_ * (2.0 - here));
@@ -37,15 +38,15 @@ class StratumFrame {
   bool is_strip_;
 };
 
-// In which the points of a stratum's lattice lie.
+// Returns the domain in which the points of a stratum's lattice lie.
 LaunchDomain domain_of(const Stratum& stratum);
 
 class LaunchDirections {
  public:
   explicit LaunchDirections(const std::vector<Stratum>& strata) : frames_(strata.begin(), strata.end()) {}
-  // Unit, of a point of the stratum's lattice.
+  // Returns the unit direction of a point of the stratum's lattice.
   Vec3 direction(int stratum, const Eigen::Vector2d& point) const;
-  // Of rays of one packet and one stratum, in the given lanes.
+  // Finds the directions of rays of one packet and one stratum, in the given lanes.
   void launch(int stratum, const LaneValues& x, const LaneValues& y, LaneRange lanes, LaneVectors& directions) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Cones inside a stratum in which rays lie closer, about what its own rays are too far apart for.
+// Sets foci into strata: cones in which rays lie closer, because the stratum's own rays are too far apart there.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-// A cone that is asked for. share: of the rays, in the units of RayShares.
+// Asks for a cone. `share` is that of the rays, in the units of RayShares.
 struct LaunchFocus {
   std::string of;  // name of the stratum that it is a part of
   Vec3 axis = Vec3::UnitX();
@@ -15,7 +15,7 @@ struct LaunchFocus {
   double share = 0.0;
 };
 
-// How to launch rays: RayShares of the strata and the foci inside them.
+// Says how to launch rays: RayShares of the strata and the foci inside them.
 struct LaunchGuide {
   RayShares shares;
   std::vector<LaunchFocus> foci;
@@ -24,25 +24,26 @@ struct LaunchGuide {
   void validate() const;
 };
 
-// That of a plan that was carried out, to do the same once more.
+// Returns the guide that repeats a plan that was carried out.
 LaunchGuide guide_like(const std::vector<Stratum>& strata);
 
-// How much of a direction belongs to a focus: 1 up to kFocusCore of its radius, and from there on smoothly (with two continuous
-// derivatives) down to 0 at its rim. An edge there would cut the surface, and radiate.
+// Returns how much of a direction belongs to a focus: 1 up to kFocusCore of its radius, and from there on smoothly (with two
+// continuous derivatives) down to 0 at its rim. An edge there would cut the surface, and radiate.
 double focus_weight(const Stratum& focus, const Vec3& direction);
 inline constexpr double kFocusCore = 0.6;
 
-// The foci of a launch plan. A direction belongs to its owner, the stratum without foci, and to the foci inside in parts that
-// add up to one: to the first focus with its weight w1, to the second with (1 - w1) w2, and so on; to the owner with the rest.
-// Each is an even lattice, of which a ray counts with its part of the direction, so that together they are as unbiased as the
-// owner would be alone.
+// Holds the foci of a launch plan. A direction belongs in parts that add up to one to its owner (the stratum in which the
+// foci are) and to the foci: to the first focus with its weight w1, to the second with (1 - w1) w2, and so on, and to the
+// owner with the rest. Each is an even lattice, and a ray of it counts with its part of the direction, so that together they
+// are as unbiased as the owner would be alone.
 class LaunchFoci {
  public:
   LaunchFoci() = default;
   explicit LaunchFoci(const std::vector<Stratum>& strata);
-  // Whose echoes the rays of a stratum count: of a focus its owner.
+  // Returns the stratum whose echoes the rays of a stratum count; for a focus this is its owner.
   int owner(int stratum) const { return owner_.empty() ? stratum : owner_[static_cast<size_t>(stratum)]; }
-  // How many rays of its owner one ray of this stratum stands for in that direction; 1 where there are no foci.
+  // Returns how many rays of its owner one ray of this stratum stands for in that direction; it is 1 where there are no
+  // foci.
   double rays_of_owner(int stratum, const Vec3& direction) const;
   bool has_any(int stratum) const { return !owner_.empty() && !foci_[static_cast<size_t>(owner(stratum))].empty(); }
 

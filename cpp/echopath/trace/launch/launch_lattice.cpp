@@ -11,8 +11,8 @@ LaunchLattice::LaunchLattice(const LaunchDomain& domain, int64_t num_points, con
   end_of_batch_.assign(shifts.size(), 0);
   if (num_points <= 0) return;
   const auto wanted = static_cast<double>(num_points), spare = static_cast<double>(shifts.size() - 1);
-  // The number of points in the domain jumps by one as the cell shrinks: bisect to where it is right. It differs from the mean by
-  // no more than the cells along the rim.
+  // The number of points in the domain jumps by one as the cell shrinks, so bisection finds where it is right. It differs
+  // from the mean by no more than the cells along the rim.
   const double length = domain.is_disc() ? 1.0 : std::sqrt(domain.half.maxCoeff() / domain.half.minCoeff());
   const double margin = std::sqrt(wanted) * std::max(1.0, length) + 2.0 + spare;
   double low = std::max(0.25, wanted - margin), high = wanted + margin;
@@ -35,7 +35,7 @@ void LaunchLattice::fill(double cell_area, const std::vector<Eigen::Vector2d>& s
   }
 }
 
-// Of one batch, whose points have cells of that area.
+// Adds the rows of one batch, whose points have cells of that area.
 void LaunchLattice::add_rows(double cell_area, const Eigen::Vector2d& shift) {
   constexpr double kPhi = std::numbers::phi, kConjugate = 1.0 - std::numbers::phi;
   const double scale = std::sqrt(cell_area / std::sqrt(5.0));  // the lattice itself has cells of sqrt(5)
@@ -56,7 +56,7 @@ void LaunchLattice::add_rows(double cell_area, const Eigen::Vector2d& shift) {
   }
 }
 
-// Where the row through `base` enters and leaves the domain, in steps. False where it misses it.
+// Finds where the row through `base` enters and leaves the domain, in steps. Returns false where it misses the domain.
 bool LaunchLattice::find_row(const Eigen::Vector2d& base, double& begin, double& end) const {
   if (!domain_.is_disc()) {
     const Eigen::Array2d one = (-domain_.half - base).array() / step_.array(), other = (domain_.half - base).array() / step_.array();

@@ -1,5 +1,5 @@
 #pragma once
-// Low-discrepancy points in a disc or a rectangle: a shifted algebraic lattice.
+// Spreads low-discrepancy points over a disc or a rectangle: a shifted algebraic lattice.
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace echopath {
 
-// The lattice {(m + n phi, m + n phi')} of the golden ratio phi and its conjugate (Frolov 1976): no line of it is parallel to
-// an edge of small slope, its cells are nearly square, and unlike a spiral it looks the same everywhere. `shift` [2] in
-// [0, 1) moves it within its cell (Cranley and Patterson 1976). The cell is chosen so that exactly num_points fall into the
-// domain; its area then differs a little from the domain's over num_points. Neighbours in order are neighbours in the domain.
-// Several shifts give as many independent batches, one after the other: lattices of one and the same wider cell, so
-// that each batch stands for the domain in the same way and their sizes differ by a few points.
+// Uses the lattice {(m + n phi, m + n phi')} of the golden ratio phi and its conjugate (Frolov 1976): no line of it is
+// parallel to an edge of small slope, its cells are nearly square, and unlike a spiral it looks the same everywhere. `shift`
+// [2] in [0, 1) moves it within its cell (Cranley and Patterson 1976). The cell is chosen so that exactly num_points fall
+// into the domain; its area then differs a little from the domain's over num_points. Neighbours in order are neighbours in
+// the domain. Several shifts give as many independent batches, one after the other. Their lattices have one and the same
+// wider cell, so that each batch stands for the domain in the same way and their sizes differ by a few points.
 class LaunchLattice : public LaunchPoints {
  public:
   LaunchLattice(const LaunchDomain& domain, int64_t num_points, const Eigen::Vector2d& shift)

@@ -16,7 +16,7 @@ double fraction(double value) { return value - std::floor(value); }
 
 Eigen::Vector2d polar(double radius, double angle) { return {radius * std::cos(angle), radius * std::sin(angle)}; }
 
-// Unit square to unit disc, equal areas, neighbours stay neighbours (Shirley and Chiu 1997).
+// Maps the unit square to the unit disc with equal areas; neighbours stay neighbours (Shirley and Chiu 1997).
 Eigen::Vector2d concentric(double x, double y) {
   const double a = 2.0 * x - 1.0, b = 2.0 * y - 1.0;
   if (a == 0.0 && b == 0.0) return Eigen::Vector2d::Zero();
@@ -24,7 +24,7 @@ Eigen::Vector2d concentric(double x, double y) {
   return polar(b, 0.5 * kPi - 0.25 * kPi * a / b);
 }
 
-// Batches of equal size, but for one point.
+// Divides points into batches of equal size, but for one point.
 class EqualShares : public LaunchPoints {
  public:
   EqualShares(int64_t num_points, std::vector<Eigen::Vector2d> shifts) : num_points_(num_points), shifts_(std::move(shifts)) {}
@@ -48,7 +48,7 @@ class EqualShares : public LaunchPoints {
   std::vector<Eigen::Vector2d> shifts_;
 };
 
-// Vogel 1979: on the sphere after the equal-area projection (Swinbank and Purser 2006).
+// Vogel 1979; after the equal-area projection it is the spiral on the sphere of Swinbank and Purser 2006.
 class FibonacciSpiral : public EqualShares {
   using EqualShares::EqualShares;
   Eigen::Vector2d of_batch(int64_t index, int64_t count, const Eigen::Vector2d& shift) const override {

@@ -1,5 +1,5 @@
 #pragma once
-// What counts as an object of a scene, and the ball that holds one.
+// Lists the objects of a scene and finds the ball that holds one.
 #include <functional>
 #include <vector>
 
@@ -14,19 +14,19 @@ struct Sphere {
   bool holds(const Vec3& point) const { return (centre - point).norm() <= radius; }
 };
 
-// A child of the scene's root with the meshes below it that are not flagged mirrors; never without one.
+// An object is a child of the scene's root with the meshes below it that are not flagged mirrors; it has at least one.
 struct SceneObject {
   int node = 0;  // index into Scene::nodes()
   std::vector<uint32_t> mesh_ids;
 };
 
-// In the order of their first mesh.
+// Returns the objects in the order of their first mesh.
 std::vector<SceneObject> objects_of(const Scene& scene);
 
-// Vertices of a mesh in the axes of the caller.
+// Returns the vertices of a mesh in the axes of the caller.
 using VerticesOf = std::function<const std::vector<Vec3>&(uint32_t mesh_id)>;
 
-// About the centre of the box of the vertices.
+// Returns a sphere about the centre of the box of the vertices that holds them all.
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids);
 
 }  // namespace echopath

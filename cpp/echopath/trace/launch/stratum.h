@@ -1,5 +1,5 @@
 #pragma once
-// A launch stratum: a part of the directions about the transmitter, with rays spread evenly over it.
+// Describes a launch stratum: a part of the directions about the transmitter, with rays spread evenly over it.
 #include <cstdint>
 #include <map>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace echopath {
 
-// A cone about an axis, or a strip along a great circle (half_azimuth > 0): what is long is held by a strip, and straight things
-// seen from a point lie along great circles. Both are mapped with equal areas (launch_directions.h).
+// A stratum is a cone about an axis, or a strip along a great circle (half_azimuth > 0). A strip holds long things, because
+// straight lines seen from a point lie along great circles. Both are mapped with equal areas (launch_directions.h).
 struct Stratum {
   Vec3 axis = Vec3::UnitX();   // unit, world axes; of a strip, the middle of the great circle
   double versine = 2.0;        // cone: 1 - cos(half angle), exact for narrow cones; 2: whole sphere
@@ -30,13 +30,13 @@ struct Stratum {
   bool contains(const Vec3& direction) const;  // unit direction
 };
 
-// Of a cone: 1 - cos of its half angle in rad and back, without cancellation for narrow ones.
+// Convert the half angle of a cone in rad to 1 - cos and back, without cancellation for narrow cones.
 double versine_of(double half_angle);
 double half_angle_of(double versine);
 
-// Of the rays, relative to each other, by the name of a stratum; those that are not named get the mean.
+// Shares of the rays relative to each other, by the name of a stratum; strata that are not named get the mean.
 using RayShares = std::map<std::string, double>;
-// Those of a plan that was carried out, with the rays of foci in the strata that they are in.
+// Returns the shares of a plan that was carried out; the rays of foci count for the strata that they are in.
 RayShares shares_of(const std::vector<Stratum>& strata);
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
-// Which frusta may light a point: the space about the mirrors in cells, each with the frusta that reach into it.
+// Finds which frusta may light a point: it divides the space about the mirrors into cells, each with the frusta that reach
+// into it.
 #include <span>
 #include <vector>
 
@@ -10,9 +11,9 @@ namespace echopath {
 class FrustumLocator {
  public:
   FrustumLocator() = default;
-  // `radius`: m, as in MirrorFrustum::reaches.
+  // `radius` is in m, as in MirrorFrustum::reaches.
   FrustumLocator(const std::vector<MirrorFrustum>& frusta, double radius);
-  // Indices of all frusta that a ball about the point reaches into, and of some others; ascending.
+  // Returns the indices of all frusta into which a ball about the point reaches, and of some others; ascending.
   std::span<const int> near(const Vec3& point) const;
 
  private:

@@ -21,7 +21,7 @@ Vec3 centre_of(const std::vector<Vec3>& polygon) {
   return centre;
 }
 
-// Cuts a shadow, the cone from `apex` whose inward normals are `rims`, out of a polygon; appends what is outside.
+// Cuts a shadow, the cone from `apex` whose inward normals are `rims`, out of a polygon; appends the parts outside.
 void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3>& rims, Polygons& outside) {
   for (const Vec3& rim : rims) {
     std::vector<Vec3> beside = clipped(polygon, -rim, -rim.dot(apex));
@@ -66,8 +66,8 @@ FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mi
   }
 }
 
-// Whether something stands between the source and a point of the target; sets `occluder` to a polygon of it, as far as that
-// lies between the two planes, or to none where its shadow cannot be told.
+// Returns whether something stands between the source and a point of the target. Sets `occluder` to a polygon of it, as far
+// as that lies between the two planes, or to none where its shadow cannot be told.
 bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const {
   Vec3 from = source.apex;
   if (source.lit_normal) {

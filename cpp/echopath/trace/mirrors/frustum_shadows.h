@@ -1,5 +1,5 @@
 #pragma once
-// What of a mirror the surfaces before it hide from where a frustum comes from.
+// Finds what part of a mirror the surfaces before it hide from the source of a frustum.
 #include <vector>
 
 #include "echopath/trace/geometry/embree_scene.h"
@@ -7,13 +7,14 @@
 
 namespace echopath {
 
-// The part of a convex polygon where normal.dot(p) >= offset (Sutherland, Hodgman 1974); empty where it is a mere line.
+// Returns the part of a convex polygon where normal.dot(p) >= offset (Sutherland, Hodgman 1974); it is empty where it is a
+// mere line.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset);
 
-// Inward unit normals of the planes through `apex` and each edge of a convex polygon.
+// Returns the inward unit normals of the planes through `apex` and each edge of a convex polygon.
 std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex);
 
-// The plane that a frustum leaves, its antenna or its last mirror.
+// Describes where a frustum comes from: its antenna or its last mirror.
 struct FrustumSource {
   Vec3 apex;                      // the antenna or its image
   const Vec3* lit_normal = nullptr;  // of the last mirror, unit, on the lit side; null for the antenna itself
@@ -23,9 +24,9 @@ struct FrustumSource {
 class FrustumShadows {
  public:
   FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors);
-  // Leaves of `window`, a convex polygon on the mirror `target`, a convex polygon that holds all that can be seen from the
-  // source; empty where all is hidden. What is left may hide some more: rays find out. Shadows are taken away one after
-  // the other, each of a whole mirror without holes or of the one triangle that was met.
+  // Shrinks `window`, a convex polygon on the mirror `target`, to a convex polygon that holds all that can be seen from the
+  // source; it is empty where all is hidden. Parts of it may still be hidden: rays find that out. Shadows are taken away one
+  // after the other, each of a whole mirror without holes or of the one triangle that was met.
   void shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const;
 
  private:

@@ -66,7 +66,7 @@ void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& anten
   search.segments.resize(num_segments);
 }
 
-// From the point over the mirrors to the antenna. False where the way misses one of them.
+// Sets the bounces from the point over the mirrors to the antenna. Returns false where the way misses a mirror.
 bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum, Leg& leg,
                             std::vector<Segment>& segments) const {
   Vec3 position = point, from = geometry_.lifted(point, normal), met;
@@ -82,14 +82,14 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
   return true;
 }
 
-// Adds the bounce of a wave from a point toward an image behind the mirror; sets where they meet.
+// Adds the bounce of a wave from a point toward an image behind the mirror; `met` is set to the point where they meet.
 bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double before = mirror.height(from), behind = mirror.height(image);
   if (before * behind >= 0) return false;
   const std::optional<Hit> hit = mirror.mesh.locate(from + before / (before - behind) * (image - from));
   if (!hit) return false;
-  // On the facet itself, which may lie a little beside the plane.
+  // The point is moved to the facet itself, which may lie a little beside the plane.
   const auto [a, b, c] = geometry_.corners(hit->mesh_id, hit->triangle_id);
   met = a + double{hit->u} * (b - a) + double{hit->v} * (c - a);
   LegBounce& bounce = leg.bounces[static_cast<size_t>(leg.num_bounces++)];
@@ -100,7 +100,7 @@ bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg,
   return true;
 }
 
-// Leaves the legs whose ways are free, of which the first `num_known` are known to be.
+// Keeps the legs whose ways are free; the first `num_known` are known to be.
 void LegFinder::keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& search) const {
   const size_t count = search.segments.size();
   search.num_queries += static_cast<int64_t>(count);

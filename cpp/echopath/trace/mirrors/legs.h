@@ -1,5 +1,5 @@
 #pragma once
-// Legs between a surface point and an antenna: direct and over flagged mirrors.
+// Finds the legs between a surface point and an antenna: direct and over flagged mirrors.
 #include <array>
 #include <complex>
 
@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// A bounce of a leg, seen by a wave that travels from the surface point to the antenna.
+// A bounce of a leg is seen by a wave that travels from the surface point to the antenna.
 struct LegBounce {
   int mirror;          // index into the mirrors
   Hit hit;
@@ -40,7 +40,7 @@ struct AntennaView {
 
 enum class ShadowState : uint8_t { kUnknown, kOpen, kBlocked };
 
-// Where legs are searched.
+// Says where legs are searched.
 struct LegQuery {
   Vec3 point, normal;       // m; unit, on the lit side
   int max_mirrors = 0;
@@ -48,7 +48,7 @@ struct LegQuery {
   ShadowState direct = ShadowState::kUnknown;  // of the antenna itself
 };
 
-// What a search needs while it lasts; kept from one to the next for its memory.
+// Holds what a search needs while it lasts; it is kept from search to search for its memory.
 struct LegSearch {
   std::vector<Segment> segments;  // of all legs tried, in their order
   std::vector<uint8_t> blocked;
@@ -59,10 +59,10 @@ class LegFinder {
  public:
   LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization);
 
-  // max_mirrors: of legs, at most kMaxLegMirrors.
+  // `max_mirrors` limits the mirrors of a leg; it is at most kMaxLegMirrors.
   AntennaView view_of(const Vec3& antenna, int max_mirrors) const;
-  // All visible legs between a point and `antenna`, direct first, then in the order of the frusta.
-  // Where a leg meets its mirrors follows from the images alone; shadow queries, in packets, tell whether its way is free.
+  // Finds all visible legs between a point and `antenna`, the direct one first, then in the order of the frusta. The images
+  // alone tell where a leg meets its mirrors; shadow queries, in packets, tell whether its way is free.
   void find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
 
  private:

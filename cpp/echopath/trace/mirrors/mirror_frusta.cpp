@@ -43,7 +43,8 @@ FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeSce
     : mirrors_(mirrors), boxes_(boxes_of(mirrors)),
       shadows_(geometry ? std::make_unique<const FrustumShadows>(*geometry, mirrors) : nullptr) {}
 
-// What a mirror shows of the frustum (null: of the antenna itself) whose source appears at `source`.
+// Reflects the frustum (null: the antenna itself), whose source appears at `source`, in one mirror; returns false where it
+// shows nothing.
 bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double side = mirror.height(source);
@@ -73,7 +74,7 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
   return true;
 }
 
-// Appends what all mirrors show of the frustum.
+// Appends the reflections of the frustum in all mirrors.
 void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, double slack, std::vector<MirrorFrustum>& out) const {
   std::vector<int> lit;
   boxes_.find(frustum ? frustum->region(slack) : std::vector<HalfSpace>(), lit);
@@ -84,7 +85,7 @@ void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, dou
   }
 }
 
-// Appends what follows on the frusta [begin, end) of `out`, as far as there is room.
+// Appends the frusta that follow on the frusta [begin, end) of `out`, as far as there is room.
 void FrustumFinder::follow(size_t begin, size_t end, const FrustumSearch& search, const Job* job, MirrorFrusta& out) const {
   for (size_t first = begin; first < end; first += kTogether) {
     if (out.frusta.size() >= search.max_frusta) {

@@ -1,6 +1,6 @@
 #pragma once
-// What an antenna lights over sequences of mirrors: its images, each with the window through which it is seen.
-// Source: beam tracing after Heckbert, Hanrahan 1984.
+// Finds what an antenna lights over sequences of mirrors: its images, each with the window through which it is seen. Source:
+// beam tracing after Heckbert, Hanrahan 1984.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -14,16 +14,17 @@ namespace echopath {
 inline constexpr int kMaxLegMirrors = 2;  // mirrors between a surface point and an antenna
 inline constexpr size_t kMostFrusta = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
 
-// A sequence of mirrors in travel order from the antenna to the surface, as a number. 0: none.
+// A sequence of mirrors in travel order from the antenna to the surface is kept as a number; 0 means no mirror.
 using MirrorSequence = int64_t;
 inline constexpr MirrorSequence kDirect = 0;
 inline constexpr MirrorSequence kLongSequence = -2;  // of more than kMaxLegMirrors, which have no number
-// `sequence` and then `mirror` (an index into `num_mirrors` mirrors).
+// Returns `sequence` followed by `mirror` (an index into `num_mirrors` mirrors).
 inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_mirrors) {
   return sequence * (static_cast<MirrorSequence>(num_mirrors) + 1) + mirror + 1;
 }
 
-// The space that an antenna lights over one sequence of mirrors: what lies behind the window as seen from the last image.
+// Describes the space that an antenna lights over one sequence of mirrors: all that lies behind the window as seen from the
+// last image.
 struct MirrorFrustum {
   MirrorSequence sequence = kDirect;
   std::vector<int> mirrors;   // in travel order from the antenna
@@ -34,10 +35,10 @@ struct MirrorFrustum {
   std::vector<Vec3> rims;     // inward unit normals of the planes through the last image and an edge of the window
 
   const Vec3& image() const { return images.back(); }
-  // A ball about `point` reaches into the frustum, `radius` in m. True for all that is lit and for little else: that the mirrors
-  // have no holes and nothing stands in the way is for rays to find out.
+  // Returns whether a ball of `radius` (m) about `point` reaches into the frustum. This is true for all that is lit and for
+  // little else: rays find out whether mirrors have holes or something stands in the way.
   bool reaches(const Vec3& point, double radius) const;
-  // All points that a ball of `radius` (m) reaches from, as half-spaces.
+  // Returns all points from which a ball of `radius` (m) reaches the frustum, as half-spaces.
   std::vector<HalfSpace> region(double radius) const;
 };
 
@@ -49,15 +50,15 @@ struct FrustumSearch {
 
 struct MirrorFrusta {
   std::vector<MirrorFrustum> frusta;  // by number of mirrors and then by mirrors in travel order
-  int64_t num_unfollowed = 0;         // that have fewer mirrors than asked for, and whose further ones were not looked for
+  int64_t num_unfollowed = 0;         // sequences below max_mirrors whose further mirrors were not looked for
 };
 
 class FrustumFinder {
  public:
-  // `geometry`: where given, sequences whose last mirror lies wholly behind other surfaces are left out. Both must outlive this.
+  // With `geometry`, sequences whose last mirror lies wholly behind other surfaces are left out. Both must outlive this.
   explicit FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry = nullptr);
-  // The frusta of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing are left out.
-  // Raises Cancelled when the job is.
+  // Returns the frusta of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing
+  // are left out. Raises Cancelled when the job is cancelled.
   MirrorFrusta find(const Vec3& antenna, const FrustumSearch& search, const Job* job = nullptr) const;
 
  private:

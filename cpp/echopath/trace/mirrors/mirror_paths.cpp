@@ -11,8 +11,8 @@ namespace echopath {
 namespace {
 
 constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are at a common edge
-// A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the true
-// one, and of one as far on the other side. In no direction that a scene is likely to be built along.
+// A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the
+// true one, and of one as far on the other side. No scene is likely to be built along the direction of the shift.
 constexpr double kAside = 1e-5;  // m
 const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).normalized();
 constexpr size_t kFrustaPerBlock = 64;
@@ -42,7 +42,7 @@ class ImageMethod {
     block_.statistics.num_hits += static_cast<int64_t>(hits_.size());
   }
 
-  // To a receiver there; sets hits_ where it gets through.
+  // Follows the sequence to a receiver; sets hits_ and returns true where the path gets through.
   bool follow(const Vec3& receiver) {
     if (!find_points(receiver)) return false;
     std::vector<Hit> hits;
@@ -56,7 +56,7 @@ class ImageMethod {
     return true;
   }
 
-  // Specular points from the receiver backwards through the images of the transmitter.
+  // Finds the specular points from the receiver backwards through the images of the transmitter.
   bool find_points(const Vec3& receiver) {
     const size_t n = sequence_.size();
     std::vector<Vec3> images(n + 1);
@@ -73,7 +73,7 @@ class ImageMethod {
     return true;
   }
 
-  // Off all the planes that meet in this point, toward the side of the target.
+  // Lifts the point off all the planes that meet in it, toward the side of the target.
   Vec3 lifted_toward(size_t k, const Vec3& target) const {
     Vec3 point = points_[k];
     for (size_t other = 0; other < points_.size(); ++other) {
@@ -96,7 +96,7 @@ class ImageMethod {
     return true;
   }
 
-  // Of the path to the true receiver.
+  // Returns the departure of the path to the true receiver.
   Vec3 departure() const {
     Vec3 image = settings_.receiver;
     for (size_t k = points_.size(); k-- > 0;) image = mirror(k).image(image);
@@ -141,7 +141,7 @@ class ImageMethod {
   std::vector<Hit> hits_;
 };
 
-// The frusta of one antenna with the same number of mirrors.
+// A range holds the frusta of one antenna with the same number of mirrors.
 using FrustumRange = std::pair<const MirrorFrustum*, const MirrorFrustum*>;
 
 FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count) {
@@ -151,7 +151,7 @@ FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count
   return {frusta.data() + (begin - frusta.begin()), frusta.data() + (end - frusta.begin())};
 }
 
-// Pairs of frusta of transmitter and receiver, each of which shows the other's antenna, or its image.
+// Finds pairs of frusta of transmitter and receiver, each of which shows the other's antenna, or its image.
 class HalfwayMeeting {
  public:
   HalfwayMeeting(FrustumRange transmit, FrustumRange receive)
@@ -184,7 +184,7 @@ class HalfwayMeeting {
     return boxes;
   }
 
-  // Whether a frustum reaches a point that may be far behind it, but for kAtEdge at its window.
+  // Returns whether a frustum reaches a point that may be far behind it; its window may miss the point by kAtEdge.
   static bool shows(const MirrorFrustum& frustum, const Vec3& point) {
     const double before = frustum.offset - frustum.lit_normal.dot(frustum.image());
     const double behind = frustum.lit_normal.dot(point) - frustum.offset;
@@ -214,7 +214,7 @@ class MirrorPathSearch {
   }
 
  private:
-  // Paths over one mirror, whose frusta show the receiver itself.
+  // Adds the paths over one mirror, whose frusta show the receiver itself.
   void add_single(PathBlock& block) const {
     ImageMethod images(geometry_, mirrors_, settings_, block);
     const auto [begin, end] = with_mirrors(transmit_.frusta, 1);

@@ -11,7 +11,8 @@ namespace {
 constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
 constexpr double kGap = 1.0 / 16.0;   // wavelengths: surfaces that lie so near to each other abut
 
-// Which way, and by how much, the lit point of the target moves as the point of the mirror does by 1 m along the axis.
+// Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
+// along the axis.
 Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget& target) {
   const Vec3& normal = target.point.normal;
   const Vec3 across = along - target.arrival * (along.dot(normal) / target.arrival.dot(normal));
@@ -46,7 +47,7 @@ class AxisCover {
   }
 
  private:
-  // Whether the surface is so wide, as far as that can be told soon.
+  // Returns whether the surface is wider than `ample`, as far as a few rays can tell.
   bool is_ample(double ample, const std::array<Vec3, 2>& ways) {
     double width = 0.0;
     for (const Vec3& way : ways) width += distance_to_rim(geometry_, view_.point.hit, view_.point.position, way);
@@ -66,7 +67,7 @@ class AxisCover {
     return field_beside_edge(end.distance / axis_.half);
   }
 
-  // Whether the target reaches over what the mirror's point lights as it moves by `distance`.
+  // Returns whether the target reaches as far as the lit point moves when the mirror's point moves by `distance`.
   bool target_goes_on(double distance, const Vec3& way) {
     if (target_->point.is_smooth) return false;
     const Vec3 shift = shift_on_target(view_, way, *target_);
@@ -115,7 +116,7 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
   return cover;
 }
 
-// Auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.
+// Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.
 std::complex<double> field_beside_edge(double within) {
   const double x = std::sqrt(2.0) * within;
   const double f = (1.0 + 0.926 * x) / (2.0 + x * (1.792 + x * 3.104));

@@ -1,5 +1,6 @@
 #pragma once
-// A surface as a mirror between two points: how much of the Fresnel zone it covers, and what its edges leave of the field.
+// Measures a surface as a mirror between two points: how much of the Fresnel zone it covers, and what its edges leave of the
+// field.
 #include <array>
 #include <complex>
 
@@ -7,15 +8,15 @@
 
 namespace echopath {
 
-// A specular bounce: the point and the unit direction in which the wave arrives there, `before` and `behind` the unfolded
-// lengths in m from the source and to what is lit.
+// Describes a specular bounce: the point, the unit direction in which the wave arrives there, and the unfolded lengths in m
+// from the source (`before`) and to the point that is lit (`behind`).
 struct MirrorView {
   const RayHit& point;
   Vec3 arrival;
   double before, behind;
 };
 
-// The two axes of the zone, in the plane of incidence and across it.
+// Describes one of the two axes of the zone, in the plane of incidence and across it.
 struct ZoneAxis {
   Vec3 along;            // unit, tangent to the surface
   double half = 0.0;     // m: a wave over a point so far off comes half a wavelength later
@@ -28,16 +29,16 @@ struct ZoneCover {
   std::complex<double> field = 1.0;  // what the edges of the mirror leave of the field of an endless one
 };
 
-// The share that the surface around a facet's point covers, and with a `target`, the surface that the wave lights, the field
-// that reaches it.
+// Returns the share of the zone that the surface around a facet's point covers and, with a `target` (the surface that the
+// wave lights), the field that reaches it.
 //
-// field: Kirchhoff's integral over the mirror by stationary phase, for each axis F(a) + F(b) - 1 with a and b the distances
-// to its edges in half zones and F the field behind a straight edge (Born and Wolf, "Principles of Optics", 8.7). The inside of
-// a corner is no edge: images of a wedge of 90 degrees know none. What an edge takes from the lit part of a flat target it
-// adds beyond the shadow boundary, with the same phase; where the target goes on as far beyond as the point lies within, the
-// edge therefore counts as none. A surface that is wider than the zone by kAmple counts as endless: so closed forms of large
-// corners, geometrical optics up to the last surface, hold; between that and the zone's width the edges come in.
-// Valid where the surface is flat over the zone and its edges run about along the axes.
+// The field is Kirchhoff's integral over the mirror by stationary phase: for each axis F(a) + F(b) - 1, with a and b the
+// distances to its edges in half zones and F the field behind a straight edge (Born and Wolf, "Principles of Optics", 8.7).
+// The inside of a corner is no edge, because the images of a wedge of 90 degrees have none. What an edge takes from the lit
+// part of a flat target it adds beyond the shadow boundary, with the same phase; so the edge counts as none where the target
+// goes on as far beyond as the point lies within. A surface that is wider than the zone by kAmple counts as endless, so that
+// closed forms of large corners (geometrical optics up to the last surface) hold; between that and the zone's width the
+// edges come in gradually. This is valid where the surface is flat over the zone and its edges run about along the axes.
 struct ZoneTarget {
   const RayHit& point;
   Vec3 arrival;  // unit
@@ -45,7 +46,7 @@ struct ZoneTarget {
 ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
                         int64_t& num_queries);
 
-// The field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
+// Returns the field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
 std::complex<double> field_beside_edge(double within);
 
 }  // namespace echopath

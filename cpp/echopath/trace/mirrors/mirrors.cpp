@@ -50,7 +50,7 @@ void require_flat(const Scene& scene, const EmbreeScene& geometry, const Mirror&
           "the mesh '" + scene.node_of(mirror.mesh_id).name + "' must be flat, deviation in m", deviation);
 }
 
-// The area of the triangles, each of which counts in full, is that of the outline.
+// Returns whether the areas of all triangles, overlaps included, add up to that of the outline.
 bool fills_outline(const Scene& scene, const EmbreeScene& geometry, const Mirror& mirror) {
   double filled = 0.0, whole = 0.0;
   const auto num_triangles = static_cast<uint32_t>(scene.node_of(mirror.mesh_id).mesh->triangles().size());

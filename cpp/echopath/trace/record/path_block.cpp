@@ -72,7 +72,8 @@ void PathBlock::clear() {
   current_half = 0;
 }
 
-// The paths [begin, end) that are not of fans; `first_hit`: index of the block's hits, `row` of its first path, in the record.
+// Writes the paths [begin, end) that are not of fans. `first_hit` is the index of the block's hits in the record, `row` that
+// of its first path.
 void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const {
   const auto copy = [&](const auto& column, auto* out) {
     std::copy(column.begin() + static_cast<int64_t>(begin), column.begin() + static_cast<int64_t>(end), out);
@@ -85,7 +86,7 @@ void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t ro
   copy(rows.batch, to.batch);
   copy(rows.flags, to.flags);
   to.skip_rows(end - begin);
-  // These end with the last path that has an entry.
+  // These columns end with the last path that has an entry.
   for (size_t i = begin; i < std::min(end, curved_cell.size()); ++i) paths.curved_cell[row + i - begin] = curved_cell[i];
   for (size_t i = begin; i < std::min(end, jones.size()); ++i) paths.jones[row + i - begin] = jones[i];
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What one chunk of rays records, until it becomes a part of the record (record_writer.h).
+// Holds what one block of rays records, until it becomes a part of the record (record_writer.h).
 #include <algorithm>
 #include <vector>
 
@@ -13,35 +13,35 @@ class PathBlock {
   std::vector<Hit> hits;
   PathColumns rows;  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
-  uint32_t current_half = 0;         // likewise: 0 or kSecondHalf
+  uint32_t current_half = 0;         // for the same paths: 0 or kSecondHalf
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
-  std::vector<JonesMatrix> jones;  // likewise
+  std::vector<JonesMatrix> jones;  // as curved_cell, of the paths that are polarised
   std::vector<JonesMatrix> fan_jones;  // of all paths of all fans, where polarised
   TraceStatistics statistics;
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
   std::vector<Hit> fan_hits;     // of their mirrors
 
-  // A path with hits of its own.
+  // Adds a path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum);
-  // A path over the first `count` hits of the current ray, which all such paths share.
+  // Adds a path over the first `count` hits of the current ray, which all such paths share.
   void add_prefix(int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
     used_depth_ = std::max(used_depth_, count);
     add_record(kOfRay, count, diffuse_bits, path_weight, path_stratum);
   }
-  // A path over `first` [count], given in the order in which it was traced, that runs the other way (kReversedPath).
+  // Adds a path over `first` [count], given in the order in which it was traced, that runs the other way (kReversedPath).
   void add_reversal(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum);
-  // Paths over `hit` and every pair of legs that `add_leg` adds next, those in and then those out, but for those of more than
-  // `max_bounces` hits. `end_fan` follows.
+  // Begins a fan: paths over `hit` and every pair of the legs that are added next, first those in and then those out, except
+  // pairs of more than `max_bounces` hits. `end_fan` ends it.
   void begin_fan(const Hit& hit, int stratum, int max_bounces);
   void add_leg_in(std::complex<double> factor) { ++fans.back().num_in; add_leg(factor); }
   void add_leg_out(std::complex<double> factor) { ++fans.back().num_out; add_leg(factor); }
-  // The next hit of the leg added last, in order of travel.
+  // Adds the next hit of the leg added last, in order of travel.
   void add_leg_hit(const Hit& hit);
-  // The matrix of the next pair of a polarised fan, by way in and then by way out.
+  // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.
   void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();
-  // Give the last path added its matrix (Paths::jones) and a launch cell of its own (Paths::curved_cell).
+  // Give the last path added its matrix (Paths::jones) or a launch cell of its own (Paths::curved_cell).
   void set_jones(const JonesMatrix& matrix);
   void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.
@@ -54,12 +54,12 @@ class PathBlock {
     first_of_ray_ = rows.size();
     used_depth_ = 0;
   }
-  // Of the record that this block becomes.
+  // Return the size of the record that this block becomes.
   size_t num_paths() const { return rows.size() + num_fan_paths_; }
   size_t num_hits() const { return hits.size() + num_fan_hits_; }
-  // Writes them all in the order in which they were added. `paths`: whose optional columns are there if this block has any.
+  // Writes all paths in the order in which they were added. `paths` must have the optional columns that this block has.
   void write(PathRows to, Paths& paths) const;
-  // Forgets everything but its memory.
+  // Forgets everything but keeps the memory.
   void clear();
 
  private:
@@ -71,8 +71,8 @@ class PathBlock {
               static_cast<uint8_t>(count), current_batch});
   }
 
-  size_t first_of_ray_ = 0;  // path of the current ray
-  int used_depth_ = 0;       // of its hits, by paths over the first of them, whose offset is kOfRay until it ends
+  size_t first_of_ray_ = 0;  // first path of the current ray
+  int used_depth_ = 0;       // hits of the ray that such paths use; the offset of these paths is kOfRay until the ray ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// Paths of one block, column by column as the record has them (Paths), with one look at the room that is left for each.
+// Holds the paths of one block, column by column as in the record (Paths); adding one checks the room of all columns at
+// once.
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -31,7 +32,7 @@ class PathColumns {
     ++size_;
   }
 
-  // At least `size` each.
+  // Each column has room for at least `size` paths.
   std::vector<int64_t> offset;
   std::vector<uint64_t> diffuse;
   std::vector<std::complex<float>> weight;

@@ -1,5 +1,6 @@
 #pragma once
-// All paths over one diffuse hit, kept as its legs until the record is put together: over each way in and each way out.
+// Holds all paths over one diffuse hit, one for each way in and each way out, as the legs of these ways until the record is
+// put together.
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -22,11 +23,11 @@ struct PathFan {
   uint32_t flags = 0;
   uint32_t num_in = 0, num_out = 0, max_bounces = 0;
 
-  // Of a pair of legs, by the hits of their mirrors.
+  // Returns whether the path of a pair of legs has few enough hits; the arguments count the hits of their mirrors.
   bool fits(uint32_t hits_in, uint32_t hits_out) const { return hits_in + 1 + hits_out <= max_bounces; }
 };
 
-// Where the columns of the paths and their hits are to be written (Paths).
+// Says where the columns of the paths and their hits are written (Paths).
 struct PathRows {
   Hit* hits;
   int64_t first_hit;  // index of `hits` in the record
@@ -42,14 +43,14 @@ struct PathRows {
   void skip_hits(size_t count);
 };
 
-// The pairs of legs of a fan. Paths share hits as far as they can: one that leaves directly runs over the first hits of one
-// that leaves over a mirror, one that comes directly over the last hits of one that comes over a mirror.
+// Enumerates the pairs of legs of a fan. Paths share hits as far as they can: one that leaves directly uses the first hits
+// of one that leaves over a mirror, and one that comes directly uses the last hits of one that comes over a mirror.
 class FanPairs {
  public:
-  // `legs` [num_in + num_out], those in and then those out; `hits`: what their first_hit counts from.
+  // `legs` [num_in + num_out] has those in and then those out; their first_hit counts from `hits`.
   FanPairs(const PathFan& fan, const FanLeg* legs, const Hit* hits);
   void count(size_t& num_paths, size_t& num_hits) const;
-  // Writes them by way in and then by way out, and moves `rows` behind them. `places`: scratch.
+  // Writes the paths by way in and then by way out, and moves `rows` behind them. `places` is scratch memory.
   void write(PathRows& rows, std::vector<int64_t>& places) const;
 
  private:

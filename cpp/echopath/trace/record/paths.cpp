@@ -24,13 +24,13 @@ std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& ke
   return out;
 }
 
-// A set of hits that tells quickly how many of its members come before one.
+// Holds a set of hits and tells quickly how many of its members come before one.
 class HitSet {
  public:
   explicit HitSet(size_t num_hits) : words_((num_hits + kHitsPerWord - 1) / kHitsPerWord), before_(words_.size()) {}
   void insert(size_t hit) { words_[hit / kHitsPerWord] |= uint64_t{1} << (hit % kHitsPerWord); }
   bool has(size_t hit) const { return (words_[hit / kHitsPerWord] >> (hit % kHitsPerWord)) & 1u; }
-  // Makes `rank` right; returns the number of members.
+  // Prepares `rank`; returns the number of members.
   int64_t count() {
     int64_t sum = 0;
     for (size_t i = 0; i < words_.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// The record of a trace: what every ray touched. Immutable after the trace; selections share the hits.
+// Holds the record of a trace: what every ray touched. It is immutable after the trace; selections share the hits.
 #include <array>
 #include <bit>
 #include <complex>
@@ -28,20 +28,22 @@ struct Hit {  // 16 bytes
 };
 static_assert(sizeof(Hit) == 16);
 
-// The stratum of paths that rays did not find (image method).
+// Marks paths that rays did not find (image method) and that have no stratum.
 inline constexpr uint16_t kNoStratum = 65535;
 
-// The batch of paths that rays did not find (image method): they stand in each batch's estimate in full.
+// Marks paths that rays did not find (image method): they count in full in the estimate of each batch.
 inline constexpr uint8_t kNoBatch = 255;
 
-// Flag of a path that was traced from its receiver's end: hits stand in travel order, its amplitude is that of the path as
-// it was traced with the antennas exchanged. A chain of several diffuse hits has the coefficients of its travel order.
+// Marks a path that was traced from its receiver's end. Its hits stand in travel order, and its amplitude is that of the
+// path as it was traced with the antennas exchanged. A chain of several diffuse hits has the coefficients of its travel
+// order.
 inline constexpr uint32_t kReversedPath = 1;
-// Flag of the paths of every other ray (half_of_ray): two halves of the rays, each evenly spread over the launch directions.
+// Marks the paths of every other ray (half_of_ray): the rays have two halves, each evenly spread over the launch directions.
 // Paths of the image method belong to neither, whatever their flag.
 inline constexpr uint32_t kSecondHalf = 2;
-// The flag of a ray's paths by its index: 0 or kSecondHalf. The parity of its digits (Thue and Morse), so that
-// both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them apart.
+// Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
+// so that both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them
+// apart.
 inline constexpr uint32_t half_of_ray(int64_t index) {
   return std::popcount(static_cast<uint64_t>(index)) % 2 == 0 ? 0 : kSecondHalf;
 }
@@ -59,7 +61,7 @@ struct TraceStatistics {
   int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMostFrusta)
 };
 
-// What a path's amplitude and length are relative to.
+// Holds the values to which a path's amplitude and length refer.
 struct TraceFrame {
   double start_time = 0.0;  // s, first sample of the frame
   double trace_time = 0.0;  // s, the time the rays saw the scene at (mid-frame)
@@ -75,15 +77,17 @@ struct TraceFrame {
   double target_error_db = 0.0;    // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;           // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
 
-  // Rays per sr of one batch of a stratum: what its launch cells are made of. Filters for the cells of all batches
-  // together would leave each its aliases, and these do not cancel between lattices that know nothing of each other.
+  // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
+  // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each
+  // other.
   double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / num_batches; }
 };
 
 struct Paths {
   // [H], shared by all selections of one trace
   std::shared_ptr<const std::vector<Hit>> hits;
-  // [P] each. offsets: index of the path's first hit; its hits are num_bounces consecutive ones, in travel order TX -> RX.
+  // [P] each. `offsets` has the index of the path's first hit; its hits are num_bounces consecutive ones, in travel order TX
+  // -> RX.
   std::vector<int64_t> offsets;
   std::vector<uint8_t> num_bounces;
   std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
@@ -91,12 +95,12 @@ struct Paths {
   std::vector<uint16_t> stratum;             // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
   std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf
-  // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 in units of the
-  // triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). All zero: a flat chain.
+  // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
+  // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;
 
-  // [P] or empty (scalar): in the transverse bases of em/jones.h, with the coefficients of all hits, which then are not in the
-  // weight. Of coherent paths over cos_i at the last surface.
+  // [P] or empty (scalar). Matrices are in the transverse bases of em/jones.h and hold the coefficients of all hits, which
+  // then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
   std::shared_ptr<const Scene> scene;        // snapshot
@@ -110,9 +114,9 @@ struct Paths {
   // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
   void validate() const;
   void validate_path(size_t path) const;
-  // The paths where keep [P] is not 0, in order; shares the hits. Raises Cancelled when the job is.
+  // Returns the paths where keep [P] is not 0, in order; it shares the hits. Raises Cancelled when the job is cancelled.
   Paths select(const std::vector<uint8_t>& keep, Job* job = nullptr) const;
-  // The same paths with only the hits that they use, in their order; hits that paths share stay shared.
+  // Returns the same paths with only the hits that they use, in their order; hits that paths share stay shared.
   Paths with_own_hits(Job* job = nullptr) const;
 };
 

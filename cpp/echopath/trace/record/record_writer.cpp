@@ -8,7 +8,8 @@
 namespace echopath {
 namespace {
 
-// Of the room that blocks alike are expected to need: those to come differ. What is not touched costs no memory.
+// Factor on the room that blocks alike are expected to need, because those to come differ. Memory that is not touched costs
+// nothing.
 constexpr double kMargin = 1.1;
 
 void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
@@ -21,7 +22,7 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_unfollowed_beams += part.num_unfollowed_beams;
 }
 
-// Where each block begins in the record, and where the last one ends.
+// Holds where each block begins in the record, and where the last one ends.
 struct Places {
   std::vector<size_t> paths, hits;
 
@@ -63,9 +64,9 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   if (has_matrices(blocks)) paths_.jones.reserve(rows);
 }
 
-// All columns at once: the first touch of their memory is what takes time. The optional ones are there from the first block that
-// has them on, with zeros before. No large pages are asked for: a virtual machine whose free memory went back to its host is given
-// each of them anew, in milliseconds, and a record is walked from end to end.
+// Grows all columns at once, because the first touch of their memory takes the time. An optional column exists from the
+// first block that has it, with zeros before. No large pages are asked for: a virtual machine whose free memory went back to
+// its host is given each of them anew, in milliseconds, and a record is walked from end to end.
 void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
   const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
   const bool has_jones = !paths_.jones.empty() || has_matrices(blocks);

@@ -1,5 +1,5 @@
 #pragma once
-// The record of a trace, put together from blocks of rays while others are yet to be shot.
+// Puts the record of a trace together from blocks of rays, while other blocks are yet to be shot.
 #include <memory>
 #include <vector>
 
@@ -9,13 +9,14 @@ namespace echopath {
 
 class RecordWriter {
  public:
-  // `paths`: gets hits and path arrays, of which it has none yet; must outlive the writer.
+  // `paths` gets hits and path arrays; it must have none yet and must outlive the writer.
   explicit RecordWriter(Paths& paths) : paths_(paths), hits_(std::make_shared<std::vector<Hit>>()) {}
-  // Makes room for `num_blocks` blocks like these, so that arrays need not move as they grow. More still find room.
+  // Makes room for `num_blocks` blocks like these, so that arrays need not move as they grow. More blocks still find room.
   void expect(const std::vector<PathBlock>& like, int64_t num_blocks);
-  // Behind what was appended before; in this order, whatever the number of threads. Raises Cancelled when the job is.
+  // Appends the blocks behind those before, in this order, whatever the number of threads. Raises Cancelled when the job is
+  // cancelled.
   void append(const std::vector<const PathBlock*>& blocks, Job* job = nullptr);
-  // Gives the record its hits. Nothing is appended behind that.
+  // Gives the record its hits. Nothing may be appended after that.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The first hits of neighbouring rays, lane by lane.
+// Holds the first hits of neighbouring rays, lane by lane.
 #include "echopath/trace/sbr/ray.h"
 #include "echopath/trace/sbr/ray_context.h"
 
@@ -10,7 +10,8 @@ struct FirstHits {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  // Rays per sr, if each counted in full: those of the owner over what a ray stands for; infinite where foci have all.
+  // Rays per sr as if each counted in full: the density of the owner over the rays that one ray stands for; it is infinite
+  // where foci own all of the direction.
   LaneValues densities;
   PacketSamples samples;
   EmbreeScene::PacketHits hits;
@@ -42,7 +43,7 @@ struct FirstHits {
   SurfaceResponse response(int lane) const {
     return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane], facet[lane]};
   }
-  // How the ray of a lane goes on.
+  // Returns how the ray of a lane goes on.
   ScatterSample sample(int lane) const {
     static_assert(kRouletteBounce > 1, "first hits know of no roulette");
     ScatterSample sample;

@@ -1,4 +1,4 @@
-// The matrices of all pairs of legs of a hit, each leg followed once.
+// Finds the matrices of all pairs of legs of a hit; each leg is followed once.
 #include <cmath>
 
 #include "echopath/trace/sbr/weight.h"
@@ -6,12 +6,12 @@
 namespace echopath {
 namespace {
 
-// a.b without conjugation.
+// Returns a.b without conjugation.
 std::complex<double> along(const VectorOf<double>& a, const FieldVector& b) { return a.x * b[0] + a.y * b[1] + a.z * b[2]; }
 
 std::complex<double> as_complex(const ComplexOf<double>& z) { return {z.re, z.im}; }
 
-// Of a wave that travels along `arrival`.
+// Returns the modes of a wave that travels along `arrival`.
 ModesIn modes_of(const SurfaceHit& surface, const Vec3& arrival, const FieldPair& fields, double cos_incidence) {
   const double diffuse = diffuse_coefficient(surface.model->respond(cos_incidence, PolarizationMode::kTe));
   ModesIn found{unpacked(arrival), mode_axes(unpacked(arrival), unpacked(surface.point.normal)), {}, {}};

@@ -1,4 +1,4 @@
-// The matrices of polarised paths (Paths::jones) along a ray.
+// Finds the matrices of polarised paths (Paths::jones) along a ray.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,8 @@ void reflect_at(const SurfaceHit& surface, const Vec3& direction, FieldPair& fie
   reflect_all(fields, direction, surface.point.normal, *surface.model, coherent * coherent);
 }
 
-// What a diffuse hit makes of fields that travel along `in`. Its random axis is bound to the hit, like its phase.
+// Returns the fields that a diffuse hit scatters when fields travel along `in`. Its random axis is bound to the hit, as its
+// phase is.
 FieldPair scattered(const SurfaceHit& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) {
   const double cos_incidence = -in.dot(surface.point.normal);
   const double reflection = diffuse_coefficient(surface.model->respond(cos_incidence, PolarizationMode::kTe));
@@ -31,8 +32,8 @@ FieldPair scattered(const SurfaceHit& surface, const FieldPair& fields, const Ve
   return out_fields;
 }
 
-// The transpose of what the hit makes of fields that come along -`out` and leave along -`in`: a chain of such hits, read
-// from its other end.
+// Applies the transpose of the scattering of fields that come along -`out` and leave along -`in`: so a chain of such hits is
+// read from its other end.
 FieldPair scattered_back(const SurfaceHit& surface, const FieldPair& fields, const Vec3& in, const Vec3& out) {
   const FieldPair axes = launched_fields(out);
   const FieldPair back = scattered(surface, axes, -out, -in);
@@ -66,7 +67,7 @@ void JonesWeight::scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) 
   ray.fields = scattered(surface, ray.fields, ray.direction, out);
 }
 
-// What fields at the antenna become on the way over a leg to its surface point.
+// Carries fields at the antenna over a leg to its surface point.
 FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
   Vec3 direction = leg.at_antenna;
   for (int k = leg.num_bounces; k-- > 0;) {
@@ -78,11 +79,11 @@ FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
   return fields;
 }
 
-// Fields at a surface point of launches along a leg to it.
+// Returns the fields of both launches along a leg at its surface point.
 FieldPair JonesWeight::incident_over(const Leg& leg) const { return fields_over(leg, launched_fields(leg.at_antenna)); }
 
-// Along which of the fields that leave a surface point a receiver at the end of a leg sees its two components: by
-// reciprocity what its own axes become on the way to the point.
+// Returns those fields at a surface point along which a receiver at the end of a leg sees its two components: by reciprocity
+// they are its own axes carried to the point.
 FieldPair JonesWeight::axes_over(const Leg& leg) const { return fields_over(leg, launched_fields(-leg.at_antenna)); }
 
 void JonesWeight::find_receive_axes(Connection& at) const {
@@ -107,7 +108,7 @@ void JonesWeight::set_diffuse_matrix(Connection& at, const Leg& leg) const {
   at.block.set_jones(components(fields, at.axes_of(leg)));
 }
 
-// From the receiver along the ray's way to the transmitter at the end of `leg`, for the opposite order of its chain.
+// Follows the ray's way from the receiver to the transmitter at the end of `leg`, for the opposite order of its chain.
 void JonesWeight::set_reversed_matrix(Connection& at, const Leg& leg) const {
   const FieldPair fields = scattered_back(at.surface, at.ray.chain.fields, at.ray.direction, leg.to_antenna);
   at.block.set_jones(components(fields, axes_over(leg)));

@@ -12,7 +12,7 @@ struct Antennas {
   VectorOf<double> transmitter, receiver;
 };
 
-// What first hits look like from the antennas.
+// Measures how first hits lie to the antennas.
 ECHOPATH_INLINE void see_lanes(FirstHits* first, Antennas at, double lift) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -84,7 +84,7 @@ void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
   }
 }
 
-// Whether the stratum of the ray owns its hit, or the ray passes over a mirror.
+// Returns whether the stratum of the ray owns its hit, or the ray passes over a mirror.
 bool PacketFront::counts(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
   const uint32_t mesh = first.hits.met[k].mesh_id;
@@ -105,7 +105,8 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
   first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
 }
 
-// Asks for all first hits together: they lie beside each other. What a mirror sends depends on more.
+// Asks for the shadows of all first hits together, because these lie beside each other. The paths of a mirror's hit need
+// more than that.
 void PacketFront::see_receiver(FirstHits& first, TraceStatistics& statistics) const {
   EmbreeScene::Lanes asked, blocked;
   for (size_t k = 0; k < kPacketSize; ++k) {

@@ -5,8 +5,8 @@
 
 namespace echopath {
 
-// A ray counts what its stratum owns (ray_owners.h): one that was aimed at an object goes over flagged mirrors as they reflect,
-// without chance, and ends at whatever else it meets first.
+// A ray counts what its stratum owns (ray_owners.h): one that was aimed at an object goes over flagged mirrors as they
+// reflect, without chance, and ends at whatever else it meets first.
 class PacketFront {
  public:
   explicit PacketFront(const RayContext& context) : context_(context), directions_(context.plan.strata) {}

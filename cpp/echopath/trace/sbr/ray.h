@@ -1,5 +1,5 @@
 #pragma once
-// The state of a ray and of the hit where it is.
+// Holds the state of a ray and of the hit where it is.
 #include <array>
 #include <complex>
 #include <optional>
@@ -12,13 +12,13 @@
 
 namespace echopath {
 
-// The transmitter was left over something else than a sequence of a leg.
+// The ray left the transmitter over something else than the mirrors of a leg.
 inline constexpr MirrorSequence kOther = -1;
 
 using RayHits = std::array<Hit, 64>;
 
-// One end of a coherent path over unflagged surfaces: a hit that is a mirror in one of the path's two orders and radiates in the
-// other (mirror_orders.h).
+// Describes one end of a coherent path over unflagged surfaces: a hit that is a mirror in one of the path's two orders and
+// radiates in the other (mirror_orders.h).
 struct PathEnd {
   double cover = 1.0;       // share of the Fresnel zone that it covers as a mirror
   double spread = 1.0;      // of the tube's area behind it, over that behind a flat mirror
@@ -26,17 +26,18 @@ struct PathEnd {
   bool is_smooth = false;
 };
 
-// The hits of a ray from its first diffuse one on, which other rays meet in the opposite order (diffuse_chain.h).
+// Holds the hits of a ray from its first diffuse one on, which other rays meet in the opposite order (diffuse_chain.h).
 struct DiffuseChain {
   int first = 0;             // index of its first hit: number of hits of the transmit leg
   std::optional<Leg> back;   // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
   double density = 0.0;      // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
-  // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray. 0: none comes.
+  // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray; 0 where none
+  // comes.
   double opposite_ratio = 1.0;
   // The survival in the opposite order at the hit that was left last, which joins `opposite_ratio` one hit later.
   double opposite_survival = 1.0;
   std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
-  FieldPair fields;          // likewise, where polarised: of launches at the receiver that run the ray's way
+  FieldPair fields;          // where polarised: fields of launches at the receiver that run the ray's way
 };
 
 struct Ray {
@@ -52,14 +53,14 @@ struct Ray {
   bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
   double launch_density = 0.0;        // rays per sr of its stratum; in a focus, of the stratum that this is in
   double stands_for = 1.0;            // so many of these rays (LaunchFoci)
-  // Since the last anchor (the transmitter or the last diffuse hit): unfolded length in m and rays per sr, continuation
-  // probabilities included.
+  // Both count from the last anchor (the transmitter or the last diffuse hit): the unfolded length in m, and the rays per sr
+  // with continuation probabilities.
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> coefficient = 1.0;  // product of Gamma s and of what diffuse hits scatter, without q
-  FieldPair fields;                        // likewise of vectors, where polarised
-  // Of the unflagged bounces so far; tells the sign of what comes back (ScalarWeight).
+  FieldPair fields;                        // the same for field vectors, where polarised
+  // These describe the unflagged bounces so far and tell the sign of the field that comes back (ScalarWeight).
   bool has_dielectric_tm = false, has_odd_conductors = false;
-  // What a field has beside its coefficients: 1/q of every bounce, j of every caustic; of coherent rays.
+  // Of a coherent ray: the factors of the field beside its coefficients, 1/q of every bounce and j of every caustic.
   std::complex<double> field_factor = 1.0;
   RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
   bool is_curved = false;        // some bounce so far was on a curved surface
@@ -75,7 +76,7 @@ struct Ray {
   Ray() {}  // does not clear what its members leave as it is
 };
 
-// The hit where a ray is.
+// Describes the hit where a ray is.
 struct SurfaceHit {
   RayHit point;
   const SurfaceModel* model = nullptr;
@@ -91,7 +92,7 @@ struct SurfaceHit {
   SurfaceHit() {}
 };
 
-// How a ray leaves a hit.
+// Says how a ray leaves a hit.
 struct ScatterSample {
   Vec3 from, direction;
   bool is_specular = false;
@@ -102,10 +103,10 @@ struct ScatterSample {
   double probability() const { return lobe_probability * survival_probability; }
 };
 
-// Of the field that a diffuse hit scatters.
+// Returns the coefficient of the field that a diffuse hit scatters.
 inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
 
-// What the surface makes of a wave that comes from where `direction` points, a unit vector.
+// Returns the response of the surface to a wave that comes from where `direction` points, a unit vector.
 inline SurfaceResponse response_toward(const SurfaceHit& surface, const Vec3& polarization, const Vec3& direction) {
   return respond_along(*surface.model, polarization, -direction, surface.point.normal);
 }

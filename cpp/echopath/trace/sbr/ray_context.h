@@ -1,5 +1,5 @@
 #pragma once
-// What all rays of a trace share. Internal to the module, as everything about single rays.
+// Holds what all rays of a trace share. Internal to the module, as everything about single rays.
 #include "echopath/base/constants.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/scatter/lobe_probabilities.h"
@@ -18,11 +18,11 @@ struct RayContext {
   SurfaceTable surfaces;
   double wavelength = kSpeedOfLight / settings.frequency;  // m
 
-  // Whether the rays of a stratum count what first hits on a mesh over these mirrors send.
+  // Returns whether the rays of a stratum count the echoes of first hits on a mesh over these mirrors.
   bool is_owner(int stratum, uint32_t mesh_id, MirrorSequence sequence) const {
     return plan.owners.owner(mesh_id, sequence) == plan.foci.owner(stratum);
   }
-  // Whether they are on their way to what they aim at when they meet this mesh.
+  // Returns whether these rays pass over this mesh on their way to their target.
   bool is_passed(int stratum, uint32_t mesh_id) const {
     return surfaces.mirror(mesh_id) >= 0 && !plan.is_field_of_view(stratum);
   }

@@ -17,7 +17,7 @@ double RayDifferential::area(const Vec3& direction, double distance) const {
 }
 
 int RayDifferential::num_caustics(const Vec3& direction, double distance) const {
-  // area(s) = c + b s + a s^2; the sign at the start is that just behind it, for a source has area 0.
+  // area(s) = c + b s + a s^2. The sign at the start is that just behind it, because a source has area 0.
   const double c = point[0].cross(point[1]).dot(direction);
   const double b = (point[0].cross(turn[1]) + turn[0].cross(point[1])).dot(direction);
   const double a = turn[0].cross(turn[1]).dot(direction);

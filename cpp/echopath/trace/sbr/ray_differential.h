@@ -1,6 +1,6 @@
 #pragma once
-// How the rays around one ray spread: derivatives of its point and direction by the launch direction (Igehy 1999, "Tracing ray
-// differentials"). Gives the tube's area, its caustics and its footprint behind curved mirrors.
+// Describes how the rays around one ray spread: derivatives of its point and direction by the launch direction (Igehy 1999,
+// "Tracing ray differentials"). They give the tube's area, its caustics and its footprint behind curved mirrors.
 #include "echopath/base/geometry.h"
 
 namespace echopath {
@@ -9,11 +9,11 @@ struct RayDifferential {
   Vec3 point[2] = {Vec3::Zero(), Vec3::Zero()};  // dP per rad of launch axis
   Vec3 turn[2] = {Vec3::Zero(), Vec3::Zero()};   // dD per rad
 
-  // Rays of a point source along the unit vector `direction`.
+  // Returns the differential of a ray of a point source along the unit vector `direction`.
   static RayDifferential from_point(const Vec3& direction);
-  // Signed area of the tube across `direction` per sr after `distance` (m) from here.
+  // Returns the signed area of the tube across `direction` per sr after `distance` (m) from here.
   double area(const Vec3& direction, double distance) const;
-  // Number of times in (0, distance) that the tube's area passes through zero: caustics, each turns the phase by +90 deg
+  // Returns how often in (0, distance) the tube's area passes through zero: each caustic turns the phase by +90 deg
   // (e^{+jwt}).
   int num_caustics(const Vec3& direction, double distance) const;
   // Carries the differential to the surface with unit `normal` at `distance` along `direction`.

@@ -1,5 +1,5 @@
 #pragma once
-// What is computed alike for one ray and, in loops over lanes, for all of a packet.
+// Computes in the same way for one ray and, in loops over lanes, for all of a packet.
 #include "echopath/base/scalar_math.h"
 #include "echopath/base/vector_of.h"
 
@@ -9,7 +9,7 @@ struct Facet {
   VectorOf<double> corner, along_u, along_v;  // m
 };
 
-// The point of a facet at (u, v), and how it lies to a ray.
+// Describes the point of a facet at (u, v), and how it lies to a ray.
 struct FacetPoint {
   VectorOf<double> position;
   double distance;     // m, along the ray
@@ -36,23 +36,23 @@ ECHOPATH_INLINE VectorOf<double> unit_normal(const Facet& facet) {
   return (1.0 / ScalarMath::root(dot(normal, normal))) * normal;
 }
 
-// The one of a normal's two sides that the ray meets.
+// Returns the side of a normal that the ray meets.
 ECHOPATH_INLINE VectorOf<double> turned_against(const VectorOf<double>& direction, const VectorOf<double>& normal) {
   return (dot(normal, direction) > 0 ? -1.0 : 1.0) * normal;
 }
 
-// The way between two points as Embree takes it.
+// Describes the way between two points as Embree takes it.
 struct SegmentRay {
   VectorOf<double> from, direction;
   double far;  // m; negative: the points are too near to each other for anything to lie between them
 };
 
-// How far a ray may be moved along its unit direction until it is `reach` (m) before the point next to the origin.
+// Returns how far a ray may be moved along its unit direction until it is `reach` (m) before the point next to the origin.
 ECHOPATH_INLINE double way_up(const VectorOf<double>& from, const VectorOf<double>& direction, double reach) {
   return ScalarMath::larger(0.0, -dot(from, direction) - reach);
 }
 
-// `shortest`: m, below which points are too near.
+// Points nearer than `shortest` (m) are too near for anything to lie between them.
 ECHOPATH_INLINE SegmentRay segment_ray(const VectorOf<double>& from, const VectorOf<double>& to, double shortest,
                                        double reach) {
   const VectorOf<double> whole = to - from;
@@ -65,9 +65,9 @@ ECHOPATH_INLINE SegmentRay segment_ray(const VectorOf<double>& from, const Vecto
   return ray;
 }
 
-// The direction over a surface whose components along two axes across the unit normal and along it are given. The axes turn
-// smoothly but where the normal has a z of kAxesTurn (Duff et al. 2017, "Building an orthonormal basis, revisited"; there it
-// is 0): a slope that is rare, since rounding decides on which side of it a surface lies.
+// Returns the direction whose components along two axes across the unit normal and along the normal are given. The axes turn
+// smoothly except where the normal has a z of kAxesTurn (Duff et al. 2017, "Building an orthonormal basis, revisited"; there
+// it is 0): few surfaces have this slope, and rounding decides on which side of it they lie.
 inline constexpr double kAxesTurn = -0.3217;
 
 ECHOPATH_INLINE VectorOf<double> over_surface(const VectorOf<double>& normal, const VectorOf<double>& local) {
@@ -78,7 +78,7 @@ ECHOPATH_INLINE VectorOf<double> over_surface(const VectorOf<double>& normal, co
   return local.x * first + local.y * second + local.z * normal;
 }
 
-// Unit, of a ray that arrives along `direction`.
+// Returns the unit direction after reflection of a ray that arrives along `direction`.
 ECHOPATH_INLINE VectorOf<double> mirrored(const VectorOf<double>& normal, const VectorOf<double>& direction,
                                           double cos_incidence) {
   const VectorOf<double> out = direction + (2.0 * cos_incidence) * normal;

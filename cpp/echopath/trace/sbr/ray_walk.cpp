@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-// The packet, and the ray of it that is followed now.
+// Holds the packet, and the ray of it that is followed now.
 template <class Weight>
 struct RayWalk<Weight>::Scratch {
   FirstHits first;
@@ -32,7 +32,7 @@ void RayWalk<Weight>::shoot(int64_t begin, int64_t end, PathBlock& block) const 
   block.statistics.num_queries += std::exchange(scratch.legs.search.num_queries, 0);
 }
 
-// From the first hit on. A ray is made only of what has more than a plain hit.
+// Follows a ray from its first hit on. A ray is made only where there is more than a plain hit.
 template <class Weight>
 void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) const {
   const auto k = static_cast<size_t>(lane);
@@ -58,7 +58,7 @@ void RayWalk<Weight>::start(int lane, Scratch& scratch) const {
   arrivals_.record(scratch.ray, scratch.surface);
 }
 
-// From the hit where the ray is.
+// Follows a ray from the hit where it is.
 template <class Weight>
 void RayWalk<Weight>::follow(Scratch& scratch, PathBlock& block) const {
   for (RayHit met;;) {
@@ -84,7 +84,7 @@ bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, RayHit& met
   return verdict == EmbreeScene::Verdict::kHit;
 }
 
-// From the hit where the ray is to the one that it meets next.
+// Carries the ray from the hit where it is to the one that it meets next.
 template <class Weight>
 bool RayWalk<Weight>::travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const {
   Ray& ray = scratch.ray;

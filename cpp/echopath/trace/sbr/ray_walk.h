@@ -1,5 +1,5 @@
 #pragma once
-// Rays from their launch to their end.
+// Follows rays from their launch to their end.
 #include "echopath/trace/scatter/arrivals.h"
 #include "echopath/trace/connect/connector.h"
 #include "echopath/trace/sbr/packet_front.h"
@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Joins the parts: a packet of rays to its first hits (PacketFront), from there ray by ray to the next hits (Scatterer,
-// Arrivals), and each hit to the receiver (Connector).
+// Joins the parts: PacketFront takes a packet of rays to its first hits, Scatterer and Arrivals take each ray to its next
+// hits, and Connector joins each hit to the receiver.
 template <class Weight>
 class RayWalk {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Shooting and bouncing rays: both transport regimes, a connection to the receiver at every hit.
+// Shoots and bounces rays in both transport regimes, and connects every hit to the receiver.
 //
 // Regime C (coherent): a ray carries a field up to its first diffuse hit, and each unflagged hit radiates by physical optics over
 // every visible receive leg (connector.h). Regime D (diffuse): from there on it carries power with one random phase per diffuse
@@ -25,7 +25,7 @@ class RayShooter {
   ~RayShooter();
   // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
-  // The number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
+  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
   int64_t num_unfollowed_beams() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The settings of a trace that every ray follows.
+// Holds the settings of a trace that every ray follows.
 #include <cstdint>
 
 #include "echopath/base/geometry.h"
@@ -14,7 +14,7 @@ struct SbrSettings {
   Vec3 receiver = Vec3::Zero();
   bool is_polarized = false;                 // follow field vectors (PolarizationModel::kJones)
   Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
-  // The probability of going on specularly where a surface does both. 0 stands for its specular share; any other value leaves
+  // Probability of going on specularly where a surface does both. 0 stands for its specular share; any other value leaves
   // the expected echo as it is.
   double specular_probability = 0.0;
 };

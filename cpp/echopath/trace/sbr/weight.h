@@ -1,8 +1,9 @@
 #pragma once
-// What the weight of a path is: the policies of all parts that make paths.
+// Defines the weight of a path: the policies of all parts that make paths.
 //
-// Each policy tells how a wave changes along a ray, and what a path keeps of it. ScalarWeight: one polarisation, whose
-// coefficients are all in the weight. JonesWeight: field vectors, whose coefficients are all in a matrix beside the weight.
+// Each policy tells how a wave changes along a ray, and what a path keeps of it. ScalarWeight follows one polarisation,
+// whose coefficients are all in the weight. JonesWeight follows field vectors, whose coefficients are all in a matrix beside
+// the weight.
 #include "echopath/em/hit_modes.h"
 #include "echopath/trace/connect/connection.h"
 
@@ -15,19 +16,20 @@ class ScalarWeight {
  public:
   using Echoes = ScalarEchoes;  // of the first hits of a packet
   explicit ScalarWeight(const RayContext& context) : polarization_(context.settings.polarization) {}
-  // What the weight holds of a coefficient.
+  // Returns the part of a coefficient that the weight holds.
   static double held(double coefficient) { return coefficient; }
   static std::complex<double> held(std::complex<double> coefficient) { return coefficient; }
-  // What it holds of the coefficient with which a hit scatters a wave that comes from where `direction` points.
+  // Returns the part that the weight holds of the coefficient with which a hit scatters a wave that comes from where
+  // `direction` points.
   double held_toward(const SurfaceHit& surface, const Vec3& direction) const {
     return diffuse_coefficient(response_toward(surface, polarization_, direction));
   }
-  // The coefficient of a ray, which every part keeps, says all.
+  // These do nothing, because the coefficient of a ray, which every part keeps, says all.
   void launch(Ray&) const {}
   void reflect(Ray&, const SurfaceHit&) const {}
   void begin_chain(Ray&) const {}
   void scatter(Ray&, const SurfaceHit&, const Vec3&) const {}
-  // A path has no matrix.
+  // These do nothing, because a path has no matrix.
   void find_receive_axes(Connection&) const {}
   void set_coherent_matrix(Connection&, const Leg&) const {}
   void set_diffuse_matrix(Connection&, const Leg&) const {}
@@ -38,10 +40,10 @@ class ScalarWeight {
   Vec3 polarization_;
 };
 
-// Coherent paths hold the true reflections and the vector form of physical optics. Diffuse paths hold the true reflections of
-// their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations
-// (em/jones.h, scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is that of every
-// split in turn, the phases between two polarisations are those of one chance.
+// Coherent paths hold the true reflections and the vector form of physical optics. Diffuse paths hold the true reflections
+// of their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations (em/jones.h,
+// scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is that of every split in turn,
+// and the phases between two polarisations are one random draw.
 class JonesWeight {
  public:
   using Echoes = JonesEchoes;
@@ -55,13 +57,13 @@ class JonesWeight {
   void reflect(Ray& ray, const SurfaceHit& surface) const;
   void begin_chain(Ray& ray) const;
   void scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) const;
-  // Finds what the receiver sees over each receive leg; goes before the matrices.
+  // Finds what the receiver sees over each receive leg; it must be called before the matrices are set.
   void find_receive_axes(Connection& at) const;
   // Give the last path its matrix: over a receive leg or, reversed, over a transmit leg.
   void set_coherent_matrix(Connection& at, const Leg& leg) const;
   void set_diffuse_matrix(Connection& at, const Leg& leg) const;
   void set_reversed_matrix(Connection& at, const Leg& leg) const;
-  // Adds the matrices of all pairs of legs, the ray's own way to the hit as the last of those in (jones_pairs.cpp).
+  // Adds the matrices of all pairs of legs; the ray's own way to the hit is the last of those in (jones_pairs.cpp).
   void add_pair_matrices(Connection& at) const;
 
  private:
@@ -74,8 +76,8 @@ class JonesWeight {
   const RayContext& context_;
 };
 
-// Replay multiplies the matrix of a coherent path by cos_i; a conductor's TM part goes with the cosine of radiation instead, so
-// the quotient is bounded where cos_i is small beside that.
+// Replay multiplies the matrix of a coherent path by cos_i. A conductor's TM part goes with the cosine of radiation instead,
+// so the quotient is bounded where cos_i is small beside that.
 ECHOPATH_INLINE double polarized_scale(double cos_incidence, double cos_radiation) {
   constexpr double kPolarizedGrazing = 0.05;
   return 1.0 / ScalarMath::larger(cos_incidence, kPolarizedGrazing * cos_radiation);

@@ -29,8 +29,8 @@ void Arrivals::find_response(const Ray& ray, SurfaceHit& surface) const {
   surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
 }
 
-// Of a ray that has met flagged mirrors alone: whether its stratum owns the mesh that it meets, or it goes on over another
-// mirror.
+// Serves a ray that has met flagged mirrors alone: returns whether its stratum owns the mesh that it meets, or it goes on
+// over another mirror.
 bool Arrivals::finds_owner(Ray& ray, uint32_t mesh_id) const {
   const bool passes_on =
       context_.is_passed(ray.stratum, mesh_id) && ray.sequence != kOther && ray.depth < kMaxLegMirrors;

@@ -1,5 +1,5 @@
 #pragma once
-// What a hit makes of the ray that arrives there.
+// Takes the hit where a ray arrives into the ray, and finds the response of its surface.
 #include "echopath/trace/connect/mirror_orders.h"
 
 namespace echopath {
@@ -7,7 +7,7 @@ namespace echopath {
 class Arrivals {
  public:
   explicit Arrivals(const RayContext& context) : context_(context), orders_(context) {}
-  // Carries a ray to the point of `surface`, and finds what the surface makes of it. False: not a hit that counts.
+  // Carries a ray to the point of `surface` and finds the response there. Returns false where the hit does not count.
   bool arrive(Ray& ray, SurfaceHit& surface, TraceStatistics& statistics) const;
   // Takes a hit whose response is known into the ray.
   void record(Ray& ray, SurfaceHit& surface) const;

@@ -11,8 +11,8 @@
 namespace echopath {
 namespace {
 
-// The middle of one of 2^32 intervals of [0, 1]: never 0, which would take a way however small its probability, and what is
-// carried on is divided by it.
+// Returns the middle of one of 2^32 intervals of [0, 1]. It is never 0: a ray would then go a way of any probability,
+// however small, and its weight is divided by that.
 ECHOPATH_INLINE double unit_sample(uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1.0p-32; }
 
 template <size_t kLanes>
@@ -52,7 +52,7 @@ ECHOPATH_INLINE VectorOf<double> direction_of(double u, double v) {
   return {sine * turn.re, sine * turn.im, std::sqrt(1.0 - u)};
 }
 
-// x and y: the cells of the rays, which become their directions.
+// Draws directions in place of x and y, which are the cells of the rays.
 ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LaneVectors* lanes) {
   const PhiloxWords<kPacketSize> words = draw_words<kPacketSize>(seed, Stream::kScatterPoint, first, 0);
   for (int lane = 0; lane < kPacketSize; ++lane) {

@@ -1,5 +1,5 @@
 #pragma once
-// The random samples of a hit; those of a packet's first hits are drawn all at once.
+// Draws the random samples of a hit; those of a packet's first hits are drawn all at once.
 #include <array>
 #include <complex>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// The samples of hit number `depth` (1: the first) of a ray. All but the phase are uniform in (0, 1) with 32 bits.
+// Holds the samples of hit number `depth` (1: the first) of a ray. All but the phase are uniform in (0, 1) with 32 bits.
 struct HitSamples {
   std::complex<double> phase;    // of what it scatters, of magnitude 1
   double axis_sample = 0.0;      // decides the axis about which it turns polarisations
@@ -18,16 +18,16 @@ struct HitSamples {
 };
 HitSamples hit_samples(uint64_t seed, int64_t ray, int depth);
 
-// A direction over a surface with its normal along z, in a cosine lobe: of two numbers in [0, 1).
+// Returns a direction in a cosine lobe over a surface with its normal along z, from two numbers in [0, 1).
 Vec3 cosine_lobe(const std::array<double, 2>& random);
 
-// The samples of a packet's rays at their first hits: what hit_samples and cosine_lobe of scatter_point give for each, but for
-// rounding.
+// Holds the samples of a packet's rays at their first hits: up to rounding, the results of hit_samples and of cosine_lobe of
+// scatter_point for each ray.
 struct PacketSamples {
   LaneValues phase_re, phase_im, axis_sample, lobe_sample, survival_sample;
   LaneVectors lobe;
 
-  // Draws those of the rays [first, first + count); batches [count].
+  // Draws the samples of the rays [first, first + count); `batches` is [count].
   void draw(uint64_t seed, int64_t first, int count, const int* batches);
   HitSamples hit(int lane) const {
     return {{phase_re[lane], phase_im[lane]}, axis_sample[lane], lobe_sample[lane], survival_sample[lane]};

@@ -1,5 +1,5 @@
 #pragma once
-// The probabilities with which a ray goes on from a hit.
+// Gives the probabilities with which a ray goes on from a hit.
 #include <algorithm>
 
 #include "echopath/em/surface_response.h"
@@ -7,31 +7,31 @@
 
 namespace echopath {
 
-// Rays leave this bounce and later ones by Russian roulette. In a chain of diffuse hits its own bounces count, so that the
+// From this bounce on, rays end by Russian roulette. In a chain of diffuse hits its own bounces count, so that the
 // probabilities of its orders do not depend on how they were reached.
 inline constexpr int kRouletteBounce = 3;
 static_assert(kMaxLegMirrors < kRouletteBounce, "the balance weight over legs knows of no roulette on mirrors");
 
-// The probabilities of leaving a hit specularly and diffusely, for a ray that goes on.
+// Holds the probabilities of leaving a hit specularly and diffusely, for a ray that goes on.
 struct LobeProbabilities {
   double specular = 0.0, diffuse = 0.0;
 };
 
-// Those of a ray that is not yet where it aims at, which goes over flagged mirrors as they reflect.
+// A ray that has not yet met its target always goes over flagged mirrors as they reflect.
 inline constexpr LobeProbabilities kPassingOn{1.0, 0.0};
 
-// The probabilities of other rays: the shares of power of both lobes. `specular_probability`: SbrSettings.
+// Returns the probabilities of other rays: the shares of power of both lobes. `specular_probability` is that of SbrSettings.
 inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const SurfaceResponse& response,
                                             double specular_probability) {
   const LobeProbabilities shares{response.coherent * response.coherent, response.diffuse * response.diffuse};
   const bool is_asked = specular_probability > 0 && shares.specular > 0 && shares.diffuse > 0;
-  // The balance weight over the legs of mirrors (LegFinder) counts on their shares.
+  // The balance weight over the legs of mirrors (LegFinder) relies on the shares of mirrors.
   if (!is_asked || model.material().mirror) return shares;
   return {specular_probability, 1.0 - specular_probability};
 }
 
-// The probability that a ray survives the roulette behind so many bounces: the larger reflectivity of both lobes, so that
-// neither gains weight as it survives.
+// Returns the probability that a ray survives the roulette behind so many bounces: the larger reflectivity of both lobes, so
+// that neither gains weight as it survives.
 inline double survival_probability(const SurfaceResponse& response, int num_bounces) {
   if (num_bounces < kRouletteBounce) return 1.0;
   const double facet = response.diffuse > 0 ? response.facet * response.facet : 0.0;

@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-// Sobol' digits of `index` below kScatterNetSize, as integers below it.
+// Returns the Sobol' digits of `index`, which is below kScatterNetSize, as integers below it.
 constexpr ScatterCell net_point(uint32_t index) {
   ScatterCell point{0, 0};
   uint32_t mirrored = kScatterNetSize / 2, pascal = kScatterNetSize / 2;

@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-// Product of material areas (m^2 each) beyond which a ray ends: its square root is part of the weight, in single precision.
+// A ray ends beyond this product of material areas (m^2 each), whose square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 
 }  // namespace
@@ -33,8 +33,8 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   return sample;
 }
 
-// The direction in which the ray leaves its hit diffusely, the normal along z. Neighbours are neighbours no more deeper in a
-// chain.
+// Returns the direction in which the ray leaves its hit diffusely, with the normal along z. Deeper in a chain, neighbouring
+// rays are no longer near each other and are drawn independently.
 template <class Weight>
 Vec3 Scatterer<Weight>::lobe_direction(const Ray& ray, int batch) const {
   const uint64_t seed = context_.settings.seed;
@@ -60,7 +60,7 @@ void Scatterer<Weight>::reflect(Ray& ray, const SurfaceHit& surface, const Scatt
   if (!ray.coherent) chains_.reflect(ray, surface, sample);
 }
 
-// What the bounce is for the way of the ray: part of a leg over flagged mirrors, or a mirror that nobody flagged.
+// Takes the bounce into the way of the ray: as part of a leg over flagged mirrors, or as an unflagged mirror.
 template <class Weight>
 void Scatterer<Weight>::leave_mirror(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
   const SurfaceResponse& response = surface.response;

@@ -1,5 +1,5 @@
 #pragma once
-// How rays go on from a hit.
+// Sends rays on from their hits.
 #include "echopath/trace/connect/diffuse_chain.h"
 #include "echopath/trace/sbr/weight.h"
 
@@ -12,8 +12,8 @@ class Scatterer {
       : context_(context), legs_(legs), chains_(context), weight_(context) {}
   // Draws whether and where a ray goes on.
   ScatterSample sample(const Ray& ray, const SurfaceHit& surface, int batch) const;
-  // Makes of the ray what leaves the hit. What a bounce makes of it is worked out only where it meets something behind: most
-  // rays meet nothing. False: nothing that counts. `legs`: those of the hit.
+  // Turns the ray into the one that leaves the hit; returns false where that does not count. It is called only where the ray
+  // meets something behind, because most rays meet nothing. `legs` are those of the hit.
   bool leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;
 
  private:

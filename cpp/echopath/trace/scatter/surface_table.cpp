@@ -7,7 +7,8 @@
 namespace echopath {
 namespace {
 
-// The middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a sphere.
+// Returns the middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a
+// sphere.
 double middle_extent(const std::vector<Vec3>& vertices) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
@@ -27,7 +28,7 @@ double width_of_smooth(const Node& node, const std::vector<Vec3>& vertices) {
   if (!is_unflagged_smooth(node)) return 0.0;
   const double width = middle_extent(vertices);
   if (!node.mesh->whole()) return width;
-  // The whole is posed as its part is.
+  // The whole surface is scaled as this part of it is.
   const double at_rest = middle_extent(node.mesh->vertices());
   return at_rest > 0 ? middle_extent(node.mesh->whole()->vertices()) * (width / at_rest) : width;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What rays need to know of each mesh of a scene.
+// Holds what rays need to know of each mesh of a scene.
 #include <vector>
 
 #include "echopath/em/surface_response.h"
@@ -11,12 +11,12 @@ class SurfaceTable {
  public:
   SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency);
   const SurfaceModel& model(uint32_t mesh_id) const { return models_[mesh_id]; }
-  // The index of the flagged mirror that the mesh is; -1 for other meshes.
+  // Returns the index of the flagged mirror that the mesh is; -1 for other meshes.
   int mirror(uint32_t mesh_id) const { return mirror_of_mesh_[mesh_id]; }
-  // The width in m of the unflagged smooth surface that the mesh is a part of; 0 for meshes of facets, whose extent is measured
-  // where they are hit.
+  // Returns the width in m of the unflagged smooth surface of which the mesh is a part; 0 for meshes of facets, whose extent
+  // is measured where they are hit.
   double smooth_width(uint32_t mesh_id) const { return smooth_width_[mesh_id]; }
-  // Whether an unflagged mesh is smooth: ray differentials are followed only then.
+  // Returns whether any unflagged mesh is smooth: ray differentials are followed only then.
   bool has_smooth() const { return has_smooth_; }
 
  private:

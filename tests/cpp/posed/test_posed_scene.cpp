@@ -123,6 +123,32 @@ TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
   EXPECT_THROW(PosedScene(scene, 2.5), std::invalid_argument);
 }
 
+// A radar that turns by 0.5 rad/s about z while it goes on: its antennas, too, stand relative to the origin.
+TEST(PosedScene, AntennasMoveAndTurnWithTheRadar) {
+  Radar radar;
+  Antenna antenna;
+  antenna.position = Vec3(0, 0.2, 0);
+  antenna.orientation = Quaternion(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  antenna.pattern = AntennaPattern::cosine_power(2.0);
+  radar.transmitters = {antenna};
+  radar.receivers = {Antenna(), antenna};
+  radar.motion = std::make_shared<const LinearMotion>(Vec3(4, 0, 0), Vec3(0, 0, 0.5));
+  const Scene scene = driving_scene();
+  const Vec3 origin(1, 2, 3);
+  const PosedScene posed(scene, radar, std::vector<SurfacePatch>(1), origin, 2.0);
+  ASSERT_EQ(posed.antennas(false).size(), 1u);
+  ASSERT_EQ(posed.antennas(true).size(), 2u);
+  const PosedAntenna& first = posed.transmitters.front();
+  EXPECT_LT((first.position - (Vec3(8, 0, 0) + 0.2 * Vec3(-std::sin(1.0), std::cos(1.0), 0) - origin)).norm(), kRounding);
+  EXPECT_LT((first.boresight - Vec3(std::cos(1.3), std::sin(1.3), 0)).norm(), kRounding);
+  EXPECT_LT((first.polarization - Vec3::UnitZ()).norm(), kRounding);
+  const Vec3 aside(std::cos(1.3 + kPi / 3), std::sin(1.3 + kPi / 3), 0);
+  EXPECT_NEAR(first.toward(aside).power / first.toward(first.boresight).power, 0.25, kRounding);
+  const PosedScene in_world(scene, 2.0);
+  EXPECT_LT((posed.translation(0) + origin - in_world.translation(0)).norm(), kRounding);
+  EXPECT_TRUE(in_world.transmitters.empty());
+}
+
 TEST(PosedScene, AnEmptySceneHasOne) { EXPECT_EQ(PosedScene(Scene(), 3.0).time(), 3.0); }
 
 }  // namespace

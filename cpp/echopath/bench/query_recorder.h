@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// While it lives, every query of `geometry`, by whatever thread, is written into `log` before Embree gets it. Both must outlive
-// it; no query may be under way when it begins and ends.
+// While it lives, every query of `geometry`, by whatever thread, is written into `log` before Embree gets it. Both must
+// outlive it; no query may be under way when it begins and ends.
 class QueryRecorder {
  public:
   QueryRecorder(EmbreeScene& geometry, QueryLog& log);

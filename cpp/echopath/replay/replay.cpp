@@ -65,7 +65,7 @@ struct Replayer::Target {
   size_t first_channel;  // of those that are posed
   std::vector<ChannelNodes> nodes;
   uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
-  bool with_amplitudes = true;  // else only lengths are of interest
+  bool with_amplitudes = true;  // else only lengths are evaluated
   CellView cells = {};
 
   ChannelSpan channels() const { return {first_channel, nodes}; }

@@ -17,7 +17,7 @@ namespace {
 constexpr int kLanes = TileAtChirps::kLanes;
 constexpr int kDelayBits = 16;  // 64 places in each cell of 512 samples
 constexpr int kMostDrifts = 64;
-constexpr int kEchoesOfCell = 4;  // for each class of drift, as few as make moments worth while
+constexpr int kEchoesOfCell = 4;  // least mean number for each class of drift, so that moments are worth while
 constexpr int kDigitBits = 11;  // of a pass of the radix sort
 
 // Sorts by bits [first_bit, end_bit); equal keys keep their order. `sorted` is scratch memory.

@@ -1,5 +1,5 @@
 #pragma once
-// The inner loops of synthesis, compiled once for each instruction set from kernels_body.h. The headers that this one
+// Holds the inner loops of synthesis, compiled once for each instruction set from kernels_body.h. The headers that this one
 // includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
 #include <cstdint>
 

@@ -1,4 +1,5 @@
-// The inner loops of synthesis for one instruction set: kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
+// Holds the inner loops of synthesis for one instruction set: kernels_avx512.cpp and its like include this with
+// ECHOPATH_KERNELS and
 // ECHOPATH_LANES set (no include guard).
 #include "echopath/base/phasor.h"
 #include "echopath/signal/kernels.h"

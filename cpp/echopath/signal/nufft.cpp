@@ -18,7 +18,7 @@ constexpr int kOversampling = 2;
 // The error of a tone grows steeply toward the ends of the samples; few samples cannot average it and get a wider grid.
 constexpr int kFewSamples = 100, kMargin = 4;
 
-// The grid must hold twice the samples, and the kernel without meeting itself.
+// Returns a size that holds twice the samples, and twice the width so that the kernel does not meet itself.
 int grid_size_for(int num_samples, int width) {
   const int margin = num_samples < kFewSamples ? kMargin : 0;
   return fast_fft_size(std::max(kOversampling * num_samples + margin, 2 * width));

@@ -19,7 +19,7 @@ struct TraceSettings {
   // the rays.
   int batches = 1;
   Sampler sampler = Sampler::kLattice;  // of the launch directions
-  LaunchGuide guide;  // without shares: the rule of launch.h
+  LaunchGuide guide;  // by default the rule of launch.h
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -111,7 +111,7 @@ class ChainPlanner {
   bool slides_ = false, with_direct_ = false;
   ChainPlan plan_;
   Known last_start_, last_end_;
-  const Hit* last_hit_ = nullptr;  // whose point was looked up last: an end of a path is often that of the next
+  const Hit* last_hit_ = nullptr;  // hit whose point was looked up last, often an end of the next path
   uint32_t last_point_ = 0;
   std::vector<std::array<uint32_t, 2>> straight_;  // [point] legs from the antennas themselves: of transmitters, of receivers
   SegmentIds leg_of_, inner_of_[2];  // legs over mirrors; inner parts: as recorded, reversed

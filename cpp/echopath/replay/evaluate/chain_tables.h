@@ -95,7 +95,7 @@ struct ChainTables {
   NodeRows mirrors;
   AntennaImages images[2];  // of transmitters, of receivers
   NodeRows axes;            // [image], ComponentsToFind::AxisRow, where polarisations are asked for
-  size_t stride = 0;        // antennas of the end that has more of them
+  size_t stride = 0;        // number of antennas of the end that has more
   LegTable legs;            // of leg * stride + antenna
   ChainInner inner;
   SlidingParts sliding;

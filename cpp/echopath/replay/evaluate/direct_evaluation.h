@@ -37,8 +37,8 @@ class DirectEvaluation {
   std::vector<const ChainPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
   std::vector<DirectAntenna> antennas_[2];        // of transmitters, of receivers
-  NodeRows seen_[2];                              // [antenna] of these, as they are seen from the mesh in hand
-  NodeRows axes_;                                 // of the world, likewise, where polarisations ask for them
+  NodeRows seen_[2];                              // [antenna] as seen from the mesh in hand
+  NodeRows axes_;                                 // of the world, as seen from the mesh; where polarisations need them
   DirectTrace trace_;
   DirectSlots slots_;
   DirectToEvaluate work_;

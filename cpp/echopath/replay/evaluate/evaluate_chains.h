@@ -77,7 +77,7 @@ class ChainEvaluation {
 
   ChainTables tables_;
   NodeRows values_;                              // [slot], PathToCombine::Row
-  std::array<CoherentPath, kTogether> coherent_;  // [slot], what does not depend on the channel
+  std::array<CoherentPath, kTogether> coherent_;  // [slot], the part that does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
   NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
   LegTable mirror_legs_;                          // of one channel: from the transmitter's image, from the receiver

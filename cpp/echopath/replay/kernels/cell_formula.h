@@ -1,5 +1,5 @@
 #pragma once
-// The footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles; Math is as in
+// Computes the footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles; Math is as in
 // base/scalar_math.h.
 #include "echopath/em/footprint_formula.h"
 

@@ -1,4 +1,5 @@
-// The inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with ECHOPATH_KERNELS and
+// Holds the inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with
+// ECHOPATH_KERNELS and
 // ECHOPATH_LANES set (no include guard).
 #include "echopath/base/phasor.h"
 #include "echopath/base/vector_of.h"
@@ -42,12 +43,12 @@ struct LaneMath {
     return found != 0;
   }
 
-  // e^x for x <= 0, relative error 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
+  // Returns e^x for x <= 0 with a relative error of 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
   static ECHOPATH_INLINE Vec exp(Vec x) {
     constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
     const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
     const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
-    // 1/n! for n to 13, in pairs, so that most terms do not wait for others; what is large comes last.
+    // The series has 1/n! for n to 13, in pairs, so that most terms do not wait for others; large terms come last.
     const Vec square = rest * rest, fourth = square * square;
     const Vec high = (rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0) * fourth +
                      ((rest * (1.0 / 39916800.0) + 1.0 / 3628800.0) * square + (rest * (1.0 / 362880.0) + 1.0 / 40320.0));

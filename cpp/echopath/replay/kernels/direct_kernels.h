@@ -1,6 +1,6 @@
 #pragma once
-// The inner loops of replay over paths of one point each, side by side in vectors, compiled once for each instruction set
-// from direct_kernels_body.h (see chain_kernels.h).
+// Holds the inner loops of replay over paths of one point each, side by side in vectors, compiled once for each instruction
+// set from direct_kernels_body.h (see chain_kernels.h).
 #include <cstddef>
 
 #include "echopath/replay/kernels/cell_formula.h"
@@ -21,7 +21,7 @@ struct DirectSlots {
   alignas(64) Row along_edge[2];
   alignas(64) Row density;
   alignas(64) Row weight[kNumKinds][2];
-  alignas(64) Row matrix[kNumKinds][4][2];  // polarised: the same times the path's JonesMatrix
+  alignas(64) Row matrix[kNumKinds][4][2];  // where polarised, the weights times the path's JonesMatrix
 
   // The kernel `prepare` finds, at the trace: point (m); normal (unit); tangents of the launch cell (m) and their products
   // (m^2); and has_cell (1 or 0).
@@ -43,12 +43,12 @@ struct DirectTrace {
 struct AntennaToSee {
   const double* mesh;         // PointToPose::MeshRow
   const double* antenna;      // LegToMeasure::ImageRow, in the world
-  double* out;                // likewise, about the mesh
+  double* out;                // LegToMeasure::ImageRow, about the mesh
 };
 
 struct DirectAntenna {
   const double* rows;         // AntennaToSee::out, rows of `stride` nodes
-  const double* polarization;  // ComponentsToFind::PolarizationRow, likewise
+  const double* polarization;  // ComponentsToFind::PolarizationRow, rows of `stride` nodes
   int exponent;               // LegToMeasure::exponent, a whole one
   double root_peak;
 };
@@ -59,7 +59,7 @@ struct DirectToEvaluate {
   enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
 
   const DirectSlots* slots;
-  bool has_coherent;          // any; else its rows are 0
+  bool has_coherent;          // whether any slot has a coherent path; else its rows are 0
   const DirectAntenna* antennas[2];
   size_t num_antennas[2];
   bool is_monostatic;         // both ends have the same antennas, hence the same legs
@@ -70,7 +70,7 @@ struct DirectToEvaluate {
   const double* axes;         // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
   double* legs;               // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
   double* out;                // [channel, node, kNumRows, slot]
-  double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end in between
+  double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end on the way
 };
 
 struct DirectKernels {

@@ -1,4 +1,4 @@
-// The loops of direct_kernels.h for one instruction set; this file is included behind chain_kernels_body.h (no include
+// Holds the loops of direct_kernels.h for one instruction set; this file is included behind chain_kernels_body.h (no include
 // guard).
 #include "echopath/replay/kernels/direct_kernels.h"
 

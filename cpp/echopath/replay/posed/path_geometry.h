@@ -33,12 +33,12 @@ struct PosedHit {
 // Holds the part of a path that does not depend on time.
 struct LocalPath {
   const LocalHit* hits = nullptr;
-  const Hit* recorded = nullptr;   // the same in the order of the record
+  const Hit* recorded = nullptr;   // these hits in the order of the record
   int count = 0;
   bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
   uint64_t diffuse = 0;
   uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
-  uint64_t sliding = 0;            // bit per hit: specular otherwise; the point of reflection slides over its surface
+  uint64_t sliding = 0;            // bit per hit: other specular hits, whose point of reflection slides over the surface
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

@@ -20,7 +20,7 @@ struct PosedNodes {
   std::shared_ptr<const PosedScenes> scenes;
   NodeRows meshes;            // of mesh IDs, PointToPose::MeshRow
   NodeRows antennas[2];       // of transmitters, of receivers; LegToMeasure::ImageRow
-  NodeRows polarizations[2];  // likewise, in the world: ComponentsToFind::PolarizationRow
+  NodeRows polarizations[2];  // of transmitters, of receivers; in the world, ComponentsToFind::PolarizationRow
   bool is_upright = true;     // every polarisation points along z at every node: across any direction it is the vertical one
 
   size_t size() const { return scenes ? scenes->size() : 0; }

@@ -1,5 +1,5 @@
 #pragma once
-// The kinds of time grid at whose nodes paths are evaluated. A node holds a value, never a derivative.
+// Defines the kinds of time grid at whose nodes paths are evaluated. A node holds a value, never a derivative.
 #include <variant>
 #include <vector>
 

@@ -21,7 +21,7 @@ class TimeGrids {
   const PolynomialGrid& polynomial(int index) const { return polynomials_[static_cast<size_t>(index) - 1]; }
   ChirpGrid chirps(int transmitter) const { return {transmitter}; }
   SampleGrid samples(int transmitter) const { return {transmitter, sample_order_}; }
-  int64_t num_sample_nodes() const { return int64_t{num_chirps_} * sample_order_; }  // of the samples of one transmitter
+  int64_t num_sample_nodes() const { return int64_t{num_chirps_} * sample_order_; }  // for one transmitter
 
   double start_time() const { return start_time_; }  // s, of the frame
   ChirpDerivatives derivatives() const { return derivatives_; }

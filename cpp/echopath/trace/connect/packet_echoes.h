@@ -38,7 +38,7 @@ class ScalarEchoes {
 
 // Holds the modes from which the matrices of both echoes are made.
 struct LaneModes {
-  LaneValues te_re, te_im, tm_re, tm_im;           // of reflection
+  LaneValues te_re, te_im, tm_re, tm_im;           // reflection coefficients
   LaneValues cross_share, axis_cosine, axis_sine;  // of diffuse hits
 };
 

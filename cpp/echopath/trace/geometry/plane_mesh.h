@@ -22,7 +22,7 @@ class PlaneMesh {
   struct Facet {
     uint32_t triangle_id;
     Vec3 corner, along_u, along_v;         // u = along_u.dot(p - corner), likewise v
-    double slack_u, slack_v, slack_w;      // of the barycentric coordinates: what 1 nm makes of them
+    double slack_u, slack_v, slack_w;      // change of the barycentric coordinates over 1 nm
     bool holds(double u, double v) const { return u >= -slack_u && v >= -slack_v && 1.0 - u - v >= -slack_w; }
   };
   struct Cell {

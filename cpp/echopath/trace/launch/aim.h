@@ -8,9 +8,9 @@
 namespace echopath {
 
 struct Aim {
-  Stratum stratum;                        // that holds it, without rays
+  Stratum stratum;                        // holds the target; without rays
   int object = 0;                         // index into objects_of(scene)
-  std::vector<MirrorSequence> sequences;  // over which rays find it there; planes at right angles have one image in both orders
+  std::vector<MirrorSequence> sequences;  // over which rays find it; planes at right angles have one image in both orders
   bool moves = false;
 };
 
@@ -20,7 +20,7 @@ double weight_of_aim(int num_mirrors);
 struct AimSettings {
   Vec3 transmitter;
   int max_mirrors = 0;
-  double largest_solid_angle = 0.0;  // sr: what fills more is left to the field of view
+  double largest_solid_angle = 0.0;  // sr: larger objects are left to the field of view
   bool may_use_strips = true;
 };
 

@@ -140,7 +140,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   const std::vector<double> shares = is_guided ? named_shares(found.aims, foci, field, settings.guide.shares)
                                                : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
   std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
-  for (size_t i = 0; i < foci.size(); ++i) {  // what has no rays of its own owns nothing
+  for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
     if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0) rays.back() += std::exchange(rays[found.aims.size() + i], 0);
   }
   LaunchPlan plan;

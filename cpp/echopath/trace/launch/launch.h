@@ -60,7 +60,7 @@ struct LaunchSettings {
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
-  LaunchGuide guide;  // without shares: the rule above, and no foci
+  LaunchGuide guide;  // by default the rule above, without foci
 };
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

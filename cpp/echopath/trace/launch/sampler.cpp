@@ -48,7 +48,7 @@ class EqualShares : public LaunchPoints {
   std::vector<Eigen::Vector2d> shifts_;
 };
 
-// Vogel 1979; after the equal-area projection it is the spiral on the sphere of Swinbank and Purser 2006.
+// Follows Vogel 1979; after the equal-area projection it is the spiral on the sphere of Swinbank and Purser 2006.
 class FibonacciSpiral : public EqualShares {
   using EqualShares::EqualShares;
   Eigen::Vector2d of_batch(int64_t index, int64_t count, const Eigen::Vector2d& shift) const override {
@@ -58,7 +58,7 @@ class FibonacciSpiral : public EqualShares {
   }
 };
 
-// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
+// Follows Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
 class R2Sequence : public EqualShares {
   using EqualShares::EqualShares;
   Eigen::Vector2d of_batch(int64_t index, int64_t, const Eigen::Vector2d& shift) const override {

@@ -11,7 +11,7 @@ enum class Sampler {
   kLattice,    // shifted algebraic lattice (launch_lattice.h): even, and the same everywhere
   kFibonacci,  // spherical Fibonacci spiral about the cone's axis
   kR2,         // additive recurrence of the plastic number: any first part of it is even
-  kRandom,     // independent uniform points: what even sets are measured against
+  kRandom,     // independent uniform points, the yardstick for even sets
 };
 
 // The points of a stratum lie in the unit disc, from which the equal-area projection of a cone makes directions, or in a
@@ -28,7 +28,7 @@ class LaunchPoints {
  public:
   virtual ~LaunchPoints() = default;
   virtual int64_t size() const = 0;
-  virtual double cell_area() const = 0;                     // what one point stands for
+  virtual double cell_area() const = 0;                     // area for which one point stands
   virtual Eigen::Vector2d point(int64_t index) const = 0;  // index in [0, size())
   // Finds the coordinates [count] of points in a row.
   virtual void points(int64_t first, int64_t count, double* x, double* y) const {

@@ -5,12 +5,12 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kFewFrusta = 16;         // are looked at one by one
-constexpr int kMostHalvings = 21;        // of the space, to a cell
-constexpr size_t kMostEntries = 8 << 20; // of all cells: none is halved beyond
+constexpr size_t kFewFrusta = 16;         // up to this many are looked at one by one
+constexpr int kMostHalvings = 21;        // of the space, until a cell is left whole
+constexpr size_t kMostEntries = 8 << 20; // of all cells; beyond that none is halved
 constexpr double kWorth = 0.9;           // halves that hold more than this share of the frusta are in vain,
 constexpr int kMostVain = 4;             // and a cell is halved no further after so many in a row
-constexpr double kAround = 0.25;         // of the extent of the mirrors: what lies so far around them is in the cells, too
+constexpr double kAround = 0.25;         // share of the extent of the mirrors by which the cells reach beyond them
 
 }  // namespace
 

@@ -27,7 +27,7 @@ class FrustumLocator {
   int grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth, int num_vain);
 
   Eigen::AlignedBox3d box_;  // of all cells
-  std::vector<int> all_;     // what may reach a point outside
+  std::vector<int> all_;     // frusta that may reach a point outside of the box
   std::vector<Cell> cells_;
   std::vector<int> entries_;
 };

@@ -7,11 +7,11 @@ namespace echopath {
 namespace {
 
 constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near has no direction
-constexpr double kOffPlane = 1e-6;    // m: what hides a mirror lies this far before its plane, and behind that of the last one
-constexpr double kBefore = 1e-3;      // m: what is met this near to the mirror does not hide it
+constexpr double kOffPlane = 1e-6;    // m: occluders lie this far before the mirror's plane and behind that of the last one
+constexpr double kBefore = 1e-3;      // m: a surface this near to the mirror does not hide it
 constexpr double kFarAway = 1e12;     // m
-constexpr int kMostLooks = 24;        // rays for one window; what they leave unseen counts as seen
-constexpr size_t kMostPieces = 24;    // likewise of the parts into which shadows cut it
+constexpr int kMostLooks = 24;        // rays for one window; parts that they do not look at count as seen
+constexpr size_t kMostPieces = 24;    // parts into which shadows cut one window; further shadows are not cut out
 
 using Polygons = std::vector<std::vector<Vec3>>;
 

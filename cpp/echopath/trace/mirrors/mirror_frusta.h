@@ -28,10 +28,10 @@ inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_m
 struct MirrorFrustum {
   MirrorSequence sequence = kDirect;
   std::vector<int> mirrors;   // in travel order from the antenna
-  std::vector<Vec3> images;   // of the antenna over the first 1, 2, .. of them
+  std::vector<Vec3> images;   // of the antenna over the first 1, 2, .. of these mirrors
   Vec3 lit_normal;            // of the last mirror, unit, on the side that is lit
   double offset = 0.0;        // of its plane: lit_normal.dot(p) > offset is lit
-  std::vector<Vec3> window;   // corners of what the last image is seen through, on the last mirror
+  std::vector<Vec3> window;   // corners of the polygon on the last mirror through which the last image is seen
   std::vector<Vec3> rims;     // inward unit normals of the planes through the last image and an edge of the window
 
   const Vec3& image() const { return images.back(); }

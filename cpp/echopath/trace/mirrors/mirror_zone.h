@@ -26,7 +26,7 @@ std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength);
 
 struct ZoneCover {
   double share = 1.0;                // of the zone's extents, product of both axes, at most 1
-  std::complex<double> field = 1.0;  // what the edges of the mirror leave of the field of an endless one
+  std::complex<double> field = 1.0;  // field that the edges leave, over that of an endless mirror
 };
 
 // Returns the share of the zone that the surface around a facet's point covers and, with a `target` (the surface that the

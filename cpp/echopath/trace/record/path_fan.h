@@ -16,7 +16,7 @@ struct FanLeg {
 };
 
 struct PathFan {
-  size_t num_before = 0;  // paths of the block in front of it, those of fans not counted
+  size_t num_before = 0;  // paths of the block in front of it, without those of fans
   Hit hit;
   uint16_t stratum = 0;
   uint8_t batch = 0;

@@ -11,7 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr size_t kHitsPerWord = 64;
-constexpr float kBarycentricRounding = 1e-3f;  // what u + v may exceed 1 by, as hits that are moved to an edge do
+constexpr float kBarycentricRounding = 1e-3f;  // by which u + v may exceed 1 at hits that are moved to an edge
 
 template <class T>
 std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep, size_t count, Job* job) {

@@ -34,7 +34,7 @@ struct DiffuseChain {
   // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray; 0 where none
   // comes.
   double opposite_ratio = 1.0;
-  // The survival in the opposite order at the hit that was left last, which joins `opposite_ratio` one hit later.
+  // The survival probability in the opposite order at the hit that was left last; it joins `opposite_ratio` one hit later.
   double opposite_survival = 1.0;
   std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
   FieldPair fields;          // where polarised: fields of launches at the receiver that run the ray's way
@@ -48,11 +48,11 @@ struct Ray {
   int depth = 0;              // hits so far
   uint64_t diffuse = 0;       // bit per hit
   bool coherent = true;       // the ray carries a field, not a power (sbr.h)
-  MirrorSequence sequence = kDirect;  // how the transmitter was left
+  MirrorSequence sequence = kDirect;  // the mirrors over which the ray left the transmitter
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
   bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
   double launch_density = 0.0;        // rays per sr of its stratum; in a focus, of the stratum that this is in
-  double stands_for = 1.0;            // so many of these rays (LaunchFoci)
+  double stands_for = 1.0;            // number of such rays that this one stands for (LaunchFoci)
   // Both count from the last anchor (the transmitter or the last diffuse hit): the unfolded length in m, and the rays per sr
   // with continuation probabilities.
   double leg_length = 0.0, leg_density = 0.0;
@@ -65,15 +65,15 @@ struct Ray {
   RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
   bool is_curved = false;        // some bounce so far was on a curved surface
   int num_mirrors = 0;            // specular bounces off unflagged surfaces since the last anchor
-  bool last_was_mirror = false;   // and it was the last bounce
-  bool holds_zones = true;        // each of them covers enough of its Fresnel zone (kHeldShare)
-  RayHit mirror;                  // the last of them
-  Vec3 mirror_arrival;            // unit, of the ray there
-  PathEnd first_mirror;           // the first of them
+  bool last_was_mirror = false;   // the last bounce was one of these
+  bool holds_zones = true;        // each of these mirrors covers enough of its Fresnel zone (kHeldShare)
+  RayHit mirror;                  // the last of these mirrors
+  Vec3 mirror_arrival;            // unit, direction of the ray there
+  PathEnd first_mirror;           // the first of these mirrors
   double area = 1.0;              // product of the material areas of the diffuse anchors
   DiffuseChain chain;             // of rays that have left a diffuse hit
 
-  Ray() {}  // does not clear what its members leave as it is
+  Ray() {}  // leaves members without defaults unset, to save time
 };
 
 // Describes the hit where a ray is.
@@ -85,7 +85,7 @@ struct SurfaceHit {
   PolarizationMode mode = PolarizationMode::kTe;
   SurfaceResponse response;
   double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
-  ShadowState receiver = ShadowState::kUnknown;  // as seen from here
+  ShadowState receiver = ShadowState::kUnknown;  // as seen from this hit
   HitSamples samples;
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces
 

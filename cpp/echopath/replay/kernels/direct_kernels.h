@@ -78,7 +78,7 @@ struct DirectKernels {
   void (*evaluate)(const DirectToEvaluate& paths);
 };
 
-// Those of instruction_set() for rows of that many nodes.
+// For rows of that many nodes.
 const DirectKernels& direct_kernels(size_t stride);
 
 }  // namespace echopath

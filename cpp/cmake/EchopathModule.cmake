@@ -34,11 +34,6 @@ function(echopath_parse_headers_once target owner)
   endif()
 endfunction()
 
-# Files that are compiled with options of their own cannot use what was compiled without.
-function(echopath_kernels file option)
-  set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS ${option} SKIP_PRECOMPILE_HEADERS ON)
-endfunction()
-
 # echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...] [OPTIONS compile options...])
 function(echopath_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
@@ -53,6 +48,25 @@ function(echopath_module name)
     set(own OWN_OPTIONS)
   endif()
   echopath_parse_headers_once(echopath_${name} echopath_base ${own} ${echopath_common_headers})
+endfunction()
+
+# echopath_kernels(MODULE headers...): compiles them into a module once per instruction set that base/simd.h picks from, as
+# base/lane_math.h says. What is compiled with options of its own cannot use headers that were parsed without.
+function(echopath_kernels name)
+  list(TRANSFORM ARGN REPLACE "(.+)" "#include \"echopath/${name}/\\1\"" OUTPUT_VARIABLE includes)
+  list(JOIN includes "\n" includes)
+  set(sets baseline:2:)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND sets avx2:4:-march=x86-64-v3 avx512:8:-march=x86-64-v4)
+  endif()
+  foreach(entry ${sets})
+    string(REGEX MATCH "(.+):(.+):(.*)" entry ${entry})
+    set(file ${CMAKE_CURRENT_BINARY_DIR}/kernels_${CMAKE_MATCH_1}.cpp)
+    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_DEFINITIONS ECHOPATH_LANES=${CMAKE_MATCH_2}
+      COMPILE_OPTIONS "${CMAKE_MATCH_3}")
+    file(CONFIGURE OUTPUT ${file} CONTENT "${includes}\n")
+    target_sources(echopath_${name} PRIVATE ${file})
+  endforeach()
 endfunction()
 
 # Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for

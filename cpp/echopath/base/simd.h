@@ -1,6 +1,16 @@
 #pragma once
 // Hot loops are compiled once per instruction set, and the best that the machine has is picked at run time: one binary for
 // all machines. Bits differ between instruction sets (fused multiply-add, order of lanes), never between thread counts.
+//
+// `with_instruction_set` is the one place that picks. It has two uses, since GCC has two ways to compile for an
+// instruction set:
+//  * run_simd: a loop is compiled by function target where it stands. All that it calls must be inlined, and be free of
+//    intrinsics: GCC 12 rejects these in functions that are not marked for their set.
+//  * kernels<Table>: a text with intrinsics and functions of its own is compiled as a file of its own for each set
+//    (echopath_kernels in CMake). By function target, those functions would be compiled as baseline code, which takes
+//    synthesis 2.4 times as long as AVX2.
+#include <type_traits>
+
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #define ECHOPATH_X86_KERNELS 1
 #endif
@@ -25,25 +35,59 @@ enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 InstructionSet instruction_set();
 const char* name_of(InstructionSet set);
 
+// Calls `call` with the instruction set picked, as a constant.
+template <class Call>
+ECHOPATH_INLINE decltype(auto) with_instruction_set(Call call) {
 #ifdef ECHOPATH_X86_KERNELS
-template <auto kLoop, class... Args>
-__attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) void run_for_avx512(Args... args) {
-  kLoop(args...);
+  const InstructionSet set = instruction_set();
+  if (set == InstructionSet::kAvx512) return call(std::integral_constant<InstructionSet, InstructionSet::kAvx512>{});
+  if (set == InstructionSet::kAvx2) return call(std::integral_constant<InstructionSet, InstructionSet::kAvx2>{});
+#endif
+  return call(std::integral_constant<InstructionSet, InstructionSet::kBaseline>{});
 }
-template <auto kLoop, class... Args>
-__attribute__((target("arch=x86-64-v3"))) void run_for_avx2(Args... args) {
-  kLoop(args...);
-}
+
+template <InstructionSet kSet>
+struct FunctionTarget {
+  template <auto kLoop, class... Args>
+  static ECHOPATH_INLINE void run(Args... args) {
+    kLoop(args...);
+  }
+};
+#ifdef ECHOPATH_X86_KERNELS
+template <>
+struct FunctionTarget<InstructionSet::kAvx2> {
+  template <auto kLoop, class... Args>
+  __attribute__((target("arch=x86-64-v3"))) static void run(Args... args) {
+    kLoop(args...);
+  }
+};
+template <>
+struct FunctionTarget<InstructionSet::kAvx512> {
+  template <auto kLoop, class... Args>
+  __attribute__((target("arch=x86-64-v4,prefer-vector-width=512"))) static void run(Args... args) {
+    kLoop(args...);
+  }
+};
 #endif
 
 // Runs a plain loop, an ECHOPATH_INLINE function that takes numbers and pointers, compiled for the instruction set picked.
 template <auto kLoop, class... Args>
 void run_simd(Args... args) {
-#ifdef ECHOPATH_X86_KERNELS
-  if (instruction_set() == InstructionSet::kAvx512) return run_for_avx512<kLoop>(args...);
-  if (instruction_set() == InstructionSet::kAvx2) return run_for_avx2<kLoop>(args...);
-#endif
-  kLoop(args...);
+  with_instruction_set([&](auto set) __attribute__((always_inline)) {
+    FunctionTarget<decltype(set)::value>::template run<kLoop>(args...);
+  });
+}
+
+// A table of functions compiled for one instruction set: each file that is compiled for it specialises this for its table.
+template <class Table, InstructionSet kSet>
+const Table& kernels_for();
+
+// That of the instruction set picked.
+template <class Table>
+const Table& kernels() {
+  return with_instruction_set([](auto set) __attribute__((always_inline)) -> const Table& {
+    return kernels_for<Table, decltype(set)::value>();
+  });
 }
 
 }  // namespace echopath

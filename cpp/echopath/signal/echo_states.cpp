@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes.h"
 #include "echopath/signal/echoes.h"
 
 namespace echopath {
@@ -19,12 +19,12 @@ struct Nodes {
 // Evaluates kLanes echoes from p on, at kChirps chirps for which the nodes are read once; the sums stay in the registers.
 template <int kLanes, int kChirps>
 ECHOPATH_INLINE void interpolate_some(const Nodes& nodes, int p, EchoStates* states) {
-  typedef double Lanes __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
-  const auto at = [](const double* from) { return *reinterpret_cast<const Lanes*>(from); };
-  Lanes lags[kChirps] = {}, rates[kChirps] = {}, low[kChirps] = {}, high[kChirps] = {};
+  using Vec = Lanes<double, kLanes>;
+  Vec lags[kChirps] = {}, rates[kChirps] = {}, low[kChirps] = {}, high[kChirps] = {};
   for (int k = 0; k < nodes.order; ++k) {
     const double* from = nodes.amplitude + 2 * (p + k * nodes.stride);
-    const Lanes delay = at(nodes.delay + p + k * nodes.stride), first = at(from), second = at(from + kLanes);
+    const Vec delay = load_lanes<kLanes>(nodes.delay + p + k * nodes.stride);
+    const Vec first = load_lanes<kLanes>(from), second = load_lanes<kLanes>(from + kLanes);
     for (int c = 0; c < kChirps; ++c) {
       const double value = nodes.value[c * nodes.order + k];
       lags[c] += value * delay;
@@ -33,12 +33,11 @@ ECHOPATH_INLINE void interpolate_some(const Nodes& nodes, int p, EchoStates* sta
       high[c] += value * second;
     }
   }
-  const auto store = [](double* to, Lanes lanes) { *reinterpret_cast<Lanes*>(to) = lanes; };
   for (int c = 0; c < kChirps; ++c) {
-    store(states[c].delay + p, lags[c]);
-    store(states[c].rate + p, rates[c]);
-    store(states[c].amplitude + 2 * p, low[c]);
-    store(states[c].amplitude + 2 * p + kLanes, high[c]);
+    store_lanes(states[c].delay + p, lags[c]);
+    store_lanes(states[c].rate + p, rates[c]);
+    store_lanes(states[c].amplitude + 2 * p, low[c]);
+    store_lanes(states[c].amplitude + 2 * p + kLanes, high[c]);
   }
 }
 

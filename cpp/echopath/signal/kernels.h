@@ -3,6 +3,7 @@
 // includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
 #include <cstdint>
 
+#include "echopath/base/simd.h"
 #include "echopath/signal/carrier.h"
 
 namespace echopath {
@@ -46,7 +47,6 @@ struct SignalKernels {
                    int64_t chirp_stride);
 };
 
-// Returns the kernels of instruction_set().
-const SignalKernels& signal_kernels();
+inline const SignalKernels& signal_kernels() { return kernels<SignalKernels>(); }
 
 }  // namespace echopath

@@ -1,10 +1,10 @@
-// Holds the inner loops of synthesis for one instruction set: kernels_avx512.cpp and its like include this with
-// ECHOPATH_KERNELS and
-// ECHOPATH_LANES set (no include guard).
+#pragma once
+// The inner loops of synthesis, compiled once per instruction set (base/lane_math.h).
+#include "echopath/base/lane_math.h"
 #include "echopath/base/phasor.h"
 #include "echopath/signal/kernels.h"
 #include "echopath/signal/nufft_kernel.h"
-#include "echopath/signal/vector.h"
+#include "echopath/signal/vecs.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
@@ -85,7 +85,7 @@ constexpr double kCellShift = 2.0 * kRoundingShift;
 ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
   const Vec twice = multiply_add(frequency, all(2.0 * spreading.grid_size), all(spreading.width - 1.0));
   const Vec shifted = twice + kCellShift;
-  *reinterpret_cast<UnalignedCells*>(places.cell + p) = __builtin_convertvector(bits(shifted), Cells);
+  store_lanes(places.cell + p, __builtin_convertvector(bits(shifted), Lanes<int32_t, kLanes>));
   store(places.t + p, (shifted - kCellShift) - twice);
 }
 
@@ -416,9 +416,16 @@ void add_tile(const CarrierModel& model, const Spreading& spreading, const TileA
   }
 }
 
+constexpr SignalKernels kSignalKernels = {modulate, spread, add_tile};
+
 }  // namespace
-
-extern const SignalKernels kKernels;
-const SignalKernels kKernels = {modulate, spread, add_tile};
-
 }  // namespace echopath::ECHOPATH_KERNELS
+
+namespace echopath {
+
+template <>
+const SignalKernels& kernels_for<SignalKernels, ECHOPATH_KERNELS::kInstructionSet>() {
+  return ECHOPATH_KERNELS::kSignalKernels;
+}
+
+}  // namespace echopath

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/lanes.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/phasor.h"
 #include "echopath/base/random.h"
@@ -36,47 +37,33 @@ struct SampleRow {
 
 // At most so many carriers are computed side by side.
 constexpr int kMostLanes = 8;
-template <int kLanes>
-struct VectorOfLanes;
-template <>
-struct VectorOfLanes<4> {
-  typedef double Vector __attribute__((vector_size(32)));
-  typedef double Unaligned __attribute__((vector_size(32), aligned(8), may_alias));
-};
-template <>
-struct VectorOfLanes<8> {
-  typedef double Vector __attribute__((vector_size(64)));
-  typedef double Unaligned __attribute__((vector_size(64), aligned(8), may_alias));
-};
 
 // Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
 // phasor for the first and one for the step between them.
 template <int kLanes>
 ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
                                double* sums) {
-  using Lanes = typename VectorOfLanes<kLanes>::Vector;
-  using Unaligned = typename VectorOfLanes<kLanes>::Unaligned;
-  const auto at = [](const double* from) -> Lanes { return *reinterpret_cast<const Unaligned*>(from); };
-  Lanes sum_re[kSamples], sum_im[kSamples];
+  using Vec = Lanes<double, kLanes>;
+  Vec sum_re[kSamples], sum_im[kSamples];
   for (int s = 0; s < kSamples; ++s) {
-    sum_re[s] = at(sums + s * kLanes);
-    sum_im[s] = at(sums + (kSamples + s) * kLanes);
+    sum_re[s] = load_lanes<kLanes>(sums + s * kLanes);
+    sum_im[s] = load_lanes<kLanes>(sums + (kSamples + s) * kLanes);
   }
   for (int p = 0; p < count; p += kLanes) {
-    const Lanes f = at(frequency + p), a = at(re + p), b = at(im + p);
+    const Vec f = load_lanes<kLanes>(frequency + p), a = load_lanes<kLanes>(re + p), b = load_lanes<kLanes>(im + p);
     const auto start = phasor_of_cycles(f * first), turn = phasor_of_cycles(f * step);
-    Lanes c = a * start.re - b * start.im, d = a * start.im + b * start.re;
+    Vec c = a * start.re - b * start.im, d = a * start.im + b * start.re;
     for (int s = 0; s < kSamples; ++s) {
       sum_re[s] += c;
       sum_im[s] += d;
-      const Lanes next = c * turn.re - d * turn.im;
+      const Vec next = c * turn.re - d * turn.im;
       d = c * turn.im + d * turn.re;
       c = next;
     }
   }
   for (int s = 0; s < kSamples; ++s) {
-    *reinterpret_cast<Unaligned*>(sums + s * kLanes) = sum_re[s];
-    *reinterpret_cast<Unaligned*>(sums + (kSamples + s) * kLanes) = sum_im[s];
+    store_lanes(sums + s * kLanes, sum_re[s]);
+    store_lanes(sums + (kSamples + s) * kLanes, sum_im[s]);
   }
 }
 

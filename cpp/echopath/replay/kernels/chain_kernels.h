@@ -91,7 +91,13 @@ struct ChainKernels {
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };
 
-// Returns the kernels of instruction_set() for rows of that many nodes.
+// For rows of several nodes, side by side, and of one, of which vectors would be nearly empty.
+template <class Kernels>
+struct ForRows {
+  Kernels of_many, of_one;
+};
+
+// For rows of that many nodes.
 const ChainKernels& chain_kernels(size_t stride);
 // Returns the kernels that take one node after the other.
 const ChainKernels& chain_kernels_of_one();

@@ -1,75 +1,14 @@
-// Holds the inner loops of replay for one instruction set: chain_kernels_avx512.cpp and its like include this with
-// ECHOPATH_KERNELS and
-// ECHOPATH_LANES set (no include guard).
-#include "echopath/base/phasor.h"
+#pragma once
+// The inner loops of replay, compiled once per instruction set (base/lane_math.h).
+#include "echopath/base/lane_math.h"
 #include "echopath/base/vector_of.h"
 #include "echopath/replay/kernels/chain_kernels.h"
 #include "echopath/replay/kernels/path_formula.h"
-#include "echopath/signal/vector.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
-constexpr double kMostNegativeExponent = -708.0;  // e^x below is taken as 0
-
-struct LaneMath {
-  using Real = Vec;
-  static constexpr size_t kCount = kLanes;
-  static ECHOPATH_INLINE Vec load(const double* from) { return ECHOPATH_KERNELS::load(from); }
-  static ECHOPATH_INLINE void store(double* to, Vec x) { ECHOPATH_KERNELS::store(to, x); }
-
-  static ECHOPATH_INLINE Vec root(Vec x) {
-#if ECHOPATH_LANES == 8
-    return _mm512_maskz_sqrt_pd(0xFF, x);  // the plain one warns of its own undefined lanes
-#elif ECHOPATH_LANES == 4
-    return _mm256_sqrt_pd(x);
-#else
-    return Vec{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
-#endif
-  }
-  static constexpr int64_t kSignBit = int64_t{-1} ^ int64_t{0x7FFFFFFFFFFFFFFF};
-  static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
-  static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
-  static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
-  static ECHOPATH_INLINE Vec smaller(Vec x, Vec y) { return x < y ? x : y; }
-  static ECHOPATH_INLINE bool any(Mask x) {
-#if ECHOPATH_LANES == 8
-    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(x)) != 0;
-#elif ECHOPATH_LANES == 4
-    return _mm256_movemask_pd(reinterpret_cast<__m256d>(x)) != 0;
-#endif
-    int64_t found = 0;
-    for (int lane = 0; lane < kLanes; ++lane) found |= x[lane];
-    return found != 0;
-  }
-
-  // Returns e^x for x <= 0 with a relative error of 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
-  static ECHOPATH_INLINE Vec exp(Vec x) {
-    constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
-    const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
-    const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
-    // The series has 1/n! for n to 13, in pairs, so that most terms do not wait for others; large terms come last.
-    const Vec square = rest * rest, fourth = square * square;
-    const Vec high = (rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0) * fourth +
-                     ((rest * (1.0 / 39916800.0) + 1.0 / 3628800.0) * square + (rest * (1.0 / 362880.0) + 1.0 / 40320.0));
-    const Vec middle = (rest * (1.0 / 5040.0) + 1.0 / 720.0) * square + (rest * (1.0 / 120.0) + 1.0 / 24.0);
-    const Vec tail = (high * fourth + middle) * square + (rest * (1.0 / 6.0) + 0.5);
-    const Vec sum = (tail * square + rest) + 1.0;
-    const Vec power = from_bits(bits(sum) + (bits(shifted) << 52));
-    return x < kMostNegativeExponent ? Vec{} : power;
-  }
-
-  static ECHOPATH_INLINE ComplexOf<Vec> cis(Vec x) {
-    constexpr double kPerPi = 0.3183098861837907, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
-    const Vec shifted = x * kPerPi + kRoundingShift, half_turns = shifted - kRoundingShift;
-    const Vec rest = exact_multiply_add(half_turns, all(-kPiHigh), x) - half_turns * kPiLow;
-    const ComplexOf<Vec> phasor = phasor_of_half_turns(rest * kPerPi);
-    const Mask sign = bits(shifted) << 63;
-    return {from_bits(bits(phasor.re) ^ sign), from_bits(bits(phasor.im) ^ sign)};
-  }
-};
-
-// Evaluates one node at a time.
+// One node.
 struct OneMath : ScalarMath {
   static constexpr size_t kCount = 1;
   static ECHOPATH_INLINE double load(const double* from) { return *from; }
@@ -238,12 +177,19 @@ void polarize(const PathToPolarize& path, size_t stride) {
   }
 }
 
+template <class Math>
+constexpr ChainKernels kChainKernels = {pose<Math>,    measure<Math>,         combine<Math>, connect<Math>,
+                                        reflect<Math>, find_components<Math>, polarize<Math>};
+constexpr ForRows<ChainKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
+
 }  // namespace
-
-extern const ChainKernels kKernels, kKernelsOfOne;
-const ChainKernels kKernels = {pose<LaneMath>, measure<LaneMath>, combine<LaneMath>, connect<LaneMath>, reflect<LaneMath>,
-                               find_components<LaneMath>, polarize<LaneMath>};
-const ChainKernels kKernelsOfOne = {pose<OneMath>, measure<OneMath>, combine<OneMath>, connect<OneMath>, reflect<OneMath>,
-                                    find_components<OneMath>, polarize<OneMath>};
-
 }  // namespace echopath::ECHOPATH_KERNELS
+
+namespace echopath {
+
+template <>
+const ForRows<ChainKernels>& kernels_for<ForRows<ChainKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
+  return ECHOPATH_KERNELS::kChains;
+}
+
+}  // namespace echopath

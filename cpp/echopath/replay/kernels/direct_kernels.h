@@ -79,7 +79,7 @@ struct DirectKernels {
   void (*evaluate)(const DirectToEvaluate& paths);
 };
 
-// Returns the kernels of instruction_set() for rows of that many nodes.
+// For rows of that many nodes.
 const DirectKernels& direct_kernels(size_t stride);
 
 }  // namespace echopath

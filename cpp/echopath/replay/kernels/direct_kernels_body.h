@@ -1,5 +1,6 @@
-// Holds the loops of direct_kernels.h for one instruction set; this file is included behind chain_kernels_body.h (no include
-// guard).
+#pragma once
+// The loops of direct_kernels.h, compiled once per instruction set (base/lane_math.h).
+#include "echopath/replay/kernels/chain_kernels_body.h"
 #include "echopath/replay/kernels/direct_kernels.h"
 
 namespace echopath::ECHOPATH_KERNELS {
@@ -7,26 +8,7 @@ namespace {
 
 using Rows3 = const DirectSlots::Row*;
 
-// Holds the root of a value and one over it, with an error in the last digits, for values that are not negative; those below
-// kLeastSquare count as kLeastSquare. Roots and divisions of eight lanes would cost as much as twenty multiplications.
-struct Roots {
-  Vec root, inverse;
-};
-constexpr double kLeastSquare = 1e-60;
-ECHOPATH_INLINE Roots roots_of(Vec square) {
-  const Vec x = LaneMath::larger(square, all(kLeastSquare));
-#if ECHOPATH_LANES == 8
-  Vec y = _mm512_maskz_rsqrt14_pd(0xFF, x);
-  for (int step = 0; step < 2; ++step) y = y + 0.5 * y * exact_multiply_add(-x * y, y, all(1.0));
-  const Vec root = x * y;
-  return {root + 0.5 * y * exact_multiply_add(-root, root, x), y};
-#else
-  const Vec root = LaneMath::root(x);
-  return {root, 1.0 / root};
-#endif
-}
-
-// Describes a launch cell on a flat triangle.
+// A launch cell on a flat triangle.
 struct FlatCell {
   static constexpr bool is_curved = false;
   static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
@@ -319,10 +301,16 @@ void evaluate(const DirectToEvaluate& paths) {
   else evaluate_all<false>(paths);
 }
 
+constexpr ForRows<DirectKernels> kDirect = {{see<LaneMath>, prepare, evaluate}, {see<OneMath>, prepare, evaluate}};
+
 }  // namespace
-
-extern const DirectKernels kDirectKernels, kDirectKernelsOfOne;
-const DirectKernels kDirectKernels = {see<LaneMath>, prepare, evaluate};
-const DirectKernels kDirectKernelsOfOne = {see<OneMath>, prepare, evaluate};
-
 }  // namespace echopath::ECHOPATH_KERNELS
+
+namespace echopath {
+
+template <>
+const ForRows<DirectKernels>& kernels_for<ForRows<DirectKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
+  return ECHOPATH_KERNELS::kDirect;
+}
+
+}  // namespace echopath

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes.h"
 
 namespace echopath {
 namespace {
@@ -11,18 +11,16 @@ namespace {
 // The sums are written in vectors, because compilers round sums of plain numbers as they see fit: the rates of an echo would
 // depend on its place among the others.
 constexpr size_t kLeast = 8;
-typedef double Lanes __attribute__((vector_size(kLeast * sizeof(double))));
-typedef double Unaligned __attribute__((vector_size(kLeast * sizeof(double)), aligned(alignof(double)), may_alias));
 
 // Computes kVectors sums that stay in registers.
 template <size_t kVectors>
 ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_t order, size_t stride, double* __restrict sum) {
-  Lanes some[kVectors] = {};
+  Lanes<double, kLeast> some[kVectors] = {};
   for (size_t k = 0; k < order; ++k) {
-    const Unaligned* row = reinterpret_cast<const Unaligned*>(values + k * stride);
-    for (size_t i = 0; i < kVectors; ++i) some[i] += weights[k] * row[i];
+    const double* row = values + k * stride;
+    for (size_t i = 0; i < kVectors; ++i) some[i] += weights[k] * load_lanes<kLeast>(row + i * kLeast);
   }
-  for (size_t i = 0; i < kVectors; ++i) reinterpret_cast<Unaligned*>(sum)[i] = some[i];
+  for (size_t i = 0; i < kVectors; ++i) store_lanes(sum + i * kLeast, some[i]);
 }
 
 // Computes sum [count] = weights [order] times values [order, count], for count >= kLeast. The last vector overlaps the one

@@ -1,6 +1,0 @@
-#include "echopath/base/simd.h"
-#ifdef ECHOPATH_X86_KERNELS
-#define ECHOPATH_KERNELS kernels_avx2
-#define ECHOPATH_LANES 4
-#include "echopath/signal/kernels_body.h"
-#endif

@@ -2,6 +2,7 @@
 // The 95 % interval of a received power: what the launch cells take away and what chance adds, together.
 #include <complex>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "echopath/replay/kernels/cell_formula.h"
@@ -18,9 +19,15 @@ enum CellViewIndex { kAsLaunched, kFiner, kHalfDensity, kUnfiltered, kPoints, kE
 // bounced off other surfaces before; or those over flagged mirrors alone. What is known of one kind tells nothing of another, so
 // that the interval of a body depends a little on the meshes that it is made of.
 struct CoherentKind {
+  uint64_t id = 0;                            // which one, of its set of paths
   std::complex<double> field[kNumCellViews];  // sqrt(W)
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+  // W, the part of power[kEdges] that is of cells at the rim of what they see (outline.h); infinite: nobody looked.
+  double edges_at_rim = std::numeric_limits<double>::infinity();
+
+  // Whether what its cells may hold between rays is of interest.
+  bool is_uncertain() const;
 };
 
 // What a set of paths is known by, of all rays.
@@ -43,8 +50,8 @@ struct PowerInterval {
 };
 
 // Power that launch cells may hold between rays, W: |a|^2 summed as in random phase, so that a few cells beside a point
-// count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge. Each batch has
-// cells of its own, all of which hold the same.
+// count several times. Of cells without a point of reflection only those at an edge hold anything: they lie at the rim of what they
+// see, and of n cells kEdgeCells sqrt(n) at most do. Each batch has cells of its own, all of which hold the same.
 double power_between_rays(const CoherentKind& kind, int num_batches);
 
 // Bias: the footprint filter of cells sqrt(2) wider says how fast the coherent field F of a kind goes with the cells. With d its
@@ -53,7 +60,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // field may also be as large as power_between_rays allows, times kOfBetween. Cells a little finer tell where the filter
 // takes edges for a surface without end; what is below kAliases there is the lattice showing through. The changes of all kinds add
 // up as fields, but to no less than their root sum of squares, and what else they may hold adds up as power: kinds whose
-// echoes cancel are known as well as they are one by one.
+// echoes cancel are known as well as they are one by one. What wider and what finer cells tell, of one error whose sign neither
+// knows, adds up as power, too.
 // Chance: Student's t of the batches, and no less than half a hit in each of them, which errs by itself. Of one batch:
 // directions drawn at random give the variance sum p^2; a lattice errs along the outline of what it meets alone, so that its
 // variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits, and likewise for fields: less so where the filter takes much

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/phasor.h"
+#include "echopath/power/outline.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -73,7 +75,7 @@ class KnownKinds {
   size_t index_of(uint64_t kind, std::vector<CoherentKind>& kinds) {
     if (!kinds.empty() && kind == last_) return last_index_;
     const auto [entry, is_new] = index_.try_emplace(kind, kinds.size());
-    if (is_new) kinds.emplace_back();
+    if (is_new) kinds.emplace_back().id = kind;
     last_ = kind;
     last_index_ = entry->second;
     return last_index_;
@@ -158,7 +160,38 @@ class Sums {
   std::vector<GroupSums> groups_;
 };
 
-// Evaluates the paths of a block and what they send back.
+// Looks which cells lie at a rim, of the kinds where that matters. edge_power: [P] W, of each coherent path.
+void find_rims(const Paths& paths, const Sorting& sorting, std::span<const float> edge_power, std::vector<GroupSums>& groups) {
+  std::vector<std::vector<CoherentKind*>> kinds(groups.size());  // by group
+  bool is_any = false;
+  for (size_t group = 0; group < groups.size(); ++group) {
+    for (CoherentKind& kind : groups[group].kinds) {
+      if (!(kind.power[kEdges] > 0.0) || !kind.is_uncertain()) continue;
+      kind.edges_at_rim = 0.0;
+      kinds[group].push_back(&kind);
+      is_any = true;
+    }
+  }
+  if (!is_any) return;
+  std::map<std::pair<uint32_t, uint64_t>, std::vector<int64_t>> members;  // by group and kind
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    const auto p = static_cast<size_t>(path);
+    const uint32_t group = sorting.group_of_path[p];
+    if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || kinds[group].empty()) continue;
+    const uint64_t id = kind_of(paths, path);
+    const bool is_asked = std::any_of(kinds[group].begin(), kinds[group].end(), [&](const CoherentKind* kind) { return kind->id == id; });
+    if (is_asked) members[{group, id}].push_back(path);
+  }
+  for (const auto& [of, kin] : members) {
+    const std::vector<uint8_t> at_rim = cells_at_rim(paths, kin);
+    CoherentKind& kind = **std::find_if(kinds[of.first].begin(), kinds[of.first].end(), [&](const CoherentKind* one) { return one->id == of.second; });
+    for (size_t i = 0; i < kin.size(); ++i) {
+      if (at_rim[i]) kind.edges_at_rim += edge_power[static_cast<size_t>(kin[i])];
+    }
+  }
+}
+
+// The paths of a block and what they send back.
 class Block {
  public:
   Block(const Paths& paths, const Radar& radar)
@@ -176,6 +209,11 @@ class Block {
     arrive(diffuse_.size(), 1, diffuse_fields_);
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
     arrive(coherent_.size(), kNumCellViews, coherent_fields_);
+  }
+
+  void note_edges(std::vector<float>& edge_power) const {
+    const std::complex<double>* edges = coherent_fields_.data() + kEdges * coherent_.size();
+    for (size_t i = 0; i < coherent_.size(); ++i) edge_power[static_cast<size_t>(coherent_[i])] = static_cast<float>(std::norm(edges[i]));
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {
@@ -219,11 +257,13 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
   for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());
   std::optional<Block> block;
+  std::vector<float> edge_power(static_cast<size_t>(paths.num_paths()), 0.0f);
   if (paths.num_paths() > 0) block.emplace(paths, radar);
   for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
     block->evaluate(begin, end);
+    block->note_edges(edge_power);
     parallel_for(std::ssize(sums), [&](int64_t i) {
       const auto at = static_cast<size_t>(i);
       block->add_to(sums[at], sortings[at].group_of_path);
@@ -231,7 +271,10 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     if (job) job->advance(end - begin);
   }
   std::vector<std::vector<GroupSums>> found;
-  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish());
+  for (size_t i = 0; i < sums.size(); ++i) {
+    found.push_back(sums[i].finish());
+    find_rims(paths, sortings[i], edge_power, found.back());
+  }
   return found;
 }
 

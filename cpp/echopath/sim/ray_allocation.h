@@ -15,9 +15,8 @@ struct RayNeed {
   std::string stratum;     // its name
   double rays = 0.0;
   KnownEcho echo;
-  bool is_resolved = true;  // its error meets the target, or it lies below the floor
-  double weight = 1.0;     // lower for images than for objects
-  bool is_bounded = true;  // false: it asks for as many as kMostGrowth allows, and may need more
+  bool is_resolved = true;  // to the target, or below the floor
+  double weight = 1.0;     // of images, below that of objects
 };
 
 // Tells which echoes matter.
@@ -41,8 +40,9 @@ struct RayNeeds {
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
 inline constexpr double kMostGrowth = 32.0;
 
-// Returns shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three quarters
-// of the rays, so that the most objects get what they need. The others share what is left by their weights.
+// Shares of `num_rays` rays. Where they are too few, no stratum gets more for its weight than another that lacks rays: what needs
+// few for its weight gets twice of that, as few rays tell their need within a factor of two, and the others share the rest by
+// their weights. One that needs very many takes nothing away from those that fewer would serve.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints

@@ -110,7 +110,7 @@ def _alone(name: str, radar, mirrors: bool, quick: bool) -> tuple[float, float]:
 
 
 def _row(name: str, truth: float, spread_db: float, levels: list[Level], noise: float) -> dict:
-    errors = [decibels(level.power, truth) if truth > 0.0 else 0.0 for level in levels]
+    errors = [0.0 if truth == 0.0 else decibels(level.power, truth) for level in levels]
     return {"name": name, "truth_dbm": float(10.0 * np.log10(max(truth, 1e-300) * 1e3)), "alone_spread_db": spread_db,
             "snr_db": decibels(truth, noise), "error_db": errors, "claimed_db": [level.error_db for level in levels],
             "flagged": [level.flagged for level in levels], "paths": [level.paths for level in levels],

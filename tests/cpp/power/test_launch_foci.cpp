@@ -63,6 +63,17 @@ TEST(LaunchFoci, WeightIsOneInTheCoreAndFadesWithLevelEnds) {
   for (const double end : {kFocusCore, 1.0}) EXPECT_LT(std::abs(weight(end + 0.01) - weight(end - 0.01)), kFlank);
 }
 
+// A ray whose part of its direction is below zero has a root of a negative area as its amplitude.
+TEST(LaunchFoci, NoPartOfADirectionIsBelowZero) {
+  const std::vector<Stratum> strata = {cone(Vec3::UnitX(), 0.01, 1e3), cone(Vec3::UnitX(), 5e-5, 5e3, 0)};
+  const LaunchFoci foci(strata);
+  for (int i = 0; i < 100000; ++i) {
+    const double angle = 0.01 * (kFocusCore + 1e-10 * i);  // just behind the core
+    const Vec3 direction(std::cos(angle), std::sin(angle), 0);
+    ASSERT_GE(foci.rays_of_owner(0, direction), 0.0) << i;
+  }
+}
+
 Radar radar() { return plain_radar(Vec3::Zero(), Vec3::Zero()); }
 
 Scene two_balls(bool is_rough) {

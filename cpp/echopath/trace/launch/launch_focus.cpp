@@ -38,7 +38,7 @@ LaunchGuide guide_like(const std::vector<Stratum>& strata) {
 double focus_weight(const Stratum& focus, const Vec3& direction) {
   const double radius = std::sqrt(0.5 * (direction - focus.axis).squaredNorm() / focus.versine);
   const double x = std::clamp((1.0 - radius) / (1.0 - kFocusCore), 0.0, 1.0);
-  return x * x * x * (10.0 + x * (6.0 * x - 15.0));
+  return std::min(x * x * x * (10.0 + x * (6.0 * x - 15.0)), 1.0);  // rounding would leave others a part below zero
 }
 
 LaunchFoci::LaunchFoci(const std::vector<Stratum>& strata) {

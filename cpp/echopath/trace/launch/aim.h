@@ -8,9 +8,10 @@
 namespace echopath {
 
 struct Aim {
-  Stratum stratum;                        // that holds it, without rays
-  int object = 0;                         // index into objects_of(scene)
-  std::vector<MirrorSequence> sequences;  // over which rays find it there; planes at right angles have one image in both orders
+  Stratum stratum;  // that holds it, without rays
+  int object = 0;   // index into objects_of(scene)
+  // Over which rays find it there; planes at right angles have one image in both orders.
+  std::vector<MirrorSequence> sequences;
   bool moves = false;
 };
 

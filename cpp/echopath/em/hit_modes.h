@@ -72,7 +72,8 @@ struct FacetTurn {
 };
 ECHOPATH_INLINE FacetTurn facet_turn(const HitGeometryOfModes& hit) {
   const double ahead = dot(hit.direction, hit.out);
-  const double onto = dot(hit.out, hit.modes.te) / (1.0 - ahead);  // finite: `out` is on the lit side, `direction` comes from there
+  // Finite: `out` is on the lit side, `direction` comes from there.
+  const double onto = dot(hit.out, hit.modes.te) / (1.0 - ahead);
   const VectorOf<double>& k = hit.direction;
   return {-(dot(k, hit.across.horizontal) * onto + dot(hit.across.horizontal, hit.modes.te)),
           -(dot(k, hit.across.vertical) * onto + dot(hit.across.vertical, hit.modes.te))};

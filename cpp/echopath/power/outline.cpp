@@ -68,7 +68,7 @@ class Surfaces {
 
  private:
   const Scene& scene_;
-  const Pose pose_;
+  const PosedScene pose_;
   std::vector<std::vector<Vec3>> normals_;  // by mesh; empty: not smooth, or not met
 };
 

@@ -11,6 +11,7 @@
 namespace echopath {
 namespace {
 
+// clang-format off
 constexpr std::array<std::pair<const char*, PlyType>, 16> kTypes = {{
     {"char", PlyType::kInt8}, {"int8", PlyType::kInt8}, {"uchar", PlyType::kUint8}, {"uint8", PlyType::kUint8},
     {"short", PlyType::kInt16}, {"int16", PlyType::kInt16}, {"ushort", PlyType::kUint16}, {"uint16", PlyType::kUint16},
@@ -18,6 +19,7 @@ constexpr std::array<std::pair<const char*, PlyType>, 16> kTypes = {{
     {"float", PlyType::kFloat32}, {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
     {"float64", PlyType::kFloat64},
 }};
+// clang-format on
 
 class HeaderParser {
  public:

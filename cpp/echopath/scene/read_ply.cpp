@@ -87,7 +87,8 @@ void read_property(PlyValues& values, const PlyProperty& property, std::vector<d
   const double count = property.is_list ? values.next(property.count_type) : 1.0;
   if (!(count >= 0.0) || count != std::floor(count)) values.refuse("a list's length must be a whole number from 0");
   if (count > static_cast<double>(values.bytes_left())) values.refuse("the file ends too early");
-  for (double i = 0.0; i < count; ++i) out.push_back(values.next(property.type));
+  const auto size = static_cast<int64_t>(count);
+  for (int64_t i = 0; i < size; ++i) out.push_back(values.next(property.type));
 }
 
 void skip(PlyValues& values, const PlyElement& element) {

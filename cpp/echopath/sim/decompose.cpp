@@ -63,7 +63,7 @@ std::vector<ViewSet> sort_paths(const Paths& paths, const std::vector<Grouping>&
 void add_group(Cube cube, uint32_t group, const ViewSet& set, Views& out) {
   for (size_t i = 0; i < set.views.size(); ++i) {
     Cube& part = out[set.views[i]][set.combined.part_in(group, i)].cube;
-    if (!part.values.empty()) part.add(cube);
+    if (!part.values.empty()) part.add(cube);  // NOLINT(bugprone-use-after-move): moved from in the last round alone
     else if (i + 1 == set.views.size()) part = std::move(cube);
     else part = cube;
   }

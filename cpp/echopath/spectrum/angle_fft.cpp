@@ -27,8 +27,9 @@ struct Axis {
 
   Axis(int points, int zero_pad, double spacing, double offset, double wavelength)
       : fft(points > 1 ? points * zero_pad : 1, FftDirection::kBackward), num_points(points) {
+    const int middle = fft.size() / 2;
     for (int i = 0; i < fft.size(); ++i) {
-      cosine.push_back(points > 1 ? (i - fft.size() / 2) * wavelength / (spacing * fft.size()) : 0.0);
+      cosine.push_back(points > 1 ? (i - middle) * wavelength / (spacing * fft.size()) : 0.0);
       phasor.push_back(std::polar(1.0, kTwoPi / wavelength * offset * cosine.back()));
     }
   }

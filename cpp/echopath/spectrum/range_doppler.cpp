@@ -91,8 +91,9 @@ std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins) {
 std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, int num_bins) {
   require(num_bins >= 1, "num_bins", "must be at least 1", num_bins);
   const double step = 2.0 * waveform.max_velocity(num_slots) / num_bins;
+  const int middle = num_bins / 2;
   std::vector<double> velocity(num_bins);
-  for (int i = 0; i < num_bins; ++i) velocity[i] = (i - num_bins / 2) * step;
+  for (int i = 0; i < num_bins; ++i) velocity[i] = (i - middle) * step;
   return velocity;
 }
 

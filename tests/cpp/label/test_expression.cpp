@@ -101,7 +101,9 @@ TEST(PathExpressionSyntax, CaretStandsUnderBadRepeats) {
 }
 
 TEST(PathExpressionSyntax, CaretCountsCharactersAndLines) {
+  // clang-format off
   EXPECT_TRUE(error_of("T 'stra\xc3\x9f" "e' & R").ends_with("\n  T 'stra\xc3\x9f" "e' & R\n             ^"));
+  // clang-format on
   EXPECT_NE(error_of("T . \xc3\x9f R").find("got \xc3\x9f\n"), std::string::npos);
   EXPECT_TRUE(error_of("T 'a'\n\t. & R\n").ends_with("\n  \t. & R\n  \t  ^"));
 }

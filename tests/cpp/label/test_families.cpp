@@ -135,8 +135,10 @@ TEST(Grouping, ByAllIsTheCombinationsThatOccur) {
   const Grouping bounces = by_selections({{"one", Selection::num_bounces(1, 1)}});
   const Grouping objects = by_families(map_surfaces(*make_street(), {{"walker", {"pedestrian"}}}));
   const Partition partition = by_all({bounces, objects})(paths, nullptr);
+  // clang-format off
   const std::vector<std::string> names{"one\x1fwalker\x1e" "0\x1e" "1", "one\x1f",
                                        "other\x1fwalker\x1e" "1\x1e" "2\x1estreet"};
+  // clang-format on
   EXPECT_EQ(partition.names, names);
   EXPECT_EQ(partition.group, (std::vector<uint32_t>{1, 0, 2}));
   EXPECT_THROW(by_all({}), std::invalid_argument);

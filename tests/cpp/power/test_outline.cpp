@@ -35,7 +35,7 @@ std::vector<int64_t> all_of(const Paths& paths) {
 
 Vec3 point_of(const Paths& paths, int64_t path) {
   const Hit& hit = *paths.hits_of(path);
-  const auto [a, b, c] = Pose(*paths.scene, paths.frame.trace_time).world_triangle(hit.mesh_id, hit.triangle_id);
+  const auto [a, b, c] = PosedScene(*paths.scene, paths.frame.trace_time).world_triangle(hit.mesh_id, hit.triangle_id);
   return a + hit.u * (b - a) + hit.v * (c - a);
 }
 

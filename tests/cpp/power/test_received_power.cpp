@@ -23,7 +23,8 @@ constexpr double kGhostDb = 0.05;        // of families of ghosts
 constexpr double kImage = 1e-6;          // relative: single precision of weights
 constexpr double kRounding = 1e-12;
 constexpr double kErrorsShow = 1e-4;     // relative: a filter that is at work
-constexpr double kCancelled = 1e-11;  // relative: two thousand echoes of a sphere, of which a few stand, summed in another order
+// relative: two thousand echoes of a sphere, of which a few stand, summed in another order
+constexpr double kCancelled = 1e-11;
 constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,

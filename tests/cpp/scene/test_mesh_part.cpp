@@ -37,9 +37,11 @@ MeshPtr sheet(uint32_t n) {
 MeshPtr cube() {
   std::vector<Vec3> vertices;
   for (int i = 0; i < 8; ++i) vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2);
+  // clang-format off
   return std::make_shared<const Mesh>(
       vertices, std::vector<Triangle>{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}});
+  // clang-format on
 }
 
 std::vector<uint32_t> from_to(uint32_t begin, uint32_t end) {

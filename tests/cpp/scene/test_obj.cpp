@@ -63,11 +63,13 @@ TEST(Obj, CutsPolygonsAndNumbersTheirFaces) {
 
 TEST(Obj, CutsConcavePolygonsWithoutOverlap) {
   // An arrow head, an L and a comb, each begun at each of its corners: a fan would cover more than the polygon.
+  // clang-format off
   const std::vector<std::pair<std::vector<Vec3>, double>> polygons = {
       {{{0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0}}, 0.5},
       {{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, 4.0},
       {{{0, 0, 1}, {5, 0, 1}, {5, 2, 1}, {4, 2, 1}, {4, 1, 1}, {3, 1, 1}, {3, 2, 1}, {2, 2, 1}, {2, 1, 1}, {1, 1, 1},
         {1, 2, 1}, {0, 2, 1}}, 8.0}};
+  // clang-format on
   for (const auto& [corners, area] : polygons) {
     for (size_t first = 0; first < corners.size(); ++first) {
       std::ostringstream content;

@@ -8,9 +8,10 @@
 namespace echopath {
 
 struct Aim {
-  Stratum stratum;                        // holds the target; without rays
-  int object = 0;                         // index into objects_of(scene)
-  std::vector<MirrorSequence> sequences;  // over which rays find it; planes at right angles have one image in both orders
+  Stratum stratum;  // holds the target; without rays
+  int object = 0;   // index into objects_of(scene)
+  // Rays find it over these; planes at right angles have one image in both orders.
+  std::vector<MirrorSequence> sequences;
   bool moves = false;
 };
 

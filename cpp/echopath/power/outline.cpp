@@ -8,6 +8,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
+#include "echopath/posed/posed_scene.h"
 #include "echopath/scene/smooth.h"
 
 namespace echopath {

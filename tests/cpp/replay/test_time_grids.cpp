@@ -9,6 +9,8 @@
 namespace echopath {
 namespace {
 
+using namespace testing;
+
 constexpr double kRounding = 1e-12;  // s, of times of a frame of milliseconds
 
 Radar two_transmitters() {
@@ -76,7 +78,9 @@ TEST(TimeGrids, NoPolynomialCostsMoreThanEveryChirpAndExactReplayHasNone) {
   ASSERT_GT(grids.num_polynomials(), 0);
   for (int k = 1; k <= grids.num_polynomials(); ++k) {
     EXPECT_LE(grids.polynomial(k).num_nodes, grids.num_sample_nodes());
-    if (k > 1) EXPECT_GE(grids.polynomial(k).num_nodes, grids.polynomial(k - 1).num_nodes);
+  }
+  for (int k = 2; k <= grids.num_polynomials(); ++k) {
+    EXPECT_GE(grids.polynomial(k).num_nodes, grids.polynomial(k - 1).num_nodes);
   }
   EXPECT_EQ(grids.polynomial(grids.next_polynomial(1, 7.5)).order, 8);
   EXPECT_EQ(grids.next_polynomial(1, 1000.0), grids.num_polynomials() + 1);

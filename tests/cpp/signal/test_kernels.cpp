@@ -10,8 +10,6 @@
 #include "echopath/signal/nufft_kernel.h"
 
 namespace echopath {
-namespace kernels_baseline { extern const SignalKernels kKernels; }
-
 namespace {
 
 constexpr double kRounding = 1e-13;  // of sums of a thousand numbers in another order
@@ -60,7 +58,7 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
         const TileAtChirps at{tiles.nodes(tile), tile.count, echoes.sampling.num_nodes, echoes.sampling.order, 4,
                               echoes.sampling.first_node.data(), echoes.sampling.value.data(), echoes.sampling.slope.data()};
         spoil_stack();
-        (i == 0 ? kernels_baseline::kKernels : signal_kernels()).add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
+        (i == 0 ? kernels_for<SignalKernels, InstructionSet::kBaseline>() : signal_kernels()).add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
       }
     }
     double largest = 0.0;

@@ -28,17 +28,21 @@ ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf
   const double variance = spread * spread;
   const Real a11 = variance * phase.h11, a12 = variance * phase.h12, a22 = variance * phase.h22;
   const Real det = a11 * a22 - a12 * a12, trace = a11 + a22, rest = 1.0 - det;
-  // D_F = det(I + jA) = (1 - det) + j trace. Its root without cancellation: m + 1 - det >= 2 always, as m >= |1 - det|
-  // and for det > 1 the matrix is definite, so trace^2 >= 4 det.
+  // D_F = det(I + jA) = (1 - det) + j trace. The larger part of its root is taken first, which cancels no digits; the real part
+  // is the one that is not negative.
   const Real m = Math::root(rest * rest + trace * trace), inverse = 1.0 / m;
-  const Real root_real = Math::root(0.5 * (m + rest));
-  const Real root_imag = trace / (2.0 * root_real);
+  const Real larger_part = Math::root(0.5 * (m + Math::magnitude(rest)));
+  const Real other_part = trace / (2.0 * larger_part);
+  const Real root_real = rest >= 0.0 ? larger_part : Math::magnitude(other_part);
+  const Real root_imag = rest >= 0.0 ? other_part : Math::with_sign_of(larger_part, trace);
   const Real g_squared = phase.g1 * phase.g1 + phase.g2 * phase.g2;
   const Real form = a11 * phase.g1 * phase.g1 + 2.0 * a12 * phase.g1 * phase.g2 + a22 * phase.g2 * phase.g2;
   const Real turned = trace * g_squared - form;
-  // The exponent is -variance/2 (g^2 + j turned) / D_F.
+  // The exponent is -variance/2 (g^2 + j turned) / D_F. Its real part is negative; behind several curved bounces cells can be so
+  // large that rounding makes it positive.
   const Real scale = (-0.5 * variance) * inverse * inverse;
-  const Real size = Math::exp(scale * (g_squared * rest + turned * trace)) * inverse;
+  const Real fading = Math::smaller(scale * (g_squared * rest + turned * trace), g_squared * 0.0);
+  const Real size = Math::exp(fading) * inverse;
   const ComplexOf<Real> phasor = Math::cis(scale * (turned * rest - g_squared * trace));
   const Real c = size * phasor.re, s = size * phasor.im;
   return {root_real * c + root_imag * s, root_real * s - root_imag * c};

@@ -13,6 +13,7 @@ namespace {
 constexpr double kSum = 1e-12;             // of a sum of 1.6e5 terms, which is exact to rounding
 constexpr double kThreeSums = 1e-11;       // of three of them, whose weights add up to 7
 constexpr double kRounding = 1e-15;
+constexpr double kAnyRounding = 1e-8;      // relative, of phases of g^2 / h where 1 / h has lost digits
 constexpr double kStep = 0.05;             // of 1, between curvatures that differ by 2 %
 constexpr double kFlat = 1e-3;             // what cells that turn by a tenth of a cycle may lose
 constexpr double kFlatTop = 1e-4;          // likewise, at half a radian
@@ -54,6 +55,34 @@ TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
       EXPECT_LT(std::abs(now - before), kStep);
       before = now;
     }
+  }
+}
+
+// Along the axes of its curvature the footprint is a product of two integrals in closed form, whatever the size of the cell.
+TEST(Footprint, SecondOrderIsTheProductOfBothAxesForCellsOfAnySize) {
+  constexpr double kSpread = 0.6, kVariance = kSpread * kSpread;
+  for (const double h1 : {1e3, -1e6, 1e8, 1e9, -1e12}) {
+    for (const double h2 : {0.5, -2e3, 1e6, 1e8, 1e9, 1e12}) {
+      const FootprintPhase phase{2.0, -3.0, h1, 0.0, h2};
+      std::complex<double> expected = 1.0;
+      for (const auto& [g, h] : {std::pair(2.0, h1), std::pair(-3.0, h2)}) {
+        const std::complex<double> width(1.0, kVariance * h);
+        expected *= std::exp(-0.5 * kVariance * g * g / width) / std::sqrt(width);
+      }
+      EXPECT_LT(std::abs(second_order_footprint(phase, kSpread) - expected), kAnyRounding * std::abs(expected)) << h1 << " " << h2;
+    }
+  }
+}
+
+// Matrices that are singular to rounding, as they come behind several curved bounces, filter nothing up.
+TEST(Footprint, IsBoundedWhereItsMatrixIsSingularToRounding) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int i = 0; i < 100000; ++i) {
+    const double size = std::pow(10.0, 8.0 + 6.0 * unit(random)), x = unit(random), y = unit(random);
+    const FootprintPhase phase{size * x, size * y, size * x * x, size * x * y, size * y * y * (1.0 + 1e-15 * unit(random))};
+    ASSERT_LE(std::abs(second_order_footprint(phase, 0.65)), 1.0 + kRounding) << i;
+    ASSERT_TRUE(std::isfinite(std::abs(edges_footprint(phase, 0.65)))) << i;
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -162,32 +161,31 @@ class Sums {
 
 // Looks which cells lie at a rim, of the kinds where that matters. edge_power: [P] W, of each coherent path.
 void find_rims(const Paths& paths, const Sorting& sorting, std::span<const float> edge_power, std::vector<GroupSums>& groups) {
-  std::vector<std::vector<CoherentKind*>> kinds(groups.size());  // by group
-  bool is_any = false;
+  std::vector<CoherentKind*> kinds;
+  std::vector<std::unordered_map<uint64_t, uint32_t>> index_of_kind(groups.size());  // by group and id, into kinds
   for (size_t group = 0; group < groups.size(); ++group) {
     for (CoherentKind& kind : groups[group].kinds) {
       if (!(kind.power[kEdges] > 0.0) || !kind.is_uncertain()) continue;
       kind.edges_at_rim = 0.0;
-      kinds[group].push_back(&kind);
-      is_any = true;
+      index_of_kind[group][kind.id] = static_cast<uint32_t>(kinds.size());
+      kinds.push_back(&kind);
     }
   }
-  if (!is_any) return;
-  std::map<std::pair<uint32_t, uint64_t>, std::vector<int64_t>> members;  // by group and kind
+  if (kinds.empty()) return;
+  std::vector<int64_t> members;
+  std::vector<uint32_t> sets;
   for (int64_t path = 0; path < paths.num_paths(); ++path) {
     const auto p = static_cast<size_t>(path);
-    const uint32_t group = sorting.group_of_path[p];
-    if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || kinds[group].empty()) continue;
-    const uint64_t id = kind_of(paths, path);
-    const bool is_asked = std::any_of(kinds[group].begin(), kinds[group].end(), [&](const CoherentKind* kind) { return kind->id == id; });
-    if (is_asked) members[{group, id}].push_back(path);
+    const auto& of_group = index_of_kind[sorting.group_of_path[p]];
+    if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || of_group.empty()) continue;
+    const auto found = of_group.find(kind_of(paths, path));
+    if (found == of_group.end()) continue;
+    members.push_back(path);
+    sets.push_back(found->second);
   }
-  for (const auto& [of, kin] : members) {
-    const std::vector<uint8_t> at_rim = cells_at_rim(paths, kin);
-    CoherentKind& kind = **std::find_if(kinds[of.first].begin(), kinds[of.first].end(), [&](const CoherentKind* one) { return one->id == of.second; });
-    for (size_t i = 0; i < kin.size(); ++i) {
-      if (at_rim[i]) kind.edges_at_rim += edge_power[static_cast<size_t>(kin[i])];
-    }
+  const std::vector<uint8_t> at_rim = cells_at_rim(paths, members, sets);
+  for (size_t i = 0; i < members.size(); ++i) {
+    if (at_rim[i]) kinds[sets[i]]->edges_at_rim += edge_power[static_cast<size_t>(members[i])];
   }
 }
 

@@ -101,7 +101,8 @@ class Kinship {
 
 class Cells {
  public:
-  Cells(const Paths& paths, std::span<const int64_t> members) : paths_(paths), members_(members) {
+  Cells(const Paths& paths, std::span<const int64_t> members, std::span<const uint32_t> sets)
+      : paths_(paths), members_(members), sets_(sets) {
     cells_.resize(members.size());
     size_t num_places = 0;
     for (size_t i = 0; i < members.size(); ++i) {
@@ -122,10 +123,14 @@ class Cells {
     std::vector<size_t> order(members_.size());
     std::iota(order.begin(), order.end(), size_t{0});
     const Kinship kinship(paths_);
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return kinship.compare(members_[a], members_[b]) < 0; });
+    const auto compare = [&](size_t a, size_t b) {
+      if (!sets_.empty() && sets_[a] != sets_[b]) return sets_[a] < sets_[b] ? -1 : 1;
+      return kinship.compare(members_[a], members_[b]);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return compare(a, b) < 0; });
     std::vector<std::span<size_t>> kin;
     for (size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-      while (end < order.size() && kinship.compare(members_[order[begin]], members_[order[end]]) == 0) ++end;
+      while (end < order.size() && compare(order[begin], order[end]) == 0) ++end;
       kin.push_back(std::span(order).subspan(begin, end - begin));
     }
     parallel_for(std::ssize(kin), [&](int64_t i) { judge(kin[static_cast<size_t>(i)], found); });
@@ -211,15 +216,16 @@ class Cells {
 
   const Paths& paths_;
   const std::span<const int64_t> members_;
+  const std::span<const uint32_t> sets_;
   std::vector<Cell> cells_;
   std::vector<Place> places_;
 };
 
 }  // namespace
 
-std::vector<uint8_t> cells_at_rim(const Paths& paths, std::span<const int64_t> members) {
+std::vector<uint8_t> cells_at_rim(const Paths& paths, std::span<const int64_t> members, std::span<const uint32_t> sets) {
   if (members.empty()) return {};
-  return Cells(paths, members).at_rim();
+  return Cells(paths, members, sets).at_rim();
 }
 
 }  // namespace echopath

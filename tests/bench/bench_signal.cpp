@@ -37,7 +37,7 @@ double nanoseconds(double echoes, Work work) {
 // A tile of echoes at rest over `cells` cells, sorted, or in any order.
 struct Trial {
   std::vector<double> nodes, value, slope;
-  std::vector<int> first_node = std::vector<int>(kChirps, 0);
+  std::vector<int> first_row = std::vector<int>(kChirps, 0);
   int num_nodes;
 
   Trial(int num_nodes_, double cells, bool is_sorted) : num_nodes(num_nodes_) {
@@ -60,7 +60,7 @@ struct Trial {
   }
 
   TileAtChirps at() const {
-    return {nodes.data(), kCount, num_nodes, num_nodes, kChirps, first_node.data(), value.data(), slope.data()};
+    return {nodes.data(), kCount, num_nodes, num_nodes, kChirps, first_row.data(), value.data(), slope.data()};
   }
 };
 

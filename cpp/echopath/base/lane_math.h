@@ -115,7 +115,7 @@ ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
 #endif
 }
 
-constexpr double kMostNegativeExponent = -708.0;  // e^x below is taken as 0
+constexpr double kMaxNegativeExponent = -708.0;  // e^x below is taken as 0
 
 // Functions of vectors under the names of ScalarMath.
 struct LaneMath {
@@ -152,8 +152,8 @@ struct LaneMath {
   // e^x for x <= 0, relative error 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
   static ECHOPATH_INLINE Vec exp(Vec x) {
     constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
-    const Vec shifted = larger(x, all(kMostNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
-    const Vec rest = (larger(x, all(kMostNegativeExponent)) - k * kLn2High) - k * kLn2Low;
+    const Vec shifted = larger(x, all(kMaxNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;
+    const Vec rest = (larger(x, all(kMaxNegativeExponent)) - k * kLn2High) - k * kLn2Low;
     // 1/n! for n to 13, in pairs, so that most terms do not wait for others; what is large comes last.
     const Vec square = rest * rest, fourth = square * square;
     const Vec high = (rest * (1.0 / 6227020800.0) + 1.0 / 479001600.0) * fourth +
@@ -162,7 +162,7 @@ struct LaneMath {
     const Vec tail = (high * fourth + middle) * square + (rest * (1.0 / 6.0) + 0.5);
     const Vec sum = (tail * square + rest) + 1.0;
     const Vec power = from_bits(bits(sum) + (bits(shifted) << 52));
-    return x < kMostNegativeExponent ? Vec{} : power;
+    return x < kMaxNegativeExponent ? Vec{} : power;
   }
 
   static ECHOPATH_INLINE ComplexOf<Vec> cis(Vec x) {
@@ -175,14 +175,14 @@ struct LaneMath {
   }
 };
 
-// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kLeastSquare as if
+// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kMinSquare as if
 // it were that. Roots and divisions of eight lanes take the place of twenty multiplications.
 struct Roots {
   Vec root, inverse;
 };
-constexpr double kLeastSquare = 1e-60;
+constexpr double kMinSquare = 1e-60;
 ECHOPATH_INLINE Roots roots_of(Vec square) {
-  const Vec x = LaneMath::larger(square, all(kLeastSquare));
+  const Vec x = LaneMath::larger(square, all(kMinSquare));
 #if ECHOPATH_LANES == 8
   Vec y = _mm512_maskz_rsqrt14_pd(0xFF, x);
   for (int step = 0; step < 2; ++step) y = y + 0.5 * y * exact_multiply_add(-x * y, y, all(1.0));

@@ -6,7 +6,7 @@
 
 namespace echopath {
 
-inline constexpr double kLeastSine = 1e-9;  // two directions at a smaller sine have no plane of their own
+inline constexpr double kMinSine = 1e-9;  // two directions at a smaller sine have no plane of their own
 
 // Holds two unit vectors across a direction of travel; horizontal x vertical points along it.
 struct BasisAcross {
@@ -14,7 +14,7 @@ struct BasisAcross {
 };
 ECHOPATH_INLINE BasisAcross basis_across(const VectorOf<double>& direction) {
   const double sine = ScalarMath::root(direction.x * direction.x + direction.y * direction.y);
-  const bool is_level = sine > kLeastSine;
+  const bool is_level = sine > kMinSine;
   const double inverse = 1.0 / (is_level ? sine : 1.0);
   const VectorOf<double> horizontal{is_level ? -inverse * direction.y : ScalarMath::with_sign_of(1.0, direction.z),
                                     is_level ? inverse * direction.x : 0.0, 0.0};
@@ -29,7 +29,7 @@ struct ModeAxes {
 ECHOPATH_INLINE ModeAxes mode_axes(const VectorOf<double>& direction, const VectorOf<double>& normal) {
   const VectorOf<double> across = cross(direction, normal), level = basis_across(direction).horizontal;
   const double sine = ScalarMath::root(dot(across, across));
-  const bool is_oblique = sine > kLeastSine;
+  const bool is_oblique = sine > kMinSine;
   const double inverse = 1.0 / (is_oblique ? sine : 1.0);
   const VectorOf<double> te{is_oblique ? inverse * across.x : level.x, is_oblique ? inverse * across.y : level.y,
                             is_oblique ? inverse * across.z : level.z};
@@ -86,7 +86,7 @@ struct AxisInModes {
 ECHOPATH_INLINE AxisInModes scattering_axis(const HitGeometryOfModes& hit, double cosine, double sine) {
   const double along = dot(hit.out, hit.modes.te), beside = dot(hit.out, hit.modes.tm);
   const double size = ScalarMath::root(along * along + beside * beside);
-  const bool has_plane = size > kLeastSine;
+  const bool has_plane = size > kMinSine;
   const double inverse = 1.0 / (has_plane ? size : 1.0);
   const double te = has_plane ? inverse * beside : 1.0, tm = has_plane ? -inverse * along : 0.0;
   return {cosine * te + sine * tm, cosine * tm - sine * te};

@@ -93,9 +93,9 @@ void join(const Echoes& all, std::span<const uint8_t> joined, Echoes& to) {
   const auto from = static_cast<size_t>(all.num_echoes), stride = static_cast<size_t>(to.num_echoes);
   const auto* amplitude = reinterpret_cast<const double*>(all.amplitude.data());
   auto* to_amplitude = reinterpret_cast<double*>(to.amplitude.data());
-  for (size_t node = 0; node < static_cast<size_t>(all.sampling.num_nodes); ++node) {
+  for (size_t row = 0; row < static_cast<size_t>(all.sampling.num_rows); ++row) {
     for (const Run& run : runs) {
-      const size_t source = node * from + run.from, place = node * stride + run.to;
+      const size_t source = row * from + run.from, place = row * stride + run.to;
       join_run(all.delay.data() + source, amplitude + 2 * source, run, to.delay.data() + place, to_amplitude + 2 * place);
     }
   }

@@ -35,7 +35,7 @@ class JoinRule {
 // Returns the index of the echo of each path; it is empty where `joined` is.
 std::vector<uint32_t> echoes_of(std::span<const uint8_t> joined);
 // `joined` has one entry for each echo of `all`, 1 where it is added to the echo before it. The caller sizes `to` as
-// [num_nodes, echoes that are left].
+// [num_rows, echoes that are left].
 void join(const Echoes& all, std::span<const uint8_t> joined, Echoes& to);
 // Returns the first path of each echo that is left.
 std::vector<int64_t> first_of(std::span<const int64_t> paths, std::span<const uint8_t> joined);

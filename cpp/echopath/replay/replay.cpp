@@ -64,7 +64,7 @@ struct Replayer::Target {
   const PosedNodes& posed;
   size_t first_channel;  // of those that are posed
   std::vector<ChannelNodes> nodes;
-  uint8_t* turned = nullptr;  // [P], or null: ChainEvaluation::mark_turned
+  uint8_t* turned = nullptr;  // [P], or null: SharedLegEvaluation::mark_turned
   bool with_amplitudes = true;  // else only lengths are evaluated
   CellView cells = {};
 
@@ -104,7 +104,7 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   if (static_cast<size_t>(num_left) == joined.size()) return of_paths;
   std::vector<Echoes> echoes;
   for (Echoes& all : of_paths) {
-    Echoes& to = echoes.emplace_back(memory_->echoes.take(static_cast<size_t>(num_left * all.sampling.num_nodes)));
+    Echoes& to = echoes.emplace_back(memory_->echoes.take(static_cast<size_t>(num_left * all.sampling.num_rows)));
     to.num_echoes = num_left;
     join(all, joined, to);
     to.sampling = std::move(all.sampling);
@@ -161,7 +161,7 @@ std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int ind
   const std::vector<uint32_t> echo_of = echoes_of(joined);
   const size_t num_echoes = joined.empty() ? indices.size() : echo_of.back() + 1;
   std::vector<Echoes> lengths = take_echoes(num_echoes, num_receivers(), polynomial.posed.size());
-  std::vector<Echoes> echoes = take_echoes(num_echoes, num_receivers(), static_cast<size_t>(sampling.num_nodes));
+  std::vector<Echoes> echoes = take_echoes(num_echoes, num_receivers(), static_cast<size_t>(sampling.num_rows));
   Target targets[] = {{polynomial.posed, transmitter * num_receivers(), rows_of(lengths)},
                       {chirps.posed, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
   targets[0].with_amplitudes = false;

@@ -7,7 +7,7 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kLeastCosine = 0.995;  // of 0.1 rad: creases as small as max_distance do not make a surface lie on itself
+constexpr double kMinCosine = 0.995;  // of 0.1 rad: creases as small as max_distance do not make a surface lie on itself
 constexpr double kTouchingShare = 0.1;  // of the narrower triangle's height, because slivers overlap, too
 
 struct Polygon {
@@ -57,7 +57,7 @@ bool is_apart(const Corners& seen, double distance) {
 
 bool is_parallel(const Corners& seen) {
   const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
-  return std::abs(normal.z()) > kLeastCosine * normal.norm();
+  return std::abs(normal.z()) > kMinCosine * normal.norm();
 }
 
 }  // namespace

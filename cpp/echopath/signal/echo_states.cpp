@@ -64,14 +64,14 @@ void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
 // Returns how many chirps from `chirp` on share its nodes, up to `most`.
 int chirps_that_share_nodes(const TimeSampling& sampling, int chirp, int most) {
   int count = 1;
-  while (count < most && sampling.first_node[chirp + count] == sampling.first_node[chirp]) ++count;
+  while (count < most && sampling.first_row[chirp + count] == sampling.first_row[chirp]) ++count;
   return count;
 }
 
-ECHOPATH_INLINE void add_bends(const double* delay, double bend, double twist, int count, EchoBends* bends) {
+ECHOPATH_INLINE void add_derivatives(const double* delay, double second, double third, int count, EchoDerivatives* derivatives) {
   for (int p = 0; p < count; ++p) {
-    bends->bend[p] += bend * delay[p];
-    bends->twist[p] += twist * delay[p];
+    derivatives->second[p] += second * delay[p];
+    derivatives->third[p] += third * delay[p];
   }
 }
 
@@ -82,7 +82,7 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
   const int end = chirp + num_chirps, at_once = instruction_set() == InstructionSet::kAvx512 ? 4 : 2;
   while (chirp < end) {
     const size_t row = static_cast<size_t>(chirp) * sampling.order;
-    const int64_t first = int64_t{sampling.first_node[chirp]} * echoes.num_echoes + begin;
+    const int64_t first = int64_t{sampling.first_row[chirp]} * echoes.num_echoes + begin;
     const Nodes nodes{echoes.delay.data() + first, reinterpret_cast<const double*>(echoes.amplitude.data() + first),
                       echoes.num_echoes, sampling.value.data() + row, sampling.slope.data() + row, sampling.order};
     const int shared = chirps_that_share_nodes(sampling, chirp, std::min(at_once, end - chirp));
@@ -96,17 +96,17 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
   }
 }
 
-void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends) {
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoDerivatives* derivatives) {
   evaluate_states(echoes, chirp, 1, begin, count, &states);
-  if (!bends) return;
-  std::fill_n(bends->bend, count, 0.0);
-  std::fill_n(bends->twist, count, 0.0);
+  if (!derivatives) return;
+  std::fill_n(derivatives->second, count, 0.0);
+  std::fill_n(derivatives->third, count, 0.0);
   const TimeSampling& sampling = echoes.sampling;
-  if (sampling.bend.empty()) return;
+  if (sampling.second_derivative.empty()) return;
   const size_t row = static_cast<size_t>(chirp) * sampling.order;
-  const double* delay = echoes.delay.data() + int64_t{sampling.first_node[chirp]} * echoes.num_echoes + begin;
+  const double* delay = echoes.delay.data() + int64_t{sampling.first_row[chirp]} * echoes.num_echoes + begin;
   for (int k = 0; k < sampling.order; ++k) {
-    run_simd<add_bends>(delay + k * echoes.num_echoes, sampling.bend[row + k], sampling.twist[row + k], count, bends);
+    run_simd<add_derivatives>(delay + k * echoes.num_echoes, sampling.second_derivative[row + k], sampling.third_derivative[row + k], count, derivatives);
   }
 }
 

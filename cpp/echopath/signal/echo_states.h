@@ -14,15 +14,15 @@ struct EchoStates {
 };
 
 // Holds the second and third derivatives of the delays, in 1/s and 1/s^2.
-struct EchoBends {
-  alignas(64) double bend[EchoStates::kCapacity];
-  alignas(64) double twist[EchoStates::kCapacity];
+struct EchoDerivatives {
+  alignas(64) double second[EchoStates::kCapacity];
+  alignas(64) double third[EchoStates::kCapacity];
 };
 
 // Evaluates echoes [begin, begin + count), count <= kCapacity, at chirps [chirp, chirp + num_chirps): states [num_chirps].
 // It costs least where neighbouring chirps share their nodes.
 void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states);
-// Evaluates these echoes at one chirp. `bends` may be null; they are zero where the sampling has none.
-void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoBends* bends = nullptr);
+// Evaluates these echoes at one chirp. `derivatives` may be null; they are zero where the sampling has none.
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoDerivatives* derivatives = nullptr);
 
 }  // namespace echopath

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLanes = TileAtChirps::kLanes;
 constexpr int kDelayBits = 16;  // 64 places in each cell of 512 samples
-constexpr int kMostDrifts = 64;
+constexpr int kMaxDrifts = 64;
 constexpr int kEchoesOfCell = 4;  // least mean number for each class of drift, so that moments are worth while
 constexpr int kDigitBits = 11;  // of a pass of the radix sort
 
@@ -65,7 +65,7 @@ struct Extent {
 };
 
 double drift_of(const Echoes& block, int64_t echo) {
-  return block.delay[static_cast<size_t>((block.sampling.num_nodes - 1) * block.num_echoes + echo)] -
+  return block.delay[static_cast<size_t>((block.sampling.num_rows - 1) * block.num_echoes + echo)] -
          block.delay[static_cast<size_t>(echo)];
 }
 
@@ -88,11 +88,11 @@ DriftClasses classes_of_drift(std::span<const Echoes> blocks, double longest_del
     total += static_cast<double>(blocks[b].num_echoes);
   }
   const double cell = longest_delay / num_cells, cells = 1.0 + delay.size() / cell;
-  const double most = std::clamp(total / (cells * kEchoesOfCell), 1.0, static_cast<double>(kMostDrifts));
+  const double most = std::clamp(total / (cells * kEchoesOfCell), 1.0, static_cast<double>(kMaxDrifts));
   DriftClasses classes;
   classes.least = drift.least;
   classes.width = std::max(cell, drift.size() / std::floor(most));
-  classes.count = std::min(kMostDrifts, 1 + static_cast<int>(drift.size() / classes.width));
+  classes.count = std::min(kMaxDrifts, 1 + static_cast<int>(drift.size() / classes.width));
   return classes;
 }
 
@@ -130,7 +130,7 @@ void EchoTiles::find_keys(std::span<const Echoes> blocks, double longest_delay, 
 }
 
 void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
-  num_nodes_ = blocks.front().sampling.num_nodes;
+  num_nodes_ = blocks.front().sampling.num_rows;
   const DriftClasses drifts = classes_of_drift(blocks, longest_delay, num_cells);
   set_bits(blocks, num_groups, drifts.count);
   find_keys(blocks, longest_delay, drifts);

@@ -30,7 +30,7 @@ TimeSampling static_sampling(int num_chirps) {
   require(num_chirps >= 1, "num_chirps", "must be at least 1", num_chirps);
   const size_t count = static_cast<size_t>(num_chirps);
   TimeSampling sampling;
-  sampling.first_node.assign(count, 0);
+  sampling.first_row.assign(count, 0);
   sampling.value.assign(count, 1.0);
   sampling.slope.assign(count, 0.0);
   return sampling;
@@ -41,15 +41,15 @@ TimeSampling exact_sampling(const std::vector<double>& times) {
   const int count = static_cast<int>(times.size());
   if (count == 1) return static_sampling(1);
   TimeSampling sampling;
-  sampling.num_nodes = count;
+  sampling.num_rows = count;
   sampling.order = std::min(count, 3);
-  sampling.first_node.resize(times.size());
+  sampling.first_row.resize(times.size());
   sampling.value.assign(times.size() * sampling.order, 0.0);
   sampling.slope.resize(times.size() * sampling.order);
   for (int j = 0; j < count; ++j) {
     const int first = std::clamp(j - 1, 0, count - sampling.order);
     double* slope = &sampling.slope[static_cast<size_t>(j) * sampling.order];
-    sampling.first_node[j] = first;
+    sampling.first_row[j] = first;
     sampling.value[static_cast<size_t>(j) * sampling.order + (j - first)] = 1.0;
     if (count == 2) {
       slope[1] = 1.0 / (times[1] - times[0]);

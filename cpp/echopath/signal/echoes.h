@@ -6,34 +6,35 @@
 
 namespace echopath {
 
-// Says how values at a few nodes give values at each chirp: value(chirp j) = sum_k value[j][k] * node[first_node[j] + k],
-// and the same with `slope` for the time derivative. One form holds static echoes (one node, weight 1), Chebyshev pieces (K
-// nodes per piece of the frame) and exact evaluation (a few nodes in every chirp).
+// Says how a few rows of values give values at each chirp: value(chirp j) = sum_k value[j][k] * row[first_row[j] + k], and
+// the same with `slope` for the time derivative. One form holds static echoes (one row, weight 1), Chebyshev pieces (a row for
+// each of the K nodes of a piece of the frame), exact evaluation (rows for a few nodes in every chirp) and chirps that know
+// their own derivatives.
 struct TimeSampling {
-  int num_nodes = 1;
-  int order = 1;                 // nodes that take part in one chirp
-  std::vector<int> first_node;   // [T]
+  int num_rows = 1;
+  int order = 1;                 // rows that take part in one chirp
+  std::vector<int> first_row;    // [T]
   std::vector<double> value;     // [T, order]
   std::vector<double> slope;     // [T, order], 1/s
-  // [T, order] each, second and third derivative in 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
-  std::vector<double> bend, twist;
-  // Where this is set, the nodes of a chirp do not hold values at several times but the chirp's own value, slope, second and
+  // [T, order] each, 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
+  std::vector<double> second_derivative, third_derivative;
+  // Where this is set, the rows of a chirp do not hold values at several nodes but the chirp's own value, slope, second and
   // third derivative, as many as the order.
   bool holds_derivatives = false;
-  // Returns whether all chirps see the one node: then the echoes do not move, and are synthesised once for all chirps.
-  bool is_static() const { return num_nodes == 1; }
+  // Returns whether all chirps see the one row: then the echoes do not move, and are synthesised once for all chirps.
+  bool is_static() const { return num_rows == 1; }
 };
 
 TimeSampling static_sampling(int num_chirps);
-// Returns the sampling with one node per chirp at `times` [T] (s, ascending, T >= 1), for measured or tabulated delays.
+// Returns the sampling with one row per chirp at `times` [T] (s, ascending, T >= 1), for measured or tabulated delays.
 // Slopes are second-order differences (zero when T = 1).
 TimeSampling exact_sampling(const std::vector<double>& times);
 
 struct Echoes {
   TimeSampling sampling;
   int64_t num_echoes = 0;
-  std::vector<double> delay;                     // [num_nodes, num_echoes] s, at the window centre, round trip
-  std::vector<std::complex<double>> amplitude;   // [num_nodes, num_echoes] sqrt(W)
+  std::vector<double> delay;                     // [num_rows, num_echoes] s, at the window centre, round trip
+  std::vector<std::complex<double>> amplitude;   // [num_rows, num_echoes] sqrt(W)
   std::vector<uint32_t> group;                   // [num_echoes], or empty: all in group 0
 };
 

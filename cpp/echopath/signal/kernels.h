@@ -32,7 +32,7 @@ struct TileAtChirps {
   int count;              // echoes; the last vector is filled up with zero amplitudes
   int num_nodes, order;
   int num_chirps;         // 1 to kMaxChirps
-  const int* first_node;  // [num_chirps], as in TimeSampling
+  const int* first_row;  // [num_chirps], as in TimeSampling
   const double* value;    // [num_chirps, order]
   const double* slope;    // [num_chirps, order]
 };

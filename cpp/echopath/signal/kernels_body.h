@@ -366,7 +366,7 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
   const double* slope = tile.slope + chirp * tile.order;
   for (int p = 0; p < tile.count; p += kLanes) {
     const int vector = p / TileAtChirps::kLanes;
-    const double* node = tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_node[chirp]) * kRow +
+    const double* node = tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_row[chirp]) * kRow +
                          p % TileAtChirps::kLanes;
     States<kChirps> states = {};
     for (int k = 0; k < tile.order; ++k, node += kRow) {
@@ -386,7 +386,7 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
 
 bool same_nodes(const TileAtChirps& tile, int chirp, int count) {
   for (int c = 1; c < count; ++c) {
-    if (tile.first_node[chirp + c] != tile.first_node[chirp]) return false;
+    if (tile.first_row[chirp + c] != tile.first_row[chirp]) return false;
   }
   return true;
 }

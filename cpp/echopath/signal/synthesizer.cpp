@@ -48,23 +48,23 @@ void require_finite(const double* values, size_t count, const char* name) {
 
 void validate_sampling(const TimeSampling& sampling, int num_chirps) {
   const size_t chirps = static_cast<size_t>(num_chirps);
-  require(sampling.num_nodes >= 1, "sampling.num_nodes", "must be at least 1", sampling.num_nodes);
-  require(sampling.order >= 1 && sampling.order <= sampling.num_nodes, "sampling.order", "must be in [1, num_nodes]",
+  require(sampling.num_rows >= 1, "sampling.num_rows", "must be at least 1", sampling.num_rows);
+  require(sampling.order >= 1 && sampling.order <= sampling.num_rows, "sampling.order", "must be in [1, num_rows]",
           sampling.order);
-  require(sampling.first_node.size() == chirps, "sampling.first_node", "must have one entry per chirp",
-          sampling.first_node.size());
+  require(sampling.first_row.size() == chirps, "sampling.first_row", "must have one entry per chirp",
+          sampling.first_row.size());
   const size_t weights = chirps * sampling.order;
   require(sampling.value.size() == weights, "sampling.value", "must have shape [chirps, order]", sampling.value.size());
   require(sampling.slope.size() == weights, "sampling.slope", "must have shape [chirps, order]", sampling.slope.size());
-  for (const int node : sampling.first_node) {
-    require(node >= 0 && node <= sampling.num_nodes - sampling.order, "sampling.first_node",
-            "must leave `order` nodes in range", node);
+  for (const int node : sampling.first_row) {
+    require(node >= 0 && node <= sampling.num_rows - sampling.order, "sampling.first_row",
+            "must leave `order` rows in range", node);
   }
   require_finite(sampling.value.data(), weights, "sampling.value");
   require_finite(sampling.slope.data(), weights, "sampling.slope");
-  for (const std::vector<double>* rows : {&sampling.bend, &sampling.twist}) {
-    const char* name = rows == &sampling.bend ? "sampling.bend" : "sampling.twist";
-    require(rows->size() == sampling.bend.size(), name, "must be empty only where the other is, values", rows->size());
+  for (const std::vector<double>* rows : {&sampling.second_derivative, &sampling.third_derivative}) {
+    const char* name = rows == &sampling.second_derivative ? "sampling.second_derivative" : "sampling.third_derivative";
+    require(rows->size() == sampling.second_derivative.size(), name, "must be empty only where the other is, values", rows->size());
     require(rows->empty() || rows->size() == weights, name, "must be empty or have shape [chirps, order]", rows->size());
     require_finite(rows->data(), rows->size(), name);
   }
@@ -85,7 +85,7 @@ void run_tasks(int num_chirps, const std::function<void(int first, int count)>& 
 }
 
 bool same_sampling(const TimeSampling& a, const TimeSampling& b) {
-  return a.num_nodes == b.num_nodes && a.order == b.order && a.first_node == b.first_node && a.value == b.value &&
+  return a.num_rows == b.num_rows && a.order == b.order && a.first_row == b.first_row && a.value == b.value &&
          a.slope == b.slope;
 }
 
@@ -141,9 +141,9 @@ void Synthesizer::validate(const Echoes& block) const {
   validate_sampling(block.sampling, waveform_.num_chirps);
   require(block.num_echoes >= 0, "num_echoes", "must not be negative", block.num_echoes);
   const size_t echoes = static_cast<size_t>(block.num_echoes);
-  const size_t values = echoes * block.sampling.num_nodes;
-  require(block.delay.size() == values, "delay", "must have shape [num_nodes, num_echoes]", block.delay.size());
-  require(block.amplitude.size() == values, "amplitude", "must have shape [num_nodes, num_echoes]",
+  const size_t values = echoes * block.sampling.num_rows;
+  require(block.delay.size() == values, "delay", "must have shape [num_rows, num_echoes]", block.delay.size());
+  require(block.amplitude.size() == values, "amplitude", "must have shape [num_rows, num_echoes]",
           block.amplitude.size());
   require(block.group.empty() || block.group.size() == echoes, "group", "must be empty or have one entry per echo",
           block.group.size());
@@ -274,8 +274,8 @@ void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const Ro
     for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
       const auto weights = static_cast<size_t>(chirp * sampling.order);
       const int count = static_cast<int>(std::min<int64_t>(kChirpGroup, chirps.end - chirp));
-      const TileAtChirps at{memory_->tiles.nodes(tile), tile.count, sampling.num_nodes, sampling.order, count,
-                            &sampling.first_node[static_cast<size_t>(chirp)], &sampling.value[weights], &sampling.slope[weights]};
+      const TileAtChirps at{memory_->tiles.nodes(tile), tile.count, sampling.num_rows, sampling.order, count,
+                            &sampling.first_row[static_cast<size_t>(chirp)], &sampling.value[weights], &sampling.slope[weights]};
       signal_kernels().add_tile(*model_, spreading, at, rows[tile.group] + chirp * stride, stride);
     }
   }

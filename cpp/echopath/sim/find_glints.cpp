@@ -218,7 +218,7 @@ std::vector<Glint> find_glints(const Paths& paths, Job* job) {
   std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
   for (const Glint& glint : glints) {
     std::vector<Glint>& others = of_stratum[static_cast<size_t>(glint.stratum)];
-    if (others.size() == kMostGlints) continue;
+    if (others.size() == kMaxGlints) continue;
     if (std::any_of(others.begin(), others.end(), [&](const Glint& other) { return is_same(glint, other); })) continue;
     others.push_back(glint);
     kept.push_back(glint);

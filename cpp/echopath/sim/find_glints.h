@@ -18,8 +18,8 @@ struct Glint {
 // Finds the points where one-bounce paths, over any number of flagged mirrors before and behind, are stationary
 // (reflection_point.h). Only those count beside which the record has such a path, since they are seen. Facets of a curved
 // body are taken as the curved surface that they stand for. Returns each point once, strongest first, and at most
-// kMostGlints of a stratum. Raises Cancelled.
+// kMaxGlints of a stratum. Raises Cancelled.
 std::vector<Glint> find_glints(const Paths& paths, Job* job = nullptr);
-inline constexpr size_t kMostGlints = 64;
+inline constexpr size_t kMaxGlints = 64;
 
 }  // namespace echopath

@@ -13,7 +13,7 @@ namespace echopath {
 namespace {
 
 // Returns a seed that gives each look directions and random phases of its own.
-uint64_t seed_of_look(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
+uint64_t seed_of_search(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
 
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
@@ -66,15 +66,15 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
 }
 
 void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches) {
-  const auto num_stretches = std::ssize(stretches), num_looks = std::min<ptrdiff_t>(kMostLooks, num_stretches);
+  const auto num_stretches = std::ssize(stretches), num_looks = std::min<ptrdiff_t>(kMaxSurfaceSearches, num_stretches);
   KeptGeometry then, before;
   std::vector<double> times;
   for (ptrdiff_t look = 0; look < num_looks; ++look) {
-    LookSettings settings;
+    SurfaceSearchSettings settings;
     settings.time = stretches[static_cast<size_t>((2 * look + 1) * num_stretches / (2 * num_looks))].middle;
     settings.num_rays = paths_.frame.statistics.num_rays;
-    settings.seed = seed_of_look(paths_.frame.seed, static_cast<int>(look));
-    const Look seen = look_for_new_surface(paths_, radar, settings, job_, &then, &kept_);
+    settings.seed = seed_of_search(paths_.frame.seed, static_cast<int>(look));
+    const SurfaceSearch seen = trace_new_surface(paths_, radar, settings, job_, &then, &kept_);
     Paths found = seen.paths.select(seen.is_new, job_);
     for (auto time = times.rbegin(); time != times.rend(); ++time) take_out(radar, *time, found, job_, &before);
     times.push_back(settings.time);

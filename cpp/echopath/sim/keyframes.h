@@ -42,7 +42,7 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
 class StretchRecords {
  public:
   // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to
-  // kMostLooks stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look could have
+  // kMaxSurfaceSearches stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look could have
   // found become a record with phases of its own. So each piece of surface stands in one of the records, with the same
   // material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface. Raises
   // invalid_argument for kAlways with a selection.
@@ -59,6 +59,6 @@ class StretchRecords {
   KeptGeometry kept_;
   std::vector<Paths> found_;  // paths on new surface
 };
-inline constexpr int kMostLooks = 32;
+inline constexpr int kMaxSurfaceSearches = 32;
 
 }  // namespace echopath

@@ -15,10 +15,10 @@ namespace {
 constexpr double kZones = 2.0, kCells = 1.5;
 constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
-constexpr size_t kMostFoci = 12;       // in a stratum
+constexpr size_t kMaxFoci = 12;       // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
 constexpr double kMostRays = 0.5;      // of the stratum's rays, for all its foci
-constexpr double kLeastGain = 1.5;     // of the density of rays in a focus, over that without it
+constexpr double kMinGain = 1.5;     // of the density of rays in a focus, over that without it
 
 // Describes a stratum of the trace to come.
 struct StratumPlan {
@@ -77,7 +77,7 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
   const auto shared = std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) {
     return cuts(other, focus) && fits(around(other, focus));
   });
-  if (shared == plan.foci.end() && plan.foci.size() == kMostFoci) return;
+  if (shared == plan.foci.end() && plan.foci.size() == kMaxFoci) return;
   plan.of_foci += power;
   if (shared == plan.foci.end()) plan.foci.push_back(focus);
   else *shared = around(*shared, focus);
@@ -90,7 +90,7 @@ void give_rays(StratumPlan& plan) {
   double asked = 0.0;
   for (const LaunchFocus& focus : plan.foci) asked += focus.share;
   for (LaunchFocus& focus : plan.foci) focus.share *= given / asked;
-  std::erase_if(plan.foci, [&](const LaunchFocus& focus) { return !(focus.share >= kLeastGain * density * kTwoPi * focus.versine); });
+  std::erase_if(plan.foci, [&](const LaunchFocus& focus) { return !(focus.share >= kMinGain * density * kTwoPi * focus.versine); });
 }
 
 }  // namespace

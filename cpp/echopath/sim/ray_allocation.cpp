@@ -7,13 +7,13 @@
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/plan_foci.h"
-#include "echopath/trace/launch/aim.h"
+#include "echopath/trace/launch/ray_targets.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kDynamicRange = 1e-6;  // of the strongest echo
-constexpr double kLeastGrowth = 1.0 / 16.0;
+constexpr double kMinGrowth = 1.0 / 16.0;
 constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;    // beside that of the aim
@@ -64,8 +64,8 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   RayNeed need;
   need.stratum = stratum.name;
   need.echo = {power.power, power.high};
-  need.weight = weight_of_aim(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
-  double growth = power.high > 0 ? std::clamp(missing / target_db, kLeastGrowth, kMostGrowth) : kUnseenGrowth;
+  need.weight = weight_of_target(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
+  double growth = power.high > 0 ? std::clamp(missing / target_db, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.rays = growth * num_rays;

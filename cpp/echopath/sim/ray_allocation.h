@@ -35,10 +35,10 @@ struct RayNeeds {
 // Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
 // to `target_db`, for objects that move to a quarter of it. The interval of a coherent echo falls about with the rays, that
 // of a diffuse one with their root; both get rays in proportion to the error over the target, within a factor of
-// kMostGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends nothing back keeps a
+// kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends nothing back keeps a
 // quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
-inline constexpr double kMostGrowth = 32.0;
+inline constexpr double kMaxGrowth = 32.0;
 
 // Shares of `num_rays` rays. Where they are too few, no stratum gets more for its weight than another that lacks rays: what needs
 // few for its weight gets twice of that, as few rays tell their need within a factor of two, and the others share the rest by

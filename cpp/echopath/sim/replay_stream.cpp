@@ -21,13 +21,13 @@ constexpr int64_t kLargestBlock = 1000;
 // for the first time costs as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
 constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
-constexpr int64_t kLeastBlock = 64;  // fills the registers with vectors of joined echoes
+constexpr int64_t kMinBlock = 64;  // fills the registers with vectors of joined echoes
 
-int64_t block_size(int64_t num_channels, int64_t num_nodes) {
-  const int64_t values = num_channels * std::max<int64_t>(1, num_nodes / kNodesOfAPath);
+int64_t block_size(int64_t num_channels, int64_t num_rows) {
+  const int64_t values = num_channels * std::max<int64_t>(1, num_rows / kNodesOfAPath);
   const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
-  if (num_nodes <= kNodesOfChirps) return most;
-  return std::min(most, std::max(kLeastBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_nodes)));
+  if (num_rows <= kNodesOfChirps) return most;
+  return std::min(most, std::max(kMinBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_rows)));
 }
 
 constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds

@@ -36,7 +36,7 @@ struct SampleRow {
 };
 
 // At most so many carriers are computed side by side.
-constexpr int kMostLanes = 8;
+constexpr int kMaxLanes = 8;
 
 // Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
 // phasor for the first and one for the step between them.
@@ -164,9 +164,9 @@ class PassProbe::Strongest {
 // Holds carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
 struct PassProbe::Tones {
   explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
-    for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMostLanes);
+    for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMaxLanes);
   }
-  static constexpr size_t kSums = 2 * kSamples * kMostLanes;
+  static constexpr size_t kSums = 2 * kSamples * kMaxLanes;
   std::vector<double> frequency, re, im;
   std::vector<int> first, count;  // [row]
   std::vector<double> sums;       // [row, kSums]
@@ -175,7 +175,7 @@ struct PassProbe::Tones {
     std::fill(count.begin(), count.end(), 0);
     for (int p = 0; p < carriers.count; ++p) ++count[carriers.group[p]];
     for (size_t row = 0; row < count.size(); ++row) {
-      first[row + 1] = first[row] + (count[row] + kMostLanes - 1) / kMostLanes * kMostLanes;
+      first[row + 1] = first[row] + (count[row] + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
       for (std::vector<double>* values : {&frequency, &re, &im}) {
         std::fill(values->begin() + first[row] + count[row], values->begin() + first[row + 1], 0.0);
       }

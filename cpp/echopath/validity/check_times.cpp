@@ -64,8 +64,8 @@ CheckTimes check_times(const Scene& scene, const Radar& radar, double start) {
   for (uint32_t id = 0; id < found.turn.size(); ++id) {
     double more = kChecksPerBreakpoint * static_cast<double>(breakpoints_within(scene, radar, id, frame));
     if (found.turn[id] > kSmallTurn) more += std::ceil(kChecksPerTurn * found.turn[id] / kTwoPi);
-    if (kBaseCheckTimes + more > kMostCheckTimes) found.too_fast.push_back(id);
-    found.of_mesh.push_back(static_cast<int>(std::min<double>(kBaseCheckTimes + more, kMostCheckTimes)));
+    if (kBaseCheckTimes + more > kMaxCheckTimes) found.too_fast.push_back(id);
+    found.of_mesh.push_back(static_cast<int>(std::min<double>(kBaseCheckTimes + more, kMaxCheckTimes)));
     most = std::max(most, found.of_mesh.back());
   }
   found.times = golden_times(frame, most);

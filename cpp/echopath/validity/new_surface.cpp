@@ -31,14 +31,14 @@ TraceSettings settings_like(const TraceFrame& frame) {
   return settings;
 }
 
-Look look_for_new_surface(const Paths& record, const Radar& radar, const LookSettings& settings, Job* job, KeptGeometry* then,
+SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job, KeptGeometry* then,
                           KeptGeometry* now) {
   TraceSettings rays = settings_like(record.frame);
   rays.num_rays = settings.num_rays;
   rays.seed = settings.seed;
   rays.start_time = settings.time;
   const Radar instant = instant_radar(record, radar, settings.antenna);
-  Look look{trace(*record.scene, instant, rays, job, now), {}};
+  SurfaceSearch look{trace(*record.scene, instant, rays, job, now), {}};
   look.is_new = still_there(look.paths, instant, record.frame.trace_time, job, then);
   for (uint8_t& is_new : look.is_new) is_new = !is_new;
   return look;

@@ -13,12 +13,12 @@ namespace echopath {
 TraceSettings settings_like(const TraceFrame& frame);
 
 // Holds what one look at the scene finds, as it is at one time.
-struct Look {
+struct SurfaceSearch {
   Paths paths;                   // [P] 1: a trace at the time of the record could not have found it
   std::vector<uint8_t> is_new;   // [P] 1: a trace at the time of the record could not have had it
 };
 
-struct LookSettings {
+struct SurfaceSearchSettings {
   double time = 0.0;      // s
   int64_t num_rays = 0;
   uint64_t seed = 1;      // of directions and random phases
@@ -30,7 +30,7 @@ struct LookSettings {
 // its blocked paths, together with the new paths, is a whole. `then` and `now` keep geometry at the time of the record and
 // from look to look. The result has the same bits for any number of threads. Raises invalid_argument when a motion does not
 // cover the time; raises Cancelled.
-Look look_for_new_surface(const Paths& record, const Radar& radar, const LookSettings& settings, Job* job = nullptr,
+SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job = nullptr,
                           KeptGeometry* then = nullptr, KeptGeometry* now = nullptr);
 
 }  // namespace echopath

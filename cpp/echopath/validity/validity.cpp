@@ -20,9 +20,9 @@ namespace {
 constexpr int64_t kPathsPerBlock = 2048;
 constexpr int64_t kBlocksInFlight = 64;      // fixed: sums must not depend on the number of threads
 constexpr size_t kTimesAtOnce = kBaseCheckTimes;
-constexpr int64_t kLookRays = 1 << 17;       // for new surface, over all times and antennas
-constexpr int64_t kLeastLookRays = 1 << 12;  // of one look
-constexpr uint64_t kLookSeed = 0x6c6f6f6b;   // combined with the trace's seed, so that the lattice differs from the trace's
+constexpr int64_t kSearchRays = 1 << 17;       // for new surface, over all times and antennas
+constexpr int64_t kMinSearchRays = 1 << 12;  // of one look
+constexpr uint64_t kSearchSeed = 0x6c6f6f6b;   // combined with the trace's seed, so that the lattice differs from the trace's
 
 // Holds sums of power over paths, W.
 struct Sums {
@@ -262,20 +262,20 @@ class ValidityCheck {
   void search_new_surface() {
     if (!check_.anything_moves() && !check_.has_array()) return;
     const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
-    LookSettings look;
-    look.num_rays = std::max(kLeastLookRays, kLookRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
-    look.seed = paths_.frame.seed ^ kLookSeed;
+    SurfaceSearchSettings look;
+    look.num_rays = std::max(kMinSearchRays, kSearchRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
+    look.seed = paths_.frame.seed ^ kSearchSeed;
     KeptGeometry then, now;
     for (size_t time = 0; time < num_times; ++time) {
       look.time = report_.times[time];
       for (look.antenna = 0; look.antenna < num_pairs; ++look.antenna) {
-        add_look(look_for_new_surface(paths_, radar_, look, job_, &then, &now), time, look.antenna == 0);
+        add_search(trace_new_surface(paths_, radar_, look, job_, &then, &now), time, look.antenna == 0);
       }
     }
   }
 
   // Adds what a look finds. What rim antennas see counts for shares alone.
-  void add_look(const Look& found, size_t time, bool is_own) {
+  void add_search(const SurfaceSearch& found, size_t time, bool is_own) {
     Radar pair_radar = is_own ? check_.first_radar() : found.paths.radar;
     pair_radar.waveform.num_chirps = pair_radar.waveform.num_samples = 1;
     std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));

@@ -35,7 +35,7 @@ inline constexpr double kObjectLimit = 0.05;     // the same for the power of an
 inline constexpr double kObjectErrorDb = 0.5;    // dB, the same for the error of an object's power over the frame
 inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
 inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
-inline constexpr int kMostKeyframes = 1000000;   // most that are advised; no frame has as many chirps
+inline constexpr int kMaxKeyframes = 1000000;   // most that are advised; no frame has as many chirps
 inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
 
 // Holds what was found of each path, [P] each, with hits in the order of the record; empty unless asked for.

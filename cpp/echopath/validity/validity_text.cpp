@@ -150,7 +150,7 @@ int Validity::keyframes() const {
     if (object.ok() || !(changes || !object.has_paths)) continue;
     most = std::max({most, static_cast<double>(kOcclusionKeyframes), object.turn / kKeyframeTurn});
   }
-  return static_cast<int>(std::ceil(std::min<double>(most, kMostKeyframes)));
+  return static_cast<int>(std::ceil(std::min<double>(most, kMaxKeyframes)));
 }
 
 bool Validity::shares_hold() const {

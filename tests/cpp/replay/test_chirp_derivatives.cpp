@@ -31,7 +31,7 @@ Echoes derivatives(const Radar& radar, size_t count) {
   Echoes echoes;
   echoes.num_echoes = static_cast<int64_t>(count);
   echoes.sampling = derivative_sampling(radar.waveform.num_chirps, ChirpDerivatives::kThird);
-  echoes.delay.resize(static_cast<size_t>(echoes.sampling.num_nodes) * count);
+  echoes.delay.resize(static_cast<size_t>(echoes.sampling.num_rows) * count);
   fill_derivatives(nodes.sampling.front(), delay.data(), echoes);
   return echoes;
 }

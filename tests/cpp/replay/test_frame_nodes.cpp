@@ -34,7 +34,7 @@ std::pair<double, double> errors(const FrameNodes& nodes, const Radar& radar, co
       double value = 0.0, slope = 0.0;
       for (int k = 0; k < sampling.order; ++k) {
         const auto weight = static_cast<size_t>(chirp * sampling.order + k);
-        const auto place = static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k);
+        const auto place = static_cast<size_t>(sampling.first_row[static_cast<size_t>(chirp)] + k);
         const double node = f(nodes.times[place] - kStart);
         value += sampling.value[weight] * node;
         slope += sampling.slope[weight] * node;
@@ -104,16 +104,16 @@ TEST(ExactNodes, DerivativesAreThoseOfTheCubicInAChirp) {
   const TimeSampling& sampling = nodes.sampling[0];
   for (int chirp = 0; chirp < 4; ++chirp) {
     const double middle = kStart + radar.chirp_time(1, chirp);
-    double bend = 0.0, twist = 0.0;
+    double second = 0.0, third = 0.0;
     for (int k = 0; k < 5; ++k) {
-      const auto place = static_cast<size_t>(sampling.first_node[static_cast<size_t>(chirp)] + k);
+      const auto place = static_cast<size_t>(sampling.first_row[static_cast<size_t>(chirp)] + k);
       const double x = (nodes.times[place] - middle) / half;
       const double value = 1.0 + 2.0 * x - 3.0 * x * x + 4.0 * x * x * x;
-      bend += sampling.bend[static_cast<size_t>(5 * chirp + k)] * value;
-      twist += sampling.twist[static_cast<size_t>(5 * chirp + k)] * value;
+      second += sampling.second_derivative[static_cast<size_t>(5 * chirp + k)] * value;
+      third += sampling.third_derivative[static_cast<size_t>(5 * chirp + k)] * value;
     }
-    EXPECT_NEAR(bend * half * half, -6.0, kDerivatives);
-    EXPECT_NEAR(twist * half * half * half, 24.0, kDerivatives);
+    EXPECT_NEAR(second * half * half, -6.0, kDerivatives);
+    EXPECT_NEAR(third * half * half * half, 24.0, kDerivatives);
   }
 }
 

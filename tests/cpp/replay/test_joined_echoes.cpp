@@ -125,7 +125,7 @@ TEST(JoinedEchoes, AreTheSumsOfTheirAmplitudes) {
   const std::vector<uint8_t> joined = {0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0};
   Echoes all;
   all.num_echoes = static_cast<int64_t>(joined.size());
-  all.sampling.num_nodes = 3;
+  all.sampling.num_rows = 3;
   for (size_t i = 0; i < 3 * joined.size(); ++i) {
     all.delay.push_back(1e-8 * static_cast<double>(i));
     all.amplitude.emplace_back(std::cos(static_cast<double>(i)), std::sin(2.0 * static_cast<double>(i)));
@@ -163,7 +163,7 @@ TEST(JoinedEchoes, OfTheChirpsAreThoseOfTheirPaths) {
   const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, 1, chirps), found);
   ASSERT_EQ(at_once.front().num_echoes, paths.num_paths() - num_joined(found));
   ASSERT_EQ(at_once.front().num_echoes, after.front().num_echoes);
-  EXPECT_EQ(at_once.front().sampling.num_nodes, after.front().sampling.num_nodes);
+  EXPECT_EQ(at_once.front().sampling.num_rows, after.front().sampling.num_rows);
   EXPECT_EQ(at_once.front().amplitude, after.front().amplitude);
   EXPECT_EQ(at_once.front().delay, after.front().delay);
 }

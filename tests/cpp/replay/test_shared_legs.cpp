@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "echopath/base/constants.h"
-#include "echopath/replay/evaluate/chain_plan.h"
-#include "echopath/replay/evaluate/direct_evaluation.h"
-#include "echopath/replay/evaluate/evaluate_chains.h"
+#include "echopath/replay/evaluate/shared_leg_plan.h"
+#include "echopath/replay/evaluate/single_bounces.h"
+#include "echopath/replay/evaluate/shared_legs.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "support/path_by_path.h"
 #include "support/scenes.h"
@@ -206,7 +206,7 @@ Radar array_of_powers() {
 
 TEST(SharedLegs, PathsOfOnePointAreThoseEvaluatedOneByOne) {
   const Radar radar = array_of_powers();
-  ASSERT_TRUE(can_evaluate_directly(radar));
+  ASSERT_TRUE(can_evaluate_single_bounces(radar));
   for (const bool has_mirrors : {true, false}) {
     Paths paths = record(radar, has_mirrors);
     for (const Footprint footprint :
@@ -246,21 +246,21 @@ TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
   }
 }
 
-struct DirectCounts {
+struct SingleBounceCounts {
   size_t paths = 0, pairs = 0, others = 0;
   std::vector<int> of_mesh;
 };
 
-DirectCounts direct_counts(const Paths& paths) {
+SingleBounceCounts single_bounce_counts(const Paths& paths) {
   const PathPreparer preparer(paths, hit_patches(paths));
-  ChainPlanner planner;
+  SharedLegPlanner planner;
   planner.begin(paths, preparer, SpecularPoints::kMaterial, true);
-  const ChainPlan& plan = planner(all_of(paths));
-  DirectCounts counts;
+  const SharedLegPlan& plan = planner(all_of(paths));
+  SingleBounceCounts counts;
   counts.others = plan.chains.size() + plan.mirror_paths.size();
   counts.of_mesh.resize(paths.scene->meshes().size());
-  for (const ChainPlan::Direct& point : plan.direct) {
-    const auto has = [&](size_t kind) { return size_t{point.path[kind] != ChainPlan::Direct::kNoPath}; };
+  for (const SharedLegPlan::Direct& point : plan.direct) {
+    const auto has = [&](size_t kind) { return size_t{point.path[kind] != SharedLegPlan::Direct::kNoPath}; };
     counts.paths += has(0) + has(1);
     counts.pairs += has(0) & has(1);
     ++counts.of_mesh[point.hit->mesh_id];
@@ -272,14 +272,14 @@ TEST(SharedLegs, PolarizedPathsAreSharedAsScalarOnes) {
   const Paths scalar = record(array_of_powers()), polarized = record(array_of_powers(), true, PolarizationModel::kJones);
   ASSERT_EQ(scalar.num_paths(), polarized.num_paths());
   EXPECT_EQ(scalar.hits->size(), polarized.hits->size());
-  EXPECT_EQ(direct_counts(scalar).paths, direct_counts(polarized).paths);
-  EXPECT_EQ(direct_counts(scalar).others, direct_counts(polarized).others);
+  EXPECT_EQ(single_bounce_counts(scalar).paths, single_bounce_counts(polarized).paths);
+  EXPECT_EQ(single_bounce_counts(scalar).others, single_bounce_counts(polarized).others);
 }
 
 TEST(SharedLegs, PathsOfOnePointStandApart) {
   const Paths over_mirrors = record(array_of_powers()), paths = record(array_of_powers(), false);
   for (const Paths* some : {&over_mirrors, &paths}) {
-    const DirectCounts counts = direct_counts(*some);
+    const SingleBounceCounts counts = single_bounce_counts(*some);
     EXPECT_EQ(counts.paths + counts.others, static_cast<size_t>(some->num_paths()));
     EXPECT_GT(counts.of_mesh[0] + counts.of_mesh[1] + counts.of_mesh[2], 20);  // walls, ground
     EXPECT_GT(counts.of_mesh[3], 8);
@@ -287,7 +287,7 @@ TEST(SharedLegs, PathsOfOnePointStandApart) {
     EXPECT_EQ(counts.of_mesh[5], 0);  // stretched along its way
     EXPECT_GT(counts.of_mesh[6], 3);
   }
-  EXPECT_GT(direct_counts(paths).pairs, 100u);
+  EXPECT_GT(single_bounce_counts(paths).pairs, 100u);
 }
 
 // The scene has all kinds of paths that the first test is about, and they do share.
@@ -296,20 +296,20 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   const Paths paths = record(radar);
   const std::vector<int64_t> indices = all_of(paths);
   const PathPreparer preparer(paths, hit_patches(paths));
-  ChainPlanner planner;
+  SharedLegPlanner planner;
   planner.begin(paths, preparer, SpecularPoints::kMaterial, false);
-  const ChainPlan& plan = planner(indices);
+  const SharedLegPlan& plan = planner(indices);
   EXPECT_EQ(plan.chains.size() + plan.mirror_paths.size(), indices.size());
   EXPECT_GT(plan.mirror_paths.size(), 2u);
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
   EXPECT_LT(plan.points.size(), plan.legs.size());
   const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };
-  EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.is_reversed; }));
-  EXPECT_TRUE(any_chain([](const ChainPlan::Chain& chain) { return chain.inner == ChainPlan::kNone; }));
-  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) {
-    return chain.inner != ChainPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
+  EXPECT_TRUE(any_chain([](const SharedLegPlan::Chain& chain) { return chain.is_reversed; }));
+  EXPECT_TRUE(any_chain([](const SharedLegPlan::Chain& chain) { return chain.inner == SharedLegPlan::kNone; }));
+  EXPECT_TRUE(any_chain([&](const SharedLegPlan::Chain& chain) {
+    return chain.inner != SharedLegPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
   }));
-  EXPECT_TRUE(any_chain([&](const ChainPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
+  EXPECT_TRUE(any_chain([&](const SharedLegPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
   EXPECT_GT(plan.inner.size(), 10u);
 }
 

@@ -27,8 +27,8 @@ Echoes two_node_echoes(const ChirpSequence& w, const std::vector<double>& delay,
                        const std::vector<Complex>& amplitude) {
   Echoes echoes;
   echoes.num_echoes = static_cast<int64_t>(delay.size());
-  echoes.sampling.num_nodes = echoes.sampling.order = 2;
-  echoes.sampling.first_node.assign(w.num_chirps, 0);
+  echoes.sampling.num_rows = echoes.sampling.order = 2;
+  echoes.sampling.first_row.assign(w.num_chirps, 0);
   const double span = w.num_chirps * w.chirp_interval;
   for (int j = 0; j < w.num_chirps; ++j) {
     const double x = (j + 0.5) / w.num_chirps;
@@ -149,14 +149,14 @@ TEST(ManyEchoes, EchoAHundredDecibelsDownKeepsItsLevel) {
 Echoes echoes_of_group(const Echoes& all, uint32_t group) {
   Echoes part;
   part.sampling = all.sampling;
-  for (int k = 0; k < all.sampling.num_nodes; ++k) {
+  for (int k = 0; k < all.sampling.num_rows; ++k) {
     for (int64_t p = 0; p < all.num_echoes; ++p) {
       if (all.group[static_cast<size_t>(p)] != group) continue;
       part.delay.push_back(all.delay[static_cast<size_t>(k * all.num_echoes + p)]);
       part.amplitude.push_back(all.amplitude[static_cast<size_t>(k * all.num_echoes + p)]);
     }
   }
-  part.num_echoes = static_cast<int64_t>(part.delay.size()) / all.sampling.num_nodes;
+  part.num_echoes = static_cast<int64_t>(part.delay.size()) / all.sampling.num_rows;
   return part;
 }
 
@@ -196,8 +196,8 @@ TEST(ManyEchoes, AcceleratingEchoesHaveTheRateOfEachChirp) {
   const std::vector<Complex> amplitude(kCount, {0.6, -0.8});
   Echoes echoes;
   echoes.num_echoes = kCount;
-  echoes.sampling.num_nodes = echoes.sampling.order = 3;
-  echoes.sampling.first_node.assign(w.num_chirps, 0);
+  echoes.sampling.num_rows = echoes.sampling.order = 3;
+  echoes.sampling.first_row.assign(w.num_chirps, 0);
   for (const double x : {0.0, 0.5, 1.0}) {
     for (int p = 0; p < kCount; ++p) echoes.delay.push_back(start[p] + x * (drift[p] + x * bend[p]));
     echoes.amplitude.insert(echoes.amplitude.end(), amplitude.begin(), amplitude.end());

@@ -28,10 +28,10 @@ Echoes echo_of(const ChirpSequence& w, const std::function<double(double, int)>&
   echoes.num_echoes = 1;
   TimeSampling& sampling = echoes.sampling;
   sampling.order = 4;
-  sampling.num_nodes = 4 * w.num_chirps;
-  std::vector<double>* const rows[4] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
+  sampling.num_rows = 4 * w.num_chirps;
+  std::vector<double>* const rows[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
   for (int j = 0; j < w.num_chirps; ++j) {
-    sampling.first_node.push_back(4 * j);
+    sampling.first_row.push_back(4 * j);
     for (int d = 0; d < 4; ++d) {
       for (int k = 0; k < 4; ++k) rows[d]->push_back(k == d ? 1.0 : 0.0);
       echoes.delay.push_back(delay(j * w.chirp_interval + w.window_centre(), d));

@@ -247,7 +247,7 @@ TEST(Sampling, ExactSlopesDifferentiateParabolas) {
   for (size_t j = 0; j < times.size(); ++j) {
     double value = 0.0, slope = 0.0;
     for (int k = 0; k < sampling.order; ++k) {
-      const double t = times[sampling.first_node[j] + k], f = 3.0 - 2.0 * t + 5.0 * t * t;
+      const double t = times[sampling.first_row[j] + k], f = 3.0 - 2.0 * t + 5.0 * t * t;
       value += sampling.value[j * sampling.order + k] * f;
       slope += sampling.slope[j * sampling.order + k] * f;
     }

@@ -129,8 +129,8 @@ TEST(Synthesizer, NodesWithWeightsAreInterpolatedPerChirp) {
   const double delay0 = 2e-7, rate = 2e-7;
   Echoes nodes;
   nodes.num_echoes = 1;
-  nodes.sampling.num_nodes = nodes.sampling.order = 2;
-  nodes.sampling.first_node.assign(w.num_chirps, 0);
+  nodes.sampling.num_rows = nodes.sampling.order = 2;
+  nodes.sampling.first_row.assign(w.num_chirps, 0);
   for (const double t : times) {  // linear Lagrange weights for nodes at 0 and `half`
     nodes.sampling.value.insert(nodes.sampling.value.end(), {1.0 - t / half, t / half});
     nodes.sampling.slope.insert(nodes.sampling.slope.end(), {-1.0 / half, 1.0 / half});
@@ -246,8 +246,8 @@ TEST(Synthesizer, BadInputIsNamed) {
       {"group", [](Echoes& e) { e.group = {0, 1}; }},
       {"group", [](Echoes& e) { e.group = {0, 1, 2, 0}; }},
       {"num_echoes", [](Echoes& e) { e.num_echoes = -1; }},
-      {"sampling.first_node", [](Echoes& e) { e.sampling.first_node.pop_back(); }},
-      {"sampling.first_node", [](Echoes& e) { e.sampling.first_node[0] = 99; }},
+      {"sampling.first_row", [](Echoes& e) { e.sampling.first_row.pop_back(); }},
+      {"sampling.first_row", [](Echoes& e) { e.sampling.first_row[0] = 99; }},
       {"sampling.value", [](Echoes& e) { e.sampling.value.clear(); }},
       {"sampling.slope", [](Echoes& e) { e.sampling.slope[0] = std::numeric_limits<double>::infinity(); }},
       {"sampling.order", [](Echoes& e) { e.sampling.order = 0; }},

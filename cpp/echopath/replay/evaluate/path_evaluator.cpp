@@ -4,7 +4,7 @@ namespace echopath {
 
 void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular) {
   preparer_ = &preparer;
-  planner_.begin(preparer.paths(), preparer, specular, can_evaluate_directly(radar));
+  planner_.begin(preparer.paths(), preparer, specular, can_evaluate_single_bounces(radar));
 }
 
 void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {

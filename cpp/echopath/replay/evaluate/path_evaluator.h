@@ -1,14 +1,14 @@
 #pragma once
 // Evaluates lengths and amplitudes of blocks of paths at the nodes of a time grid: it plans what the paths share and
 // evaluates that once.
-#include "echopath/replay/evaluate/direct_evaluation.h"
+#include "echopath/replay/evaluate/single_bounces.h"
 
 namespace echopath {
 
 // It keeps its memory from block to block and serves one thread at a time.
 class PathEvaluator {
  public:
-  using Wanted = DirectEvaluation::Wanted;
+  using Wanted = SingleBounceEvaluation::Wanted;
   // Sets the record whose blocks are evaluated from now on, and the `radar` to which it is played back. All must outlive
   // this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved points, for each
   // antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
@@ -19,11 +19,11 @@ class PathEvaluator {
   size_t num_bytes() const { return chains_.num_bytes() + direct_.num_bytes(); }  // of its memory, nearly all
 
  private:
-  ChainPlanner planner_;
-  ChainEvaluation chains_;
-  DirectEvaluation direct_;
+  SharedLegPlanner planner_;
+  SharedLegEvaluation chains_;
+  SingleBounceEvaluation direct_;
   const PathPreparer* preparer_ = nullptr;
-  const ChainPlan* plan_ = nullptr;
+  const SharedLegPlan* plan_ = nullptr;
 };
 
 }  // namespace echopath

@@ -1,6 +1,6 @@
 #pragma once
 // Finds the launch cells of the coherent paths of a block from what these paths share.
-#include "echopath/replay/evaluate/chain_tables.h"
+#include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/evaluate/launch_cell.h"
 
 namespace echopath {
@@ -15,27 +15,27 @@ struct PlacedCell {
 class TraceCells {
  public:
   // All arguments must outlive it.
-  TraceCells(const ChainPlan& plan, const PathPreparer& preparer, const PosedPoints& points);
+  TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedPoints& points);
   bool may_stretch(uint32_t mesh_id) const { return preparer_.may_stretch(mesh_id); }
   // Returns the cell on a mesh that moves rigidly; it is the same at all times.
-  PlacedCell on_rigid(const ChainPlan::Chain& chain) const;
+  PlacedCell on_rigid(const SharedLegPlan::Chain& chain) const;
   // Returns the cell on a mesh that may stretch, at each of the nodes.
-  std::vector<PlacedCell> on_stretching(const ChainPlan::Chain& chain, const PosedNodes& nodes) const;
+  std::vector<PlacedCell> on_stretching(const SharedLegPlan::Chain& chain, const PosedNodes& nodes) const;
 
  private:
   struct Arrival {
     double length;    // m, unfolded, from the mean transmitter
     Vec3 direction;   // of travel, unit
   };
-  Arrival arrival_of(const ChainPlan::Chain& chain) const;
-  CellTangents flat_tangents(const ChainPlan::Chain& chain, const PosedHit& hit, double density) const;
-  const Hit& hit_of(const ChainPlan::Chain& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
-  bool has_cell(const ChainPlan::Chain& chain) const;
-  double density_of(const ChainPlan::Chain& chain) const;  // rays per sr
+  Arrival arrival_of(const SharedLegPlan::Chain& chain) const;
+  CellTangents flat_tangents(const SharedLegPlan::Chain& chain, const PosedHit& hit, double density) const;
+  const Hit& hit_of(const SharedLegPlan::Chain& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
+  bool has_cell(const SharedLegPlan::Chain& chain) const;
+  double density_of(const SharedLegPlan::Chain& chain) const;  // rays per sr
   // Returns the cell that was recorded behind a curved bounce, or null where the chain is flat.
-  const std::array<float, 7>* curved_cell_of(const ChainPlan::Chain& chain) const;
+  const std::array<float, 7>* curved_cell_of(const SharedLegPlan::Chain& chain) const;
 
-  const ChainPlan& plan_;
+  const SharedLegPlan& plan_;
   const PathPreparer& preparer_;
   const PosedPoints& points_;
   std::vector<Vec3> origin_;  // [image] of the mean transmitter at the trace, m

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
-#include "echopath/replay/kernels/chain_kernels.h"
+#include "echopath/replay/kernels/shared_leg_kernels.h"
 #include "echopath/replay/posed/node_rows.h"
 
 namespace echopath {

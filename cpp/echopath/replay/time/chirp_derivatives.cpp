@@ -46,12 +46,12 @@ void fill_derivatives(const TimeSampling& from, const double* delay, Echoes& ech
   const auto count = static_cast<size_t>(echoes.num_echoes), stride = static_cast<size_t>(echoes.sampling.order);
   const auto order = static_cast<size_t>(from.order);
   const bool are_few = count < kLeast;
-  const std::vector<double> wide = are_few ? widened(delay, static_cast<size_t>(from.num_nodes), count) : std::vector<double>();
+  const std::vector<double> wide = are_few ? widened(delay, static_cast<size_t>(from.num_rows), count) : std::vector<double>();
   const size_t width = are_few ? kLeast : count;
   double few[kLeast];
-  const std::vector<double>* const weights[] = {&from.slope, &from.bend, &from.twist};
-  for (size_t chirp = 0; chirp < from.first_node.size(); ++chirp) {
-    const double* nodes = (are_few ? wide.data() : delay) + static_cast<size_t>(from.first_node[chirp]) * width;
+  const std::vector<double>* const weights[] = {&from.slope, &from.second_derivative, &from.third_derivative};
+  for (size_t chirp = 0; chirp < from.first_row.size(); ++chirp) {
+    const double* nodes = (are_few ? wide.data() : delay) + static_cast<size_t>(from.first_row[chirp]) * width;
     for (size_t d = 1; d < stride; ++d) {
       double* to = echoes.delay.data() + (chirp * stride + d) * count;
       run_simd<weighted_sum>(nodes, weights[d - 1]->data() + chirp * order, order, width, are_few ? few : to);

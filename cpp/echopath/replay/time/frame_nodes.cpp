@@ -68,15 +68,15 @@ class NodeSet {
     for (int n = 0; n < order; ++n) rows_.push_back(coefficient_row(n, order));
   }
 
-  // Appends one more chirp, at `time` in `piece`, whose nodes begin at `first_node`.
-  void append_chirp(const Piece& piece, double time, int first_node, TimeSampling& sampling) const {
+  // Appends one more chirp, at `time` in `piece`, whose nodes begin at `first_row`.
+  void append_chirp(const Piece& piece, double time, int first_row, TimeSampling& sampling) const {
     // A frame of one sample has no duration and no derivatives.
     const double scale = piece.half() > 0 ? 1.0 / piece.half() : 0.0;
     const double x = std::clamp((time - piece.middle()) * scale, -1.0, 1.0);
     sampling.order = order_;
-    sampling.first_node.push_back(first_node);
+    sampling.first_row.push_back(first_row);
     const std::vector<std::array<double, 4>> basis = chebyshev(order_, x);
-    std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
+    std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
     double unit = 1.0;  // of the derivative, s^-d
     for (size_t d = 0; d <= num_derivatives_; ++d, unit *= scale) {
       out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
@@ -128,7 +128,7 @@ FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vec
   FrameNodes nodes = nodes_of(pieces, order);
   for (int tx = 0; tx < radar.num_slots(); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
-    sampling.num_nodes = static_cast<int>(nodes.times.size());
+    sampling.num_rows = static_cast<int>(nodes.times.size());
     for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) {
       const double time = start_time + radar.chirp_time(tx, chirp);
       const auto piece = std::find_if(pieces.begin(), pieces.end() - 1, [&](const Piece& p) { return time < p.end; });
@@ -153,7 +153,7 @@ FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int tra
     set.append_chirp(piece, time, static_cast<int>(nodes.times.size()), sampling);
     append_times(piece, order, nodes.times);
   }
-  sampling.num_nodes = static_cast<int>(nodes.times.size());
+  sampling.num_rows = static_cast<int>(nodes.times.size());
   return nodes;
 }
 
@@ -167,12 +167,12 @@ FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter) 
 TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   TimeSampling sampling;
   sampling.order = derivatives == ChirpDerivatives::kThird ? 4 : 2;
-  sampling.num_nodes = num_chirps * sampling.order;
+  sampling.num_rows = num_chirps * sampling.order;
   sampling.holds_derivatives = true;
-  std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.bend, &sampling.twist};
-  for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_nodes), 0.0);
+  std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
+  for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_rows), 0.0);
   for (int chirp = 0; chirp < num_chirps; ++chirp) {
-    sampling.first_node.push_back(chirp * sampling.order);
+    sampling.first_row.push_back(chirp * sampling.order);
     for (int d = 0; d < sampling.order; ++d) (*weights[d])[static_cast<size_t>(chirp * sampling.order + d)] = 1.0;
   }
   return sampling;

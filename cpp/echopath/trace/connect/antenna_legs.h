@@ -17,7 +17,7 @@ class AntennaLegs {
   explicit AntennaLegs(const RayContext& context);
   // Returns whether no flagged mirror gives either antenna an image: then all legs are straight.
   bool are_straight() const { return transmitter_.frusta.empty() && receiver_.frusta.empty(); }
-  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
+  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMaxFrusta).
   int64_t num_unfollowed_beams() const { return transmitter_.num_unfollowed + receiver_.num_unfollowed; }
   // Finds the visible receive legs of a hit.
   void find_receive(const SurfaceHit& surface, int max_mirrors, HitLegs& legs) const;

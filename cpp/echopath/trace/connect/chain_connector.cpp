@@ -5,7 +5,7 @@
 namespace echopath {
 
 template <class Weight>
-void ChainConnector<Weight>::connect(Connection& at) const {
+void DiffuseChainConnector<Weight>::connect(Connection& at) const {
   const Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
   const DiffuseChain& chain = ray.chain;
@@ -33,7 +33,7 @@ void ChainConnector<Weight>::connect(Connection& at) const {
   }
 }
 
-template class ChainConnector<ScalarWeight>;
-template class ChainConnector<JonesWeight>;
+template class DiffuseChainConnector<ScalarWeight>;
+template class DiffuseChainConnector<JonesWeight>;
 
 }  // namespace echopath

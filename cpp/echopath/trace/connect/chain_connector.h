@@ -6,9 +6,9 @@
 namespace echopath {
 
 template <class Weight>
-class ChainConnector {
+class DiffuseChainConnector {
  public:
-  ChainConnector(const RayContext& context, const AntennaLegs& legs)
+  DiffuseChainConnector(const RayContext& context, const AntennaLegs& legs)
       : context_(context), legs_(legs), orders_(context), writer_(context), weight_(context) {}
   // Adds the paths over the chain and each leg behind its last hit. The receive legs must have been found.
   void connect(Connection& at) const;
@@ -16,12 +16,12 @@ class ChainConnector {
  private:
   const RayContext& context_;
   const AntennaLegs& legs_;
-  ChainOrders orders_;
+  DiffuseChainOrders orders_;
   PathWriter<Weight> writer_;
   Weight weight_;
 };
 
-extern template class ChainConnector<ScalarWeight>;
-extern template class ChainConnector<JonesWeight>;
+extern template class DiffuseChainConnector<ScalarWeight>;
+extern template class DiffuseChainConnector<JonesWeight>;
 
 }  // namespace echopath

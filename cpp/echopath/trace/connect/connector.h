@@ -28,7 +28,7 @@ class Connector {
   MirrorOrders orders_;
   PathWriter<Weight> writer_;
   PairConnector<Weight> pairs_;
-  ChainConnector<Weight> chains_;
+  DiffuseChainConnector<Weight> chains_;
   Weight weight_;
 };
 

@@ -13,7 +13,7 @@ void set_own_way_back(const Ray& ray, Leg& leg) {
 
 }  // namespace
 
-void ChainOrders::begin(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample,
+void DiffuseChainOrders::begin(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample,
                         const std::vector<Leg>& receive) const {
   DiffuseChain& chain = ray.chain;
   chain.first = ray.depth - 1;
@@ -30,7 +30,7 @@ void ChainOrders::begin(Ray& ray, const SurfaceHit& surface, const ScatterSample
   }
 }
 
-void ChainOrders::scatter(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
+void DiffuseChainOrders::scatter(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
   DiffuseChain& chain = ray.chain;
   const SurfaceResponse response = response_toward(surface, context_.settings.polarization, sample.direction);
   chain.coefficient *= diffuse_coefficient(response);
@@ -42,7 +42,7 @@ void ChainOrders::scatter(Ray& ray, const SurfaceHit& surface, const ScatterSamp
   chain.opposite_survival = survival_probability(response, kRouletteBounce);
 }
 
-void ChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
+void DiffuseChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
   DiffuseChain& chain = ray.chain;
   const SurfaceResponse& response = surface.response;
   chain.coefficient *= response.gamma * response.coherent;
@@ -57,7 +57,7 @@ void ChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const ScatterSamp
   chain.back.reset();
 }
 
-double ChainOrders::share(const DiffuseChain& chain, const SurfaceHit& surface, const SurfaceResponse& response,
+double DiffuseChainOrders::share(const DiffuseChain& chain, const SurfaceHit& surface, const SurfaceResponse& response,
                           const Leg& leg) const {
   if (chain.opposite_ratio == 0) return 1.0;
   const double density = density_over(context_.plan, surface.point.hit.mesh_id, leg) *

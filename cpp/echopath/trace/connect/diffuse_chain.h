@@ -12,9 +12,9 @@
 namespace echopath {
 
 // Keeps Ray::chain except its fields, which belong to the weight.
-class ChainOrders {
+class DiffuseChainOrders {
  public:
-  explicit ChainOrders(const RayContext& context) : context_(context) {}
+  explicit DiffuseChainOrders(const RayContext& context) : context_(context) {}
   // Begins a chain before a coherent ray leaves a surface diffusely. `receive` are the receive legs of the hit.
   void begin(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, const std::vector<Leg>& receive) const;
   // Takes a hit into the chain before the ray leaves it diffusely.

@@ -16,7 +16,7 @@ constexpr double kFalseHitRelative = 1e-5;
 constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
 // Largest EmbreeMeshes::mean_cover for a tree per mesh: where loose heaps of triangles lie over each other, queries take 1.5
 // times as long at 2 and 4 times at 10; with separate objects they take -15 to +10 %.
-constexpr double kMostCover = 1.5;
+constexpr double kMaxCover = 1.5;
 
 // Meets the plane of a triangle in double precision and sets (u, v) of the point of the triangle next to there, each rounded
 // once.
@@ -49,7 +49,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3&
 
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) {
   std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
-  const bool tree_per_mesh = scene.is_anything_moving() && meshes_.mean_cover() <= kMostCover;
+  const bool tree_per_mesh = scene.is_anything_moving() && meshes_.mean_cover() <= kMaxCover;
   if (!device_->scene || device_->has_mesh.size() != meshes_.size() || tree_per_mesh != device_->has_tree_per_mesh) {
     device_->start_scene(meshes_.size(), tree_per_mesh);
     changed.resize(meshes_.size());

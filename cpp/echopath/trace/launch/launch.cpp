@@ -7,7 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/trace/launch/aim.h"
+#include "echopath/trace/launch/ray_targets.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/record/paths.h"
 
@@ -45,7 +45,7 @@ struct Focus {
 };
 
 // Returns the foci that are asked for in existing strata, up to the number of strata that a record can tell apart.
-std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<Aim>& aims, const Stratum& field) {
+std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<RayTarget>& aims, const Stratum& field) {
   std::map<std::string, size_t> index{{field.name, aims.size()}};
   for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, k);
   std::vector<Focus> foci;
@@ -70,22 +70,22 @@ Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_
 
 // Returns the shares of the rays by stratum, the field of view last: it divides them among objects that move, others, and
 // the field of view.
-std::vector<double> default_shares(const std::vector<Aim>& aims, bool field_owns_any) {
+std::vector<double> default_shares(const std::vector<RayTarget>& aims, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
-  for (const Aim& aim : aims) (aim.moves ? moving : resting) += weight_of_aim(aim.stratum.num_mirrors);
+  for (const RayTarget& aim : aims) (aim.moves ? moving : resting) += weight_of_target(aim.stratum.num_mirrors);
   const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
   const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
   std::vector<double> shares;
-  for (const Aim& aim : aims) {
+  for (const RayTarget& aim : aims) {
     const double of_tier = aim.moves ? moving_share / moving : (1.0 - moving_share) / resting;
-    shares.push_back(aimed * of_tier * weight_of_aim(aim.stratum.num_mirrors));
+    shares.push_back(aimed * of_tier * weight_of_target(aim.stratum.num_mirrors));
   }
   shares.push_back(1.0 - aimed);
   return shares;
 }
 
 // Returns the shares of the strata in the order of the plan.
-std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector<Focus>& foci, const Stratum& field,
+std::vector<double> named_shares(const std::vector<RayTarget>& aims, const std::vector<Focus>& foci, const Stratum& field,
                                  const RayShares& shares) {
   double mean = 0.0;
   for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
@@ -94,7 +94,7 @@ std::vector<double> named_shares(const std::vector<Aim>& aims, const std::vector
     return found == shares.end() ? mean : found->second;
   };
   std::vector<double> out;
-  for (const Aim& aim : aims) out.push_back(share_of(aim.stratum.name));
+  for (const RayTarget& aim : aims) out.push_back(share_of(aim.stratum.name));
   for (const Focus& focus : foci) out.push_back(focus.asked->share);
   out.push_back(share_of(field.name));
   return out;
@@ -131,7 +131,7 @@ Stratum field_of_view(const LaunchSettings& settings) {
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);
-  Aims found = aim_at_objects(scene, geometry, mirrors,
+  RayTargets found = find_ray_targets(scene, geometry, mirrors,
                               {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(),
                                settings.sampler == Sampler::kLattice});
   const bool is_guided = !settings.guide.shares.empty();

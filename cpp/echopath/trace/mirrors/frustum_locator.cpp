@@ -6,10 +6,10 @@ namespace echopath {
 namespace {
 
 constexpr size_t kFewFrusta = 16;         // up to this many are looked at one by one
-constexpr int kMostHalvings = 21;        // of the space, until a cell is left whole
-constexpr size_t kMostEntries = 8 << 20; // of all cells; beyond that none is halved
+constexpr int kMaxHalvings = 21;        // of the space, until a cell is left whole
+constexpr size_t kMaxEntries = 8 << 20; // of all cells; beyond that none is halved
 constexpr double kWorth = 0.9;           // halves that hold more than this share of the frusta are in vain,
-constexpr int kMostVain = 4;             // and a cell is halved no further after so many in a row
+constexpr int kMaxVain = 4;             // and a cell is halved no further after so many in a row
 constexpr double kAround = 0.25;         // share of the extent of the mirrors by which the cells reach beyond them
 
 }  // namespace
@@ -31,8 +31,8 @@ int FrustumLocator::grow(const Regions& regions, const Eigen::AlignedBox3d& box,
                       int num_vain) {
   const auto index = cells_.size();
   cells_.emplace_back();
-  const bool is_full = entries_.size() + reaching.size() > kMostEntries;
-  if (reaching.size() <= kFewFrusta || depth == kMostHalvings || num_vain == kMostVain || is_full) {
+  const bool is_full = entries_.size() + reaching.size() > kMaxEntries;
+  if (reaching.size() <= kFewFrusta || depth == kMaxHalvings || num_vain == kMaxVain || is_full) {
     cells_[index].begin = entries_.size();
     entries_.insert(entries_.end(), reaching.begin(), reaching.end());
     cells_[index].end = entries_.size();

@@ -10,8 +10,8 @@ constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near h
 constexpr double kOffPlane = 1e-6;    // m: occluders lie this far before the mirror's plane and behind that of the last one
 constexpr double kBefore = 1e-3;      // m: a surface this near to the mirror does not hide it
 constexpr double kFarAway = 1e12;     // m
-constexpr int kMostLooks = 24;        // rays for one window; parts that they do not look at count as seen
-constexpr size_t kMostPieces = 24;    // parts into which shadows cut one window; further shadows are not cut out
+constexpr int kMaxSurfaceSearches = 24;        // rays for one window; parts that they do not look at count as seen
+constexpr size_t kMaxPieces = 24;    // parts into which shadows cut one window; further shadows are not cut out
 
 using Polygons = std::vector<std::vector<Vec3>>;
 
@@ -102,7 +102,7 @@ void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, s
   Polygons unseen = {window}, seen, left;
   std::vector<Vec3> occluder;
   bool is_whole = true;
-  for (int looks = 0; !unseen.empty() && looks < kMostLooks && unseen.size() < kMostPieces; ++looks) {
+  for (int looks = 0; !unseen.empty() && looks < kMaxSurfaceSearches && unseen.size() < kMaxPieces; ++looks) {
     if (!look(source, target, centre_of(unseen.back()), occluder) || occluder.empty()) {
       seen.push_back(std::move(unseen.back()));
       unseen.pop_back();

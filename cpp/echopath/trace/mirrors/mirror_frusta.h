@@ -12,7 +12,7 @@
 namespace echopath {
 
 inline constexpr int kMaxLegMirrors = 2;  // mirrors between a surface point and an antenna
-inline constexpr size_t kMostFrusta = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
+inline constexpr size_t kMaxFrusta = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
 
 // A sequence of mirrors in travel order from the antenna to the surface is kept as a number; 0 means no mirror.
 using MirrorSequence = int64_t;
@@ -45,7 +45,7 @@ struct MirrorFrustum {
 struct FrustumSearch {
   int max_mirrors = kMaxLegMirrors;
   double slack = 0.0;  // m, by which windows are larger than what is lit
-  size_t max_frusta = kMostFrusta;
+  size_t max_frusta = kMaxFrusta;
 };
 
 struct MirrorFrusta {

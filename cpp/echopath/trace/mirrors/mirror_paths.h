@@ -13,7 +13,7 @@ namespace echopath {
 // both sides of it: the sequences of either side share its field in halves (the two orders of a corner; a seam between two
 // mirrors; the rim of one). The search begins at both ends: frusta of the transmitter over the first half of the mirrors
 // meet frusta of the receiver over the others. Statistics count the frusta that were not followed for want of room
-// (kMostFrusta). The blocks follow each other by number of mirrors and then by mirrors in travel order. Raises Cancelled
+// (kMaxFrusta). The blocks follow each other by number of mirrors and then by mirrors in travel order. Raises Cancelled
 // when the job is cancelled.
 std::vector<PathBlock> find_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                                          const SbrSettings& settings, const Job* job = nullptr);

@@ -58,7 +58,7 @@ struct TraceStatistics {
   int64_t num_small_mirrors = 0;  // rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
   int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;       // objects and images that no rays aim at, because there are too many of them
-  int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMostFrusta)
+  int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
 };
 
 // Holds the values to which a path's amplitude and length refer.

@@ -25,7 +25,7 @@ class RayShooter {
   ~RayShooter();
   // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
-  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMostFrusta).
+  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMaxFrusta).
   int64_t num_unfollowed_beams() const;
 
  private:

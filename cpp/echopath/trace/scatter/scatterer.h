@@ -25,7 +25,7 @@ class Scatterer {
 
   const RayContext& context_;
   const AntennaLegs& legs_;
-  ChainOrders chains_;
+  DiffuseChainOrders chains_;
   Weight weight_;
 };
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <span>
 
-#include "echopath/replay/evaluate/chain_plan.h"
+#include "echopath/replay/evaluate/shared_leg_plan.h"
 #include "echopath/replay/posed/posed_nodes.h"
 
 namespace echopath {
@@ -24,7 +24,7 @@ struct PosedPoints {
 
   PosedHit at(size_t point, size_t node) const;
   PosedHit at_trace(size_t point) const;
-  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
+  void find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
 
  private:
   void pose_rigid(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point);
@@ -41,7 +41,7 @@ struct AntennaImages {
   std::vector<Mat3> antenna_from_image;
 
   // `mirrors` has rows [normal x, y, z, offset] of the planes normal.x = offset, in m.
-  void find(const ChainPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers);
+  void find(const SharedLegPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers);
   size_t entry(uint32_t image, size_t antenna) const { return image * num_antennas + antenna; }
   // Measures the leg from an entry to a point (PointToPose::Row) and writes LegToMeasure::Row to `out`. `phase` is a row for
   // the phase of the antenna in rad, or null.
@@ -63,22 +63,22 @@ struct LegTable {
 };
 
 // Holds the inner parts of the paths (DiffuseInner).
-struct ChainInner {
+struct InnerPartTable {
   std::vector<uint8_t> begins_specular, is_single;  // [inner]
   NodeRows rows;                                    // InnerRows::Row
 
-  void find(const ChainPlan& plan, const PosedPoints& points);
+  void find(const SharedLegPlan& plan, const PosedPoints& points);
 };
 
 // Holds the parts of paths with sliding points of reflection (specular_slide.h). These points depend on the antenna at which
-// the path begins, so entries are counted by slide * ChainTables::stride + antenna.
+// the path begins, so entries are counted by slide * SharedLegTables::stride + antenna.
 struct SlidingParts {
   NodeRows points;  // the first material point, PointToPose::Row
   LegTable legs;    // from the antenna to it
   NodeRows inner;   // InnerRows::Row
 
   // Finds all but the legs.
-  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride);
+  void find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride);
 
  private:
   void move_points(const LocalPath& path, size_t first_entry, const PosedNodes& nodes);
@@ -88,20 +88,20 @@ struct SlidingParts {
 int exponent_of(const AntennaPattern& pattern);
 
 // Returns an inner part as a path of its own, over the hits of `plan.inner_points`.
-LocalPath path_of(const ChainPlan::Inner& inner);
+LocalPath path_of(const SharedLegPlan::Inner& inner);
 
-struct ChainTables {
+struct SharedLegTables {
   PosedPoints points;
   NodeRows mirrors;
   AntennaImages images[2];  // of transmitters, of receivers
   NodeRows axes;            // [image], ComponentsToFind::AxisRow, where polarisations are asked for
   size_t stride = 0;        // number of antennas of the end that has more
   LegTable legs;            // of leg * stride + antenna
-  ChainInner inner;
+  InnerPartTable inner;
   SlidingParts sliding;
   bool has_phases = false, has_polarizations = false;
 
-  void find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
+  void find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
   // Measures the leg from an image of an antenna to a point (PointToPose::Row).
   struct ImageOfAntenna {
     bool of_receivers;
@@ -117,7 +117,7 @@ struct ChainTables {
   size_t num_bytes() const;  // of what is kept for the next block
 
  private:
-  void measure_legs(const ChainPlan& plan, const PosedNodes& nodes);
+  void measure_legs(const SharedLegPlan& plan, const PosedNodes& nodes);
 };
 
 }  // namespace echopath

@@ -1,4 +1,4 @@
-#include "echopath/replay/evaluate/chain_tables.h"
+#include "echopath/replay/evaluate/shared_leg_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace echopath {
 namespace {
 
-constexpr int kMostExponent = 16;  // of gains that are products of cosines
+constexpr int kMaxExponent = 16;  // of gains that are products of cosines
 
-void find_mirrors(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, NodeRows& planes) {
+void find_mirrors(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, NodeRows& planes) {
   planes.resize(plan.mirrors.size(), 4, nodes.size());
   std::deque<std::array<Vec3, 3>> normals;
   for (size_t mirror = 0; mirror < plan.mirrors.size(); ++mirror) {
@@ -54,7 +54,7 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
 
 int exponent_of(const AntennaPattern& pattern) {
   if (pattern.kind == AntennaPattern::Kind::kIsotropic) return 0;
-  if (pattern.kind == AntennaPattern::Kind::kTable || pattern.exponent > kMostExponent) return LegToMeasure::kNoExponent;
+  if (pattern.kind == AntennaPattern::Kind::kTable || pattern.exponent > kMaxExponent) return LegToMeasure::kNoExponent;
   const int whole = static_cast<int>(pattern.exponent);
   // Behind the antenna there is no gain even where the exponent is 0, which the kernel takes as a gain in all directions.
   return whole == pattern.exponent && whole > 0 ? whole : LegToMeasure::kNoExponent;
@@ -86,7 +86,7 @@ void AntennaImages::measure(size_t entry, const double* point, double* out, doub
   const AntennaPattern& of = *pattern[entry % num_antennas];
   const int exponent = exponent_of(of);
   const size_t stride = rows.stride();
-  chain_kernels(stride).measure({rows.row(entry, 0), point, exponent, std::sqrt(of.peak_gain), out}, stride);
+  shared_leg_kernels(stride).measure({rows.row(entry, 0), point, exponent, std::sqrt(of.peak_gain), out}, stride);
   if (phase) std::fill_n(phase, stride, 0.0);
   if (exponent == LegToMeasure::kNoExponent) finish(entry, point, out, phase);
 }
@@ -108,7 +108,7 @@ PosedHit PosedPoints::at_trace(size_t point) const {
   return hit;
 }
 
-void PosedPoints::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
+void PosedPoints::find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
   rows.resize(plan.points.size(), PointToPose::kNumRows, nodes.size());
   traced.resize(plan.points.size());
   normals.clear();
@@ -138,7 +138,7 @@ void PosedPoints::pose_rigid(const LocalHit& hit, const PathPreparer& preparer, 
   std::copy_n(position.data(), 3, to.position);
   std::copy_n(normal.data(), 3, to.normal);
   to.out = rows.row(point, 0);
-  chain_kernels(rows.stride()).pose(to, rows.stride());
+  shared_leg_kernels(rows.stride()).pose(to, rows.stride());
 }
 
 void PosedPoints::pose_stretched(const LocalHit& hit, const PathPreparer& preparer, const PosedNodes& nodes, size_t point) {
@@ -154,7 +154,7 @@ void PosedPoints::pose_stretched(const LocalHit& hit, const PathPreparer& prepar
   pad(rows, point, PointToPose::kNumRows);
 }
 
-void AntennaImages::find(const ChainPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers) {
+void AntennaImages::find(const SharedLegPlan& plan, const NodeRows& mirrors, const PosedNodes& nodes, bool of_receivers) {
   const std::vector<PosedAntenna>& antennas = nodes.at(0).antennas(of_receivers);
   const NodeRows& own = nodes.antennas[of_receivers];
   num_antennas = antennas.size();
@@ -187,7 +187,7 @@ void LegTable::resize(size_t num_legs, size_t num_nodes, bool with_phases, bool 
   if (with_components) components.resize(num_legs, ComponentsToFind::kNumRows, num_nodes);
 }
 
-LocalPath path_of(const ChainPlan::Inner& inner) {
+LocalPath path_of(const SharedLegPlan::Inner& inner) {
   LocalPath path;
   path.count = static_cast<int>(inner.end - inner.begin);
   path.diffuse = inner.diffuse;
@@ -219,13 +219,13 @@ DiffuseInner store_inner(const LocalPath& path, const PosedHit* hits, size_t ent
 
 }  // namespace
 
-void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
+void InnerPartTable::find(const SharedLegPlan& plan, const PosedPoints& points) {
   begins_specular.assign(plan.inner.size(), 0);
   is_single.assign(plan.inner.size(), 0);
   rows.resize(plan.inner.size(), InnerRows::kNumRows, points.rows.num_nodes());
   std::array<PosedHit, 64> hits;  // a path has no more
   for (size_t id = 0; id < plan.inner.size(); ++id) {
-    const ChainPlan::Inner& inner = plan.inner[id];
+    const SharedLegPlan::Inner& inner = plan.inner[id];
     const LocalPath path = path_of(inner);
     for (size_t node = 0; node < rows.num_nodes(); ++node) {
       for (size_t k = inner.begin; k < inner.end; ++k) hits[k - inner.begin] = points.at(plan.inner_points[k], node);
@@ -237,7 +237,7 @@ void ChainInner::find(const ChainPlan& plan, const PosedPoints& points) {
   }
 }
 
-void SlidingParts::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride) {
+void SlidingParts::find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, size_t stride) {
   if (plan.sliding.empty()) return;
   const LocalPaths local = preparer(plan.sliding);
   const size_t num_entries = plan.sliding.size() * stride, num_nodes = nodes.size();
@@ -279,7 +279,7 @@ bool any_phase(const AntennaImages& images) {
 }
 
 // Finds the axes of the world as the antennas themselves see them and as each image sees them over its mirrors.
-void find_axes(const ChainPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
+void find_axes(const SharedLegPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
   axes.resize(plan.images.size(), ComponentsToFind::kNumAxisRows, mirrors.num_nodes());
   for (size_t image = 0; image < plan.images.size(); ++image) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -299,7 +299,7 @@ void find_axes(const ChainPlan& plan, const NodeRows& mirrors, NodeRows& axes) {
 
 }  // namespace
 
-void ChainTables::find(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
+void SharedLegTables::find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes) {
   points.find(plan, preparer, nodes);
   find_mirrors(plan, preparer, nodes, mirrors);
   for (const bool of_receivers : {false, true}) images[of_receivers].find(plan, mirrors, nodes, of_receivers);
@@ -313,7 +313,7 @@ void ChainTables::find(const ChainPlan& plan, const PathPreparer& preparer, cons
   measure_legs(plan, nodes);
 }
 
-void ChainTables::measure_legs(const ChainPlan& plan, const PosedNodes& nodes) {
+void SharedLegTables::measure_legs(const SharedLegPlan& plan, const PosedNodes& nodes) {
   const size_t num_nodes = nodes.size();
   legs.resize(plan.legs.size() * stride, num_nodes, has_phases, has_polarizations);
   for (size_t id = 0; id < plan.legs.size(); ++id) {
@@ -323,8 +323,8 @@ void ChainTables::measure_legs(const ChainPlan& plan, const PosedNodes& nodes) {
     }
   }
   sliding.legs.resize(plan.sliding.size() * stride, num_nodes, has_phases, has_polarizations);
-  for (const ChainPlan::Chain& chain : plan.chains) {
-    if (chain.slide == ChainPlan::kNone) continue;
+  for (const SharedLegPlan::Chain& chain : plan.chains) {
+    if (chain.slide == SharedLegPlan::kNone) continue;
     for (size_t antenna = 0; antenna < images[chain.is_reversed].num_antennas; ++antenna) {
       const size_t entry = chain.slide * stride + antenna;
       measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), nodes, entry, sliding.legs);
@@ -332,17 +332,17 @@ void ChainTables::measure_legs(const ChainPlan& plan, const PosedNodes& nodes) {
   }
 }
 
-void ChainTables::measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const {
+void SharedLegTables::measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const {
   const AntennaImages& seen = images[from.of_receivers];
   const size_t entry = seen.entry(from.image, from.antenna);
   seen.measure(entry, point, to.rows.row(leg, 0), to.has_phases ? to.phases.row(leg, 0) : nullptr);
   if (!to.has_components) return;
   const double* own = nodes.polarizations[from.of_receivers].row(from.antenna, 0);
-  chain_kernels(axes.stride())
+  shared_leg_kernels(axes.stride())
       .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)}, axes.stride());
 }
 
-size_t ChainTables::num_bytes() const {
+size_t SharedLegTables::num_bytes() const {
   size_t bytes = points.rows.num_bytes() + mirrors.num_bytes() + axes.num_bytes() + legs.num_bytes() + inner.rows.num_bytes() +
                  sliding.points.num_bytes() + sliding.legs.num_bytes() + sliding.inner.num_bytes();
   for (const AntennaImages& of_end : images) bytes += of_end.rows.num_bytes() + of_end.antenna_from_image.capacity() * sizeof(Mat3);

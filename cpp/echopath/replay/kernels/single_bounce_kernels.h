@@ -1,6 +1,6 @@
 #pragma once
 // Holds the inner loops of replay over paths of one point each, side by side in vectors, compiled once for each instruction
-// set from direct_kernels_body.h (see chain_kernels.h).
+// set from single_bounce_kernels_body.h (see shared_leg_kernels.h).
 #include <cstddef>
 
 #include "echopath/replay/kernels/cell_formula.h"
@@ -9,7 +9,7 @@ namespace echopath {
 
 // Holds points of one mesh that both antennas see, each with a coherent and a diffuse path back. The mesh is rigid: seen
 // from it, the antennas move, and its points stay where they were at the trace.
-struct DirectSlots {
+struct SingleBounceSlots {
   static constexpr size_t kSlots = 8;  // whatever the instruction set
   enum Kind { kCoherent, kDiffuse, kNumKinds };
   typedef double Row[kSlots];
@@ -33,7 +33,7 @@ struct DirectSlots {
 };
 
 // Describes a mesh at the trace, relative to the mean transmitter; matrices stand row by row.
-struct DirectTrace {
+struct SingleBounceTrace {
   double linear[9], translation[3];
   double normal[9];           // of normals, not normalised
   double mesh_from_trace[9];  // undoes `linear`
@@ -46,21 +46,21 @@ struct AntennaToSee {
   double* out;                // LegToMeasure::ImageRow, about the mesh
 };
 
-struct DirectAntenna {
+struct SingleBounceAntenna {
   const double* rows;         // AntennaToSee::out, rows of `stride` nodes
   const double* polarization;  // ComponentsToFind::PolarizationRow, rows of `stride` nodes
   int exponent;               // LegToMeasure::exponent, a whole one
   double root_peak;
 };
 
-struct DirectToEvaluate {
+struct SingleBouncesToEvaluate {
   static constexpr size_t kNodesTogether = 8;
   enum LegRow { kLegLength, kInverse, kLegFactor, kGain, kCosine, kAlong, kHorizontal = 7, kVertical, kNumLegRows };
   enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
 
-  const DirectSlots* slots;
+  const SingleBounceSlots* slots;
   bool has_coherent;          // whether any slot has a coherent path; else its rows are 0
-  const DirectAntenna* antennas[2];
+  const SingleBounceAntenna* antennas[2];
   size_t num_antennas[2];
   bool is_monostatic;         // both ends have the same antennas, hence the same legs
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
@@ -73,13 +73,13 @@ struct DirectToEvaluate {
   double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end on the way
 };
 
-struct DirectKernels {
-  void (*see)(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride);
-  void (*prepare)(const DirectTrace& trace, DirectSlots& slots);
-  void (*evaluate)(const DirectToEvaluate& paths);
+struct SingleBounceKernels {
+  void (*see)(const SingleBounceTrace& trace, const AntennaToSee& antenna, size_t stride);
+  void (*prepare)(const SingleBounceTrace& trace, SingleBounceSlots& slots);
+  void (*evaluate)(const SingleBouncesToEvaluate& paths);
 };
 
 // For rows of that many nodes.
-const DirectKernels& direct_kernels(size_t stride);
+const SingleBounceKernels& single_bounce_kernels(size_t stride);
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// Holds the inner loops of replay along nodes, compiled once for each instruction set from chain_kernels_body.h. The headers
+// Holds the inner loops of replay along nodes, compiled once for each instruction set from shared_leg_kernels_body.h. The headers
 // that this one includes define no functions with code: what is compiled for one instruction set must not be linked into
 // another's.
 //
@@ -81,7 +81,7 @@ struct PathToPolarize {
   double* out;                // PathToCombine::Row
 };
 
-struct ChainKernels {
+struct SharedLegKernels {
   void (*pose)(const PointToPose& point, size_t stride);
   void (*measure)(const LegToMeasure& leg, size_t stride);
   void (*combine)(const DiffusePath& path, size_t stride);
@@ -98,8 +98,8 @@ struct ForRows {
 };
 
 // For rows of that many nodes.
-const ChainKernels& chain_kernels(size_t stride);
+const SharedLegKernels& shared_leg_kernels(size_t stride);
 // Returns the kernels that take one node after the other.
-const ChainKernels& chain_kernels_of_one();
+const SharedLegKernels& shared_leg_kernels_of_one();
 
 }  // namespace echopath

@@ -2,7 +2,7 @@
 // The inner loops of replay, compiled once per instruction set (base/lane_math.h).
 #include "echopath/base/lane_math.h"
 #include "echopath/base/vector_of.h"
-#include "echopath/replay/kernels/chain_kernels.h"
+#include "echopath/replay/kernels/shared_leg_kernels.h"
 #include "echopath/replay/kernels/path_formula.h"
 
 namespace echopath::ECHOPATH_KERNELS {
@@ -178,9 +178,9 @@ void polarize(const PathToPolarize& path, size_t stride) {
 }
 
 template <class Math>
-constexpr ChainKernels kChainKernels = {pose<Math>,    measure<Math>,         combine<Math>, connect<Math>,
+constexpr SharedLegKernels kChainKernels = {pose<Math>,    measure<Math>,         combine<Math>, connect<Math>,
                                         reflect<Math>, find_components<Math>, polarize<Math>};
-constexpr ForRows<ChainKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
+constexpr ForRows<SharedLegKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
 
 }  // namespace
 }  // namespace echopath::ECHOPATH_KERNELS
@@ -188,7 +188,7 @@ constexpr ForRows<ChainKernels> kChains = {kChainKernels<LaneMath>, kChainKernel
 namespace echopath {
 
 template <>
-const ForRows<ChainKernels>& kernels_for<ForRows<ChainKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
+const ForRows<SharedLegKernels>& kernels_for<ForRows<SharedLegKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
   return ECHOPATH_KERNELS::kChains;
 }
 

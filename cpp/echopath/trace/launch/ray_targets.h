@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-struct Aim {
+struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into objects_of(scene)
   // Rays find it over these; planes at right angles have one image in both orders.
@@ -16,24 +16,24 @@ struct Aim {
 };
 
 // Returns the weight of an image over that many mirrors (0: of the object itself) in the sharing of the rays.
-double weight_of_aim(int num_mirrors);
+double weight_of_target(int num_mirrors);
 
-struct AimSettings {
+struct RayTargetSettings {
   Vec3 transmitter;
   int max_mirrors = 0;
   double largest_solid_angle = 0.0;  // sr: larger objects are left to the field of view
   bool may_use_strips = true;
 };
 
-struct Aims {
-  std::vector<Aim> aims;             // objects first, then images
+struct RayTargets {
+  std::vector<RayTarget> aims;             // objects first, then images
   std::vector<int> object_of_mesh;   // by mesh ID, -1: a mirror
   int num_objects = 0;
   bool any_unaimed = false;          // some object has no stratum
   int64_t num_left_out = 0;          // objects and images beyond the number of strata that a record can tell apart
 };
 
-Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                    const AimSettings& settings);
+RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                    const RayTargetSettings& settings);
 
 }  // namespace echopath

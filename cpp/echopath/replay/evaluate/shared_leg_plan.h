@@ -11,7 +11,7 @@
 
 namespace echopath {
 
-struct ChainPlan {
+struct SharedLegPlan {
   static constexpr uint32_t kNone = ~uint32_t{0};
 
   // An image of the antennas over mirrors, for transmitters and receivers alike: it is the image `parent` reflected in
@@ -51,7 +51,7 @@ struct ChainPlan {
   struct Direct {
     static constexpr int64_t kNoPath = -1;
     const Hit* hit;
-    int64_t path[2];  // DirectSlots::Kind
+    int64_t path[2];  // SingleBounceSlots::Kind
     size_t place[2];
   };
 
@@ -70,13 +70,13 @@ struct ChainPlan {
 };
 
 // Makes one plan after the other and keeps its memory from record to record. It serves one thread at a time.
-class ChainPlanner {
+class SharedLegPlanner {
  public:
-  // Sets the record whose blocks are planned from now on. All arguments must outlive this use. Where `with_direct` is set,
+  // Sets the record whose blocks are planned from now on. All arguments must outlive this use. Where `with_single_bounces` is set,
   // paths with one flat point on a rigid mesh are listed apart from the other chains.
-  void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_direct);
+  void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_single_bounces);
   // Returns the plan for the paths of these indices; it is valid until the next call.
-  const ChainPlan& operator()(std::span<const int64_t> indices);
+  const SharedLegPlan& operator()(std::span<const int64_t> indices);
 
  private:
   struct TracedHits;
@@ -102,14 +102,14 @@ class ChainPlanner {
   uint32_t image_in(uint32_t parent, const Hit& hit);
   uint32_t point(const Hit& hit);
   uint32_t straight_leg(const Hit& hit, bool of_receivers);
-  uint32_t add_leg(const ChainPlan::Leg& leg);
+  uint32_t add_leg(const SharedLegPlan::Leg& leg);
   uint32_t leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers);
   uint32_t inner(const TracedHits& hits, const Ends& ends, bool is_coherent);
 
   const Paths* paths_ = nullptr;
   const PathPreparer* preparer_ = nullptr;
-  bool slides_ = false, with_direct_ = false;
-  ChainPlan plan_;
+  bool slides_ = false, with_single_bounces_ = false;
+  SharedLegPlan plan_;
   Known last_start_, last_end_;
   const Hit* last_hit_ = nullptr;  // hit whose point was looked up last, often an end of the next path
   uint32_t last_point_ = 0;

@@ -3,7 +3,7 @@
 // factors and, where it is coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
 #include <array>
 
-#include "echopath/replay/evaluate/chain_tables.h"
+#include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/evaluate/radio_constants.h"
 #include "echopath/replay/evaluate/trace_cells.h"
 
@@ -34,20 +34,20 @@ struct ChannelSpan {
 };
 
 // It keeps its memory from block to block and serves one thread at a time.
-class ChainEvaluation {
+class SharedLegEvaluation {
  public:
   // Writes the chains and mirror paths of the plan.
-  void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
+  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                   const ChannelSpan& channels);
   // Reads the plan and the nodes of the last call: sets turned[place] to 1 where the surface at an end of the path turns its
   // other side to the first antenna there between the first and the last node, so that the amplitude of the path passes
   // through zero.
-  void mark_turned(const ChainPlan& plan, uint8_t* turned) const;
+  void mark_turned(const SharedLegPlan& plan, uint8_t* turned) const;
   size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
 
  private:
   static constexpr size_t kTogether = 8;  // paths whose values are written side by side: a line of the cache for each node
-  using Chains = std::span<const ChainPlan::Chain>;
+  using Chains = std::span<const SharedLegPlan::Chain>;
   struct Ends {
     size_t start, end;  // antennas of both
   };
@@ -56,33 +56,33 @@ class ChainEvaluation {
     size_t leg;
     const double* rows() const { return table.rows.row(leg, 0); }
   };
-  Ends ends_of(const ChainPlan::Chain& chain, size_t channel) const;
-  PathToCombine path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
-  MeasuredLeg start_of(const ChainPlan::Chain& chain, size_t antenna) const;
-  MeasuredLeg end_of(const ChainPlan::Chain& chain, size_t antenna) const;
-  const double* inner_of(const ChainPlan::Chain& chain, size_t antenna) const;
-  const double* image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const;
-  void place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
-  void evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  Ends ends_of(const SharedLegPlan::Chain& chain, size_t channel) const;
+  PathToCombine path_of(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  MeasuredLeg start_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
+  MeasuredLeg end_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
+  const double* inner_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
+  const double* image_of(const SharedLegPlan& plan, uint32_t leg, size_t antenna) const;
+  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
+  void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   void reflect_from_stretching(size_t slot);
-  void evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void evaluate_diffuse(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   template <class Path>
   void put(std::span<const Path> paths, const ChannelNodes& to) const;  // from the first slots on
-  ComplexOf<double> scaled_weight(const ChainPlan::Chain& chain, double scale) const;
+  ComplexOf<double> scaled_weight(const SharedLegPlan::Chain& chain, double scale) const;
   void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
-  void evaluate_mirrors(const ChainPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels, double scale);
+  void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels, double scale);
   bool turns(uint32_t leg) const;
 
-  ChainTables tables_;
+  SharedLegTables tables_;
   NodeRows values_;                              // [slot], PathToCombine::Row
   std::array<CoherentPath, kTogether> coherent_;  // [slot], the part that does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
   NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
   LegTable mirror_legs_;                          // of one channel: from the transmitter's image, from the receiver
   size_t num_receivers_ = 0;
-  const ChainKernels* kernels_ = nullptr;
+  const SharedLegKernels* kernels_ = nullptr;
   const Paths* paths_ = nullptr;
 };
 

@@ -3,50 +3,50 @@
 // from the mesh.
 #include <vector>
 
-#include "echopath/replay/kernels/direct_kernels.h"
-#include "echopath/replay/evaluate/evaluate_chains.h"
+#include "echopath/replay/kernels/single_bounce_kernels.h"
+#include "echopath/replay/evaluate/shared_legs.h"
 
 namespace echopath {
 
 // It keeps its memory from block to block and serves one thread at a time.
-class DirectEvaluation {
+class SingleBounceEvaluation {
  public:
   struct Wanted {
-    uint8_t* turned = nullptr;    // [P] or null, see ChainEvaluation::mark_turned
+    uint8_t* turned = nullptr;    // [P] or null, see SharedLegEvaluation::mark_turned
     bool with_amplitudes = true;  // else they are not evaluated
   };
-  // Writes the direct paths of the plan, for antennas that can_evaluate_directly.
-  void operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
+  // Writes the direct paths of the plan, for antennas that can_evaluate_single_bounces.
+  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                   const ChannelSpan& channels, const Wanted& wanted);
   size_t num_bytes() const { return (out_.capacity() + legs_.capacity()) * sizeof(double); }  // of its memory, nearly all
 
  private:
-  using Points = std::span<const ChainPlan::Direct* const>;
-  void sort_by_mesh(const ChainPlan& plan);
+  using Points = std::span<const SharedLegPlan::Direct* const>;
+  void sort_by_mesh(const SharedLegPlan& plan);
   void set_antennas(const PosedNodes& nodes);
   bool is_monostatic(const PosedNodes& nodes) const;
   void see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
   void see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
   void set_mesh(uint32_t mesh_id, const PathPreparer& preparer);
   void set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio);
-  void set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
+  void set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
 
-  std::vector<const ChainPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
+  std::vector<const SharedLegPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
-  std::vector<DirectAntenna> antennas_[2];        // of transmitters, of receivers
+  std::vector<SingleBounceAntenna> antennas_[2];        // of transmitters, of receivers
   NodeRows seen_[2];                              // [antenna] as seen from the mesh in hand
   NodeRows axes_;                                 // of the world, as seen from the mesh; where polarisations need them
-  DirectTrace trace_;
-  DirectSlots slots_;
-  DirectToEvaluate work_;
+  SingleBounceTrace trace_;
+  SingleBounceSlots slots_;
+  SingleBouncesToEvaluate work_;
   std::vector<double> legs_, out_;
-  double turned_[DirectSlots::kSlots];
+  double turned_[SingleBounceSlots::kSlots];
 };
 
 // Returns whether the gains of all antennas are whole powers of cosines.
-bool can_evaluate_directly(const Radar& radar);
+bool can_evaluate_single_bounces(const Radar& radar);
 
 }  // namespace echopath

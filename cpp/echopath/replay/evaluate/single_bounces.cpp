@@ -1,4 +1,4 @@
-#include "echopath/replay/evaluate/direct_evaluation.h"
+#include "echopath/replay/evaluate/single_bounces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kSlots = DirectSlots::kSlots, kOfNode = DirectToEvaluate::kNumRows * kSlots;
+constexpr size_t kSlots = SingleBounceSlots::kSlots, kOfNode = SingleBouncesToEvaluate::kNumRows * kSlots;
 
 void copy_matrix(const Mat3& matrix, double* to) {
   for (int row = 0; row < 3; ++row) {
@@ -16,11 +16,11 @@ void copy_matrix(const Mat3& matrix, double* to) {
   }
 }
 
-void set_vector(const Vec3& vector, size_t slot, DirectSlots::Row* rows) {
+void set_vector(const Vec3& vector, size_t slot, SingleBounceSlots::Row* rows) {
   for (int axis = 0; axis < 3; ++axis) rows[axis][slot] = vector[axis];
 }
 
-void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, DirectSlots& slots) {
+void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, SingleBounceSlots& slots) {
   const Triangle& triangle = mesh.triangles()[hit.triangle_id];
   const std::vector<Vec3>& vertices = mesh.vertices();
   const Vec3& corner = vertices[triangle[0]];
@@ -33,27 +33,27 @@ void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, DirectSlots& sl
 
 }  // namespace
 
-bool can_evaluate_directly(const Radar& radar) {
+bool can_evaluate_single_bounces(const Radar& radar) {
   const auto is_power = [](const Antenna& antenna) { return exponent_of(antenna.pattern) != LegToMeasure::kNoExponent; };
   return std::all_of(radar.transmitters.begin(), radar.transmitters.end(), is_power) &&
          std::all_of(radar.receivers.begin(), radar.receivers.end(), is_power);
 }
 
-void DirectEvaluation::operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                                   const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
   if (plan.direct.empty()) return;
   sort_by_mesh(plan);
   set_antennas(nodes);
   const size_t num_nodes = nodes.size();
-  out_.resize(channels.nodes.size() * num_nodes * DirectToEvaluate::kNumRows * kSlots);
-  const size_t num_legs = DirectToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
-  legs_.resize(num_legs * DirectToEvaluate::kNumLegRows * kSlots);
-  const bool is_polarized = ChainTables::needs_polarizations(preparer.paths(), nodes);
+  out_.resize(channels.nodes.size() * num_nodes * SingleBouncesToEvaluate::kNumRows * kSlots);
+  const size_t num_legs = SingleBouncesToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
+  legs_.resize(num_legs * SingleBouncesToEvaluate::kNumLegRows * kSlots);
+  const bool is_polarized = SharedLegTables::needs_polarizations(preparer.paths(), nodes);
   if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
   work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
            is_monostatic(nodes), channels.first, channels.nodes.size(), num_nodes, nodes.meshes.stride(),
             radio.filter(), kNoFacets, is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
-  const DirectKernels& kernels = direct_kernels(work_.stride);
+  const SingleBounceKernels& kernels = single_bounce_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
     count = 1;
@@ -78,19 +78,19 @@ void DirectEvaluation::operator()(const ChainPlan& plan, const PathPreparer& pre
   }
 }
 
-void DirectEvaluation::sort_by_mesh(const ChainPlan& plan) {
+void SingleBounceEvaluation::sort_by_mesh(const SharedLegPlan& plan) {
   first_of_mesh_.clear();
-  for (const ChainPlan::Direct& direct : plan.direct) {
+  for (const SharedLegPlan::Direct& direct : plan.direct) {
     const size_t mesh = direct.hit->mesh_id;
     if (mesh + 2 > first_of_mesh_.size()) first_of_mesh_.resize(mesh + 2);
     ++first_of_mesh_[mesh + 1];
   }
   for (size_t mesh = 1; mesh < first_of_mesh_.size(); ++mesh) first_of_mesh_[mesh] += first_of_mesh_[mesh - 1];
   sorted_.resize(plan.direct.size());
-  for (const ChainPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
+  for (const SharedLegPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
 }
 
-void DirectEvaluation::set_antennas(const PosedNodes& nodes) {
+void SingleBounceEvaluation::set_antennas(const PosedNodes& nodes) {
   for (const bool of_receivers : {false, true}) {
     const std::vector<PosedAntenna>& posed = nodes.at(0).antennas(of_receivers);
     seen_[of_receivers].resize(posed.size(), LegToMeasure::kNumImageRows, nodes.size());
@@ -103,7 +103,7 @@ void DirectEvaluation::set_antennas(const PosedNodes& nodes) {
   }
 }
 
-bool DirectEvaluation::is_monostatic(const PosedNodes& nodes) const {
+bool SingleBounceEvaluation::is_monostatic(const PosedNodes& nodes) const {
   if (antennas_[0].size() != antennas_[1].size()) return false;
   const NodeRows &transmitters = nodes.antennas[0], &receivers = nodes.antennas[1];
   for (size_t i = 0; i < antennas_[0].size(); ++i) {
@@ -119,7 +119,7 @@ bool DirectEvaluation::is_monostatic(const PosedNodes& nodes) const {
 
 // A mesh that stands still sees the antennas where they are in the world: they are copied, so that the scale of the mesh
 // adds no rounding.
-void DirectEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
+void SingleBounceEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
   const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (const bool of_receivers : {false, true}) {
     NodeRows& seen = seen_[of_receivers];
@@ -127,13 +127,13 @@ void DirectEvaluation::see_antennas(uint32_t mesh_id, const PathPreparer& prepar
       const double* const in_world = nodes.antennas[of_receivers].row(antenna, 0);
       double* const out = seen.row(antenna, 0);
       if (is_still) std::copy_n(in_world, LegToMeasure::kNumImageRows * seen.stride(), out);
-      else direct_kernels(seen.stride()).see(trace_, {nodes.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
+      else single_bounce_kernels(seen.stride()).see(trace_, {nodes.meshes.row(mesh_id, 0), in_world, out}, seen.stride());
     }
   }
 }
 
 // Undoes the rotation of the mesh since the trace, as `see_antennas` does.
-void DirectEvaluation::see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
+void SingleBounceEvaluation::see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
   const bool is_still = !preparer.paths().scene->is_moving(mesh_id);
   for (size_t node = 0; node < axes_.num_nodes(); ++node) {
     Mat3 world_from_seen = Mat3::Identity();
@@ -146,7 +146,7 @@ void DirectEvaluation::see_axes(uint32_t mesh_id, const PathPreparer& preparer, 
   pad(axes_, 0, ComponentsToFind::kNumAxisRows);
 }
 
-void DirectEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& preparer) {
+void SingleBounceEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& preparer) {
   const PosedScene& trace = preparer.at_trace();
   copy_matrix(trace.linear(mesh_id), trace_.linear);
   copy_matrix(trace.normal_matrix(mesh_id), trace_.normal);
@@ -155,29 +155,29 @@ void DirectEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& preparer) 
 }
 
 // Slots behind the last point repeat the last point.
-void DirectEvaluation::set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio) {
+void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio) {
   const Paths& paths = preparer.paths();
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
   work_.has_coherent = false;
   for (size_t slot = 0; slot < kSlots; ++slot) {
-    const ChainPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
+    const SharedLegPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
     set_triangle(*direct.hit, mesh, slot, slots_);
     set_weights(direct, slot, paths, radio);
-    const int64_t coherent = direct.path[DirectSlots::kCoherent];
-    const bool is_coherent = coherent != ChainPlan::Direct::kNoPath;
+    const int64_t coherent = direct.path[SingleBounceSlots::kCoherent];
+    const bool is_coherent = coherent != SharedLegPlan::Direct::kNoPath;
     work_.has_coherent |= is_coherent;
     slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
   }
 }
 
 // Polarised paths between upright antennas need only one entry of their matrix.
-void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
+void SingleBounceEvaluation::set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
   const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
-  for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
-    const bool is_there = point.path[kind] != ChainPlan::Direct::kNoPath;
+  for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
+    const bool is_there = point.path[kind] != SharedLegPlan::Direct::kNoPath;
     const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
     const std::complex<double> weight = is_there ? scale[kind] * std::complex<double>(paths.weight[path]) : 0.0;
-    const auto set = [&](DirectSlots::Row* rows, std::complex<double> value) {
+    const auto set = [&](SingleBounceSlots::Row* rows, std::complex<double> value) {
       rows[0][slot] = value.real();
       rows[1][slot] = value.imag();
     };
@@ -196,15 +196,15 @@ void DirectEvaluation::set_weights(const ChainPlan::Direct& point, size_t slot, 
 namespace {
 
 std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot) {
-  const double* from = values + (DirectToEvaluate::kRe + 2 * kind) * kSlots + slot;
+  const double* from = values + (SingleBouncesToEvaluate::kRe + 2 * kind) * kSlots + slot;
   return {from[0], from[kSlots]};
 }
 
-bool has_path(const ChainPlan::Direct& point, size_t kind) { return point.path[kind] != ChainPlan::Direct::kNoPath; }
+bool has_path(const SharedLegPlan::Direct& point, size_t kind) { return point.path[kind] != SharedLegPlan::Direct::kNoPath; }
 
 // Points to the nodes of eight points with two paths each that follow each other.
 struct PairNodes {
-  const double* values;  // [node, DirectToEvaluate::Row, slot]
+  const double* values;  // [node, SingleBouncesToEvaluate::Row, slot]
   size_t count, stride;
   double scale;
   double *length, *amplitude;  // of the first path at the first node
@@ -218,7 +218,7 @@ ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
   for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
     for (size_t slot = 0; slot < kSlots; ++slot) {
       length[2 * slot] = length[2 * slot + 1] = nodes->scale * from[slot];
-      for (size_t row = 0; row < 4; ++row) amplitude[4 * slot + row] = from[(DirectToEvaluate::kRe + row) * kSlots + slot];
+      for (size_t row = 0; row < 4; ++row) amplitude[4 * slot + row] = from[(SingleBouncesToEvaluate::kRe + row) * kSlots + slot];
     }
   }
 }
@@ -232,7 +232,7 @@ ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
     for (size_t slot = 0; slot < kSlots; ++slot) {
       length[slot] = nodes->scale * from[slot];
       for (size_t part = 0; part < 2; ++part) {
-        const double* kinds = from + (DirectToEvaluate::kRe + part) * kSlots + slot;
+        const double* kinds = from + (SingleBouncesToEvaluate::kRe + part) * kSlots + slot;
         amplitude[2 * slot + part] += kinds[0] + kinds[2 * kSlots];
       }
     }
@@ -241,30 +241,30 @@ ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
 
 // Returns whether all points have both paths, and whether their echoes follow each other at these steps: `kinds` from kind
 // to kind, `pairs` from point to point.
-bool are_neighbours(std::span<const ChainPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
+bool are_neighbours(std::span<const SharedLegPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
   if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
   const size_t first = to.echo(points[0]->place[0]);
   for (size_t slot = 0; slot < kSlots; ++slot) {
-    const ChainPlan::Direct& point = *points[slot];
+    const SharedLegPlan::Direct& point = *points[slot];
     if (!has_path(point, 0) || !has_path(point, 1)) return false;
     if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds) return false;
   }
   return true;
 }
 
-PairNodes pair_nodes(const ChainPlan::Direct& first, const ChannelNodes& to, const double* values, size_t num_nodes) {
+PairNodes pair_nodes(const SharedLegPlan::Direct& first, const ChannelNodes& to, const double* values, size_t num_nodes) {
   const size_t echo = to.echo(first.place[0]);
   return {values, num_nodes, to.stride, to.scale, to.length + echo, reinterpret_cast<double*>(to.amplitude + echo)};
 }
 
 // Returns whether both paths of a point go to one echo, or there is only one.
-bool is_one_echo(const ChainPlan::Direct& point, const ChannelNodes& to) {
+bool is_one_echo(const SharedLegPlan::Direct& point, const ChannelNodes& to) {
   return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
 }
 
 }  // namespace
 
-void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
+void SingleBounceEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
   if (to.echo_of) return put_joined(points, to, values);
   if (are_neighbours(points, to, 1, 2)) {
     const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
@@ -272,7 +272,7 @@ void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* 
   }
   for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
     for (size_t slot = 0; slot < points.size(); ++slot) {
-      for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+      for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
         if (has_path(*points[slot], kind)) to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
       }
     }
@@ -280,14 +280,14 @@ void DirectEvaluation::put(Points points, const ChannelNodes& to, const double* 
 }
 
 // A path that does not exist has amplitude 0.
-void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
+void SingleBounceEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
   if (are_neighbours(points, to, 0, 1)) {
     const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
     return run_simd<add_pairs>(&nodes);
   }
   for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
     for (size_t slot = 0; slot < points.size(); ++slot) {
-      const ChainPlan::Direct& point = *points[slot];
+      const SharedLegPlan::Direct& point = *points[slot];
       const std::complex<double> coherent = amplitude_at(values, 0, slot), diffuse = amplitude_at(values, 1, slot);
       if (is_one_echo(point, to)) {
         to.set(node, point.place[has_path(point, 0) ? 0 : 1], values[slot], coherent + diffuse);
@@ -299,9 +299,9 @@ void DirectEvaluation::put_joined(Points points, const ChannelNodes& to, const d
   }
 }
 
-void DirectEvaluation::mark_turned(Points points, uint8_t* turned) const {
+void SingleBounceEvaluation::mark_turned(Points points, uint8_t* turned) const {
   for (size_t slot = 0; slot < points.size(); ++slot) {
-    for (size_t kind = 0; kind < DirectSlots::kNumKinds; ++kind) {
+    for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
       if (has_path(*points[slot], kind)) turned[points[slot]->place[kind]] = work_.turned[slot] != 0.0;
     }
   }

@@ -1,12 +1,12 @@
 #pragma once
-// The loops of direct_kernels.h, compiled once per instruction set (base/lane_math.h).
-#include "echopath/replay/kernels/chain_kernels_body.h"
-#include "echopath/replay/kernels/direct_kernels.h"
+// The loops of single_bounce_kernels.h, compiled once per instruction set (base/lane_math.h).
+#include "echopath/replay/kernels/shared_leg_kernels_body.h"
+#include "echopath/replay/kernels/single_bounce_kernels.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
-using Rows3 = const DirectSlots::Row*;
+using Rows3 = const SingleBounceSlots::Row*;
 
 // A launch cell on a flat triangle.
 struct FlatCell {
@@ -18,7 +18,7 @@ struct FlatCell {
 ECHOPATH_INLINE VectorOf<Vec> vector_at(Rows3 rows, size_t slot) {
   return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
 }
-ECHOPATH_INLINE void set_vector(DirectSlots::Row* rows, size_t slot, const VectorOf<Vec>& v) {
+ECHOPATH_INLINE void set_vector(SingleBounceSlots::Row* rows, size_t slot, const VectorOf<Vec>& v) {
   store(rows[0] + slot, v.x);
   store(rows[1] + slot, v.y);
   store(rows[2] + slot, v.z);
@@ -44,8 +44,8 @@ ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
 ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
 
 // Finds the point and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
-void prepare(const DirectTrace& trace, DirectSlots& slots) {
-  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+void prepare(const SingleBounceTrace& trace, SingleBounceSlots& slots) {
+  for (size_t slot = 0; slot < SingleBounceSlots::kSlots; slot += kLanes) {
     const VectorOf<Vec> edge_u = vector_at(slots.edge[0], slot), edge_v = vector_at(slots.edge[1], slot);
     const Vec u = load(slots.along_edge[0] + slot), v = load(slots.along_edge[1] + slot);
     const VectorOf<Vec> point = vector_at(slots.corner, slot) + u * edge_u + v * edge_v;
@@ -83,7 +83,7 @@ ECHOPATH_INLINE VectorOf<Real> times_transposed(const double* matrix, const Vect
 // The motion since the trace is a rotation, linear * mesh_from_trace, and a shift; the transposed matrix undoes the
 // rotation.
 template <class Math>
-void see(const DirectTrace& trace, const AntennaToSee& antenna, size_t stride) {
+void see(const SingleBounceTrace& trace, const AntennaToSee& antenna, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
     const auto turned_back = [&](const auto& v) {
@@ -106,13 +106,13 @@ struct PointLanes {
   VectorOf<Vec> point, normal, tangent[2];
 };
 
-ECHOPATH_INLINE PointLanes points_at(const DirectSlots& slots, size_t slot) {
+ECHOPATH_INLINE PointLanes points_at(const SingleBounceSlots& slots, size_t slot) {
   return {vector_at(slots.point, slot), vector_at(slots.normal, slot),
           {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
 // Returns the components (ComponentsToFind) of a leg along `line`.
-ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna, size_t node,
                                                   const VectorOf<Vec>& line) {
   const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
   const auto along = [&](int axis) {
@@ -125,7 +125,7 @@ ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const DirectToEvaluate& paths,
 }
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAntenna& antenna, size_t node,
+ECHOPATH_INLINE void measure_leg(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna, size_t node,
                                  const PointLanes& at, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
   const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
@@ -138,23 +138,23 @@ ECHOPATH_INLINE void measure_leg(const DirectToEvaluate& paths, const DirectAnte
                       value(LegToMeasure::kBoresight + 2) * line.z;
     gain = root_gain_of<LaneMath>(antenna.root_peak, antenna.exponent, inverse * along);
   }
-  const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * DirectSlots::kSlots, x); };
-  set(DirectToEvaluate::kLegLength, distance.root);
-  set(DirectToEvaluate::kInverse, inverse);
+  const auto set = [&](int row, Vec x) { store(leg + static_cast<size_t>(row) * SingleBounceSlots::kSlots, x); };
+  set(SingleBouncesToEvaluate::kLegLength, distance.root);
+  set(SingleBouncesToEvaluate::kInverse, inverse);
   const Vec root_cosine = roots_of(LaneMath::magnitude(cosine)).root;
-  set(DirectToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, root_cosine, cosine, distance.root, inverse));
-  set(DirectToEvaluate::kGain, gain);
-  set(DirectToEvaluate::kCosine, cosine);
+  set(SingleBouncesToEvaluate::kLegFactor, diffuse_leg<LaneMath>(gain, root_cosine, cosine, distance.root, inverse));
+  set(SingleBouncesToEvaluate::kGain, gain);
+  set(SingleBouncesToEvaluate::kCosine, cosine);
   if constexpr (kIsPolarized) {
     const TransverseOf<Vec> found = transverse_over(paths, antenna, node, line);
-    set(DirectToEvaluate::kHorizontal, found.horizontal);
-    set(DirectToEvaluate::kVertical, found.vertical);
+    set(SingleBouncesToEvaluate::kHorizontal, found.horizontal);
+    set(SingleBouncesToEvaluate::kVertical, found.vertical);
   }
   if (!paths.has_coherent) return;
-  for (int a = 0; a < 2; ++a) set(DirectToEvaluate::kAlong + a, inverse * dot(at.tangent[a], line));
+  for (int a = 0; a < 2; ++a) set(SingleBouncesToEvaluate::kAlong + a, inverse * dot(at.tangent[a], line));
 }
 
-ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t slot, const CellWaves<Vec>& waves,
+ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const SingleBounceSlots& slots, size_t slot, const CellWaves<Vec>& waves,
                                               const CellFilter& filter, double facet_area) {
   const Vec without = filter.view.weight == CellWeight::kFilter ? all(1.0) : Vec{};
   if (filter.order == Footprint::kNone) return {without, Vec{}};
@@ -174,12 +174,12 @@ ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const DirectSlots& slots, size_t s
 // Reads the rows of one leg.
 struct LegLanes {
   const double* rows;
-  ECHOPATH_INLINE Vec operator()(int row) const { return load(rows + static_cast<size_t>(row) * DirectSlots::kSlots); }
+  ECHOPATH_INLINE Vec operator()(int row) const { return load(rows + static_cast<size_t>(row) * SingleBounceSlots::kSlots); }
 };
 
 // Returns the physical-optics factor over the legs in and out, relative to the weight.
-ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
-  using D = DirectToEvaluate;
+ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
+  using D = SingleBouncesToEvaluate;
   const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
   CellWaves<Vec> waves;
   set_waves<LaneMath>(cos_in, cos_out, in(D::kInverse), out(D::kInverse), waves);
@@ -197,22 +197,22 @@ template <bool kIsPolarized>
 struct WeightLanes;
 template <>
 struct WeightLanes<false> {
-  const DirectSlots& slots;
+  const SingleBounceSlots& slots;
   size_t slot;
 
-  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes&, const LegLanes&, size_t first) : slots(from), slot(first) {}
+  ECHOPATH_INLINE WeightLanes(const SingleBounceSlots& from, const LegLanes&, const LegLanes&, size_t first) : slots(from), slot(first) {}
   ECHOPATH_INLINE Vec operator()(int kind, int part) const { return load(slots.weight[kind][part] + slot); }
 };
 template <>
 struct WeightLanes<true> {
-  const DirectSlots& slots;
+  const SingleBounceSlots& slots;
   size_t slot;
   PairOfPolarizations<Vec> pairs;
 
   static ECHOPATH_INLINE TransverseOf<Vec> components(const LegLanes& leg) {
-    return {leg(DirectToEvaluate::kHorizontal), leg(DirectToEvaluate::kVertical)};
+    return {leg(SingleBouncesToEvaluate::kHorizontal), leg(SingleBouncesToEvaluate::kVertical)};
   }
-  ECHOPATH_INLINE WeightLanes(const DirectSlots& from, const LegLanes& in, const LegLanes& out, size_t first)
+  ECHOPATH_INLINE WeightLanes(const SingleBounceSlots& from, const LegLanes& in, const LegLanes& out, size_t first)
       : slots(from), slot(first), pairs(components(in), components(out)) {}
   ECHOPATH_INLINE Vec operator()(int kind, int part) const {
     const auto entry = [&](int i) { return load(slots.matrix[kind][i][part] + slot); };
@@ -222,9 +222,9 @@ struct WeightLanes<true> {
 };
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
-  using D = DirectToEvaluate;
-  const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * DirectSlots::kSlots + slot, x); };
+ECHOPATH_INLINE void combine_legs(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
+  using D = SingleBouncesToEvaluate;
+  const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * SingleBounceSlots::kSlots + slot, x); };
   const WeightLanes<kIsPolarized> weight(*paths.slots, in, out, slot);
   const auto put = [&](int kind, ComplexOf<Vec> amplitude) {
     set(D::kRe + 2 * kind, amplitude.re);
@@ -234,23 +234,23 @@ ECHOPATH_INLINE void combine_legs(const DirectToEvaluate& paths, const LegLanes&
   const Vec length = in(D::kLegLength) + out(D::kLegLength);
   set(D::kLength, length);
   const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
-  put(DirectSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(DirectSlots::kDiffuse), diffuse, length));
+  put(SingleBounceSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kDiffuse), diffuse, length));
   ComplexOf<Vec> factor{};
   if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
-  put(DirectSlots::kCoherent, amplitude_of<LaneMath>(weight_of(DirectSlots::kCoherent), factor, length));
+  put(SingleBounceSlots::kCoherent, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kCoherent), factor, length));
 }
 
-ECHOPATH_INLINE double* leg_of(const DirectToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
+ECHOPATH_INLINE double* leg_of(const SingleBouncesToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
   const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 || paths.is_monostatic ? 0 : paths.num_antennas[0];
-  const size_t leg = node % DirectToEvaluate::kNodesTogether * num_legs + of_end + antenna;
-  return paths.legs + leg * DirectToEvaluate::kNumLegRows * DirectSlots::kSlots + slot;
+  const size_t leg = node % SingleBouncesToEvaluate::kNodesTogether * num_legs + of_end + antenna;
+  return paths.legs + leg * SingleBouncesToEvaluate::kNumLegRows * SingleBounceSlots::kSlots + slot;
 }
 
 // Notes at node 0 which sides the points show to the first antennas, and at the last node whether these have changed.
-ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_t slot, Mask* first) {
+ECHOPATH_INLINE void see_sides(const SingleBouncesToEvaluate& paths, size_t node, size_t slot, Mask* first) {
   Mask turned = {};
   for (int end = 0; end < 2; ++end) {
-    const Mask side = bits(LegLanes{leg_of(paths, node, end, 0, slot)}(DirectToEvaluate::kCosine)) < 0;
+    const Mask side = bits(LegLanes{leg_of(paths, node, end, 0, slot)}(SingleBouncesToEvaluate::kCosine)) < 0;
     if (node == 0) first[end] = side;
     turned |= side ^ first[end];
   }
@@ -258,7 +258,7 @@ ECHOPATH_INLINE void see_sides(const DirectToEvaluate& paths, size_t node, size_
 }
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, size_t slot) {
+ECHOPATH_INLINE void measure_legs(const SingleBouncesToEvaluate& paths, size_t node, size_t slot) {
   const PointLanes at = points_at(*paths.slots, slot);
   for (int end = 0; end < (paths.is_monostatic ? 1 : 2); ++end) {
     for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
@@ -268,8 +268,8 @@ ECHOPATH_INLINE void measure_legs(const DirectToEvaluate& paths, size_t node, si
 }
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, size_t slot) {
-  constexpr size_t kOfNode = DirectToEvaluate::kNumRows * DirectSlots::kSlots;
+ECHOPATH_INLINE void combine_node(const SingleBouncesToEvaluate& paths, size_t node, size_t slot) {
+  constexpr size_t kOfNode = SingleBouncesToEvaluate::kNumRows * SingleBounceSlots::kSlots;
   const size_t num_receivers = paths.num_antennas[1];
   for (size_t i = 0; i < paths.num_channels; ++i) {
     const size_t channel = paths.first_channel + i;
@@ -282,10 +282,10 @@ ECHOPATH_INLINE void combine_node(const DirectToEvaluate& paths, size_t node, si
 // The legs of several nodes come first, then the paths over them: so the processor works on several nodes at a time while
 // each waits for its own results.
 template <bool kIsPolarized>
-void evaluate_all(const DirectToEvaluate& paths) {
-  constexpr size_t kTogether = DirectToEvaluate::kNodesTogether;
+void evaluate_all(const SingleBouncesToEvaluate& paths) {
+  constexpr size_t kTogether = SingleBouncesToEvaluate::kNodesTogether;
   Mask sides[2] = {};
-  for (size_t slot = 0; slot < DirectSlots::kSlots; slot += kLanes) {
+  for (size_t slot = 0; slot < SingleBounceSlots::kSlots; slot += kLanes) {
     for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
       const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
       for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot);
@@ -296,12 +296,12 @@ void evaluate_all(const DirectToEvaluate& paths) {
   }
 }
 
-void evaluate(const DirectToEvaluate& paths) {
+void evaluate(const SingleBouncesToEvaluate& paths) {
   if (paths.axes) evaluate_all<true>(paths);
   else evaluate_all<false>(paths);
 }
 
-constexpr ForRows<DirectKernels> kDirect = {{see<LaneMath>, prepare, evaluate}, {see<OneMath>, prepare, evaluate}};
+constexpr ForRows<SingleBounceKernels> kDirect = {{see<LaneMath>, prepare, evaluate}, {see<OneMath>, prepare, evaluate}};
 
 }  // namespace
 }  // namespace echopath::ECHOPATH_KERNELS
@@ -309,7 +309,7 @@ constexpr ForRows<DirectKernels> kDirect = {{see<LaneMath>, prepare, evaluate}, 
 namespace echopath {
 
 template <>
-const ForRows<DirectKernels>& kernels_for<ForRows<DirectKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
+const ForRows<SingleBounceKernels>& kernels_for<ForRows<SingleBounceKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
   return ECHOPATH_KERNELS::kDirect;
 }
 

@@ -1,4 +1,4 @@
-#include "echopath/replay/evaluate/evaluate_chains.h"
+#include "echopath/replay/evaluate/shared_legs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +23,14 @@ void set_world(size_t num_nodes, NodeRows& world) {
 
 }  // namespace
 
-void ChainEvaluation::operator()(const ChainPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
+void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
                                  const ChannelSpan& channels) {
   if (plan.chains.empty() && plan.mirror_paths.empty()) return;
   num_receivers_ = nodes.at(0).receivers.size();
   paths_ = &preparer.paths();
   tables_.find(plan, preparer, nodes);
   values_.resize(kTogether, PathToCombine::kNumRows, nodes.size());
-  kernels_ = &chain_kernels(values_.stride());
+  kernels_ = &shared_leg_kernels(values_.stride());
   set_world(nodes.size(), world_);
   const TraceCells cells(plan, preparer, tables_.points);
   const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
@@ -42,7 +42,7 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const PathPreparer& prep
     }
     for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
       for (size_t slot = 0; slot < chains.size(); ++slot) {
-        const ChainPlan::Chain& chain = chains[slot];
+        const SharedLegPlan::Chain& chain = chains[slot];
         const Ends ends = ends_of(chain, channels.first + channel);
         if (chain.is_coherent) evaluate_coherent(plan, chain, ends, of_coherent, slot);
         else evaluate_diffuse(chain, ends, of_diffuse, slot);
@@ -51,16 +51,16 @@ void ChainEvaluation::operator()(const ChainPlan& plan, const PathPreparer& prep
       put(chains, channels.nodes[channel]);
     }
   }
-  for (const ChainPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
+  for (const SharedLegPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
 }
 
-ChainEvaluation::Ends ChainEvaluation::ends_of(const ChainPlan::Chain& chain, size_t channel) const {
+SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::Chain& chain, size_t channel) const {
   const size_t transmitter = channel / num_receivers_, receiver = channel % num_receivers_;
   return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
 }
 
 // Between upright antennas only one entry of the matrix counts.
-ComplexOf<double> ChainEvaluation::scaled_weight(const ChainPlan::Chain& chain, double scale) const {
+ComplexOf<double> SharedLegEvaluation::scaled_weight(const SharedLegPlan::Chain& chain, double scale) const {
   std::complex<double> weight = scale * chain.weight;
   if (!paths_->jones.empty() && !tables_.has_polarizations) {
     weight *= std::complex<double>(paths_->jones[static_cast<size_t>(chain.path)][3]);
@@ -68,32 +68,32 @@ ComplexOf<double> ChainEvaluation::scaled_weight(const ChainPlan::Chain& chain, 
   return {weight.real(), weight.imag()};
 }
 
-ChainEvaluation::MeasuredLeg ChainEvaluation::start_of(const ChainPlan::Chain& chain, size_t antenna) const {
-  if (chain.slide != ChainPlan::kNone) return {tables_.sliding.legs, chain.slide * tables_.stride + antenna};
+SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::start_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
+  if (chain.slide != SharedLegPlan::kNone) return {tables_.sliding.legs, chain.slide * tables_.stride + antenna};
   return {tables_.legs, chain.start * tables_.stride + antenna};
 }
 
-ChainEvaluation::MeasuredLeg ChainEvaluation::end_of(const ChainPlan::Chain& chain, size_t antenna) const {
+SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::end_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
   return {tables_.legs, chain.end * tables_.stride + antenna};
 }
 
 // `antenna` is the antenna at the start. The result is null where there is one material point.
-const double* ChainEvaluation::inner_of(const ChainPlan::Chain& chain, size_t antenna) const {
-  if (chain.slide != ChainPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.stride + antenna, 0);
-  return chain.inner == ChainPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
+const double* SharedLegEvaluation::inner_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
+  if (chain.slide != SharedLegPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.stride + antenna, 0);
+  return chain.inner == SharedLegPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
 }
 
-PathToCombine ChainEvaluation::path_of(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+PathToCombine SharedLegEvaluation::path_of(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
   return {start_of(chain, ends.start).rows(), end_of(chain, ends.end).rows(), inner_of(chain, ends.start),
           scaled_weight(chain, scale), values_.row(slot, 0)};
 }
 
-const double* ChainEvaluation::image_of(const ChainPlan& plan, uint32_t leg, size_t antenna) const {
+const double* SharedLegEvaluation::image_of(const SharedLegPlan& plan, uint32_t leg, size_t antenna) const {
   const AntennaImages& images = tables_.images[plan.legs[leg].of_receivers];
   return images.rows.row(images.entry(plan.legs[leg].image, antenna), 0);
 }
 
-void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& chain, const TraceCells& cells,
+void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells,
                                  const PosedNodes& nodes, size_t slot) {
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
   CoherentPath& path = coherent_[slot];
@@ -108,7 +108,7 @@ void ChainEvaluation::place_cell(const ChainPlan& plan, const ChainPlan::Chain& 
   }
 }
 
-void ChainEvaluation::evaluate_coherent(const ChainPlan& plan, const ChainPlan::Chain& chain, const Ends& ends, double scale,
+void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale,
                                         size_t slot) {
   CoherentPath& path = coherent_[slot];
   path.path = path_of(chain, ends, scale, slot);
@@ -119,31 +119,31 @@ void ChainEvaluation::evaluate_coherent(const ChainPlan& plan, const ChainPlan::
 }
 
 // Cells differ from node to node, and so does the area for which the ray stands.
-void ChainEvaluation::reflect_from_stretching(size_t slot) {
+void SharedLegEvaluation::reflect_from_stretching(size_t slot) {
   CoherentPath path = coherent_[slot];
   const ComplexOf<double> weight = path.path.weight;
   for (size_t node = 0; node < values_.num_nodes(); ++node) {
     set_cell(stretching_[slot][node], path);
     const double area_ratio = path.point[PointToPose::kAreaRatio * values_.stride() + node];
     path.path.weight = {area_ratio * weight.re, area_ratio * weight.im};
-    chain_kernels_of_one().reflect(path, node, node + 1, values_.stride());
+    shared_leg_kernels_of_one().reflect(path, node, node + 1, values_.stride());
   }
 }
 
-void ChainEvaluation::evaluate_diffuse(const ChainPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
-  const bool has_inner = chain.inner != ChainPlan::kNone;
+void SharedLegEvaluation::evaluate_diffuse(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+  const bool has_inner = chain.inner != SharedLegPlan::kNone;
   const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
   const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
   kernels_->combine({path_of(chain, ends, scale, slot), begins_specular, is_single}, values_.stride());
 }
 
 // Applies the polarisations and phases of the antennas at both ends, where its legs hold them, to a path.
-void ChainEvaluation::turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+void SharedLegEvaluation::turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
   if (start.table.has_components) polarize(path, start, end, slot);
   if (start.table.has_phases) turn_phase(start, end, slot);
 }
 
-void ChainEvaluation::polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+void SharedLegEvaluation::polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
   PathToPolarize work{start.table.components.row(start.leg, 0), end.table.components.row(end.leg, 0), {}, {}, values_.row(slot, 0)};
   const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(path)];
   for (size_t entry = 0; entry < matrix.size(); ++entry) {
@@ -153,7 +153,7 @@ void ChainEvaluation::polarize(int64_t path, const MeasuredLeg& start, const Mea
   kernels_->polarize(work, values_.stride());
 }
 
-void ChainEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
+void SharedLegEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
   const double *first = start.table.phases.row(start.leg, 0), *last = end.table.phases.row(end.leg, 0);
   double *re = values_.row(slot, PathToCombine::kRe), *im = values_.row(slot, PathToCombine::kIm);
   for (size_t node = 0; node < values_.num_nodes(); ++node) {
@@ -164,7 +164,7 @@ void ChainEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg& en
 }
 
 // Each end sees the other over the mirrors: one leg leads from the transmitter's image to the receiver, and one back.
-void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
+void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                                        double scale) {
   constexpr size_t kSlot = 0;
   // The components are needed between upright antennas too, because these send nothing straight up or down.
@@ -173,9 +173,9 @@ void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const 
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
   for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
     const size_t of_all = channels.first + channel;
-    const ChainTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_}, {true, 0, of_all % num_receivers_}};
+    const SharedLegTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_}, {true, 0, of_all % num_receivers_}};
     for (const size_t end : {0, 1}) {
-      const ChainTables::ImageOfAntenna& other = ends[1 - end];
+      const SharedLegTables::ImageOfAntenna& other = ends[1 - end];
       const AntennaImages& images = tables_.images[other.of_receivers];
       // The position of an antenna stands in the same rows as the position of a point.
       const double* point = images.rows.row(images.entry(other.image, other.antenna), 0);
@@ -187,18 +187,18 @@ void ChainEvaluation::evaluate_mirrors(const ChainPlan::MirrorPath& path, const 
   }
 }
 
-bool ChainEvaluation::turns(uint32_t leg) const {
+bool SharedLegEvaluation::turns(uint32_t leg) const {
   const double* factor = tables_.legs.rows.row(leg * tables_.stride, LegToMeasure::kFactor);
   return std::signbit(factor[0]) != std::signbit(factor[values_.num_nodes() - 1]);
 }
 
-void ChainEvaluation::mark_turned(const ChainPlan& plan, uint8_t* turned) const {
-  for (const ChainPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
+void SharedLegEvaluation::mark_turned(const SharedLegPlan& plan, uint8_t* turned) const {
+  for (const SharedLegPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
 }
 
 // Writes the values of some paths to their places, node by node, because neighbours share the lines of the cache.
 template <class Path>
-void ChainEvaluation::put(std::span<const Path> paths, const ChannelNodes& to) const {
+void SharedLegEvaluation::put(std::span<const Path> paths, const ChannelNodes& to) const {
   const double* const values = values_.row(0, 0);
   const size_t stride = values_.stride(), of_slot = PathToCombine::kNumRows * stride;
   for (size_t node = 0; node < values_.num_nodes(); ++node) {

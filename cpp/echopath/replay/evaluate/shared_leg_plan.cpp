@@ -1,4 +1,4 @@
-#include "echopath/replay/evaluate/chain_plan.h"
+#include "echopath/replay/evaluate/shared_leg_plan.h"
 
 #include <bit>
 #include <cstring>
@@ -12,7 +12,7 @@ constexpr uint64_t place_key(const Hit& hit) { return pair_key(std::bit_cast<uin
 
 }  // namespace
 
-void ChainPlan::clear() {
+void SharedLegPlan::clear() {
   direct.clear();
   points.clear();
   mirrors.clear();
@@ -26,7 +26,7 @@ void ChainPlan::clear() {
 }
 
 // Lists the hits and events of a path in the order in which it was traced.
-struct ChainPlanner::TracedHits {
+struct SharedLegPlanner::TracedHits {
   const Hit* recorded;
   int count;
   uint64_t diffuse_bits;
@@ -40,24 +40,24 @@ struct ChainPlanner::TracedHits {
 };
 
 // Holds the indices of the first and the last material point; they are -1 where the path has flagged mirrors alone.
-struct ChainPlanner::Ends {
+struct SharedLegPlanner::Ends {
   int first = -1, last = -1;
   bool has_specular = false;  // a hit before the last one reflects and is no flagged mirror
 };
 
-bool ChainPlanner::is_same(const Known& known, const Known& run) {
+bool SharedLegPlanner::is_same(const Known& known, const Known& run) {
   return known.count == run.count && known.of_receivers == run.of_receivers &&
          std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-void ChainPlanner::begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_direct) {
+void SharedLegPlanner::begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_single_bounces) {
   paths_ = &paths;
   preparer_ = &preparer;
   slides_ = specular != SpecularPoints::kMaterial;
-  with_direct_ = with_direct;
+  with_single_bounces_ = with_single_bounces;
 }
 
-const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
+const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indices) {
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
     if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
@@ -65,7 +65,7 @@ const ChainPlan& ChainPlanner::operator()(std::span<const int64_t> indices) {
   return plan_;
 }
 
-void ChainPlanner::clear() {
+void SharedLegPlanner::clear() {
   plan_.clear();
   last_start_ = last_end_ = {};
   last_hit_ = nullptr;
@@ -76,11 +76,11 @@ void ChainPlanner::clear() {
   for (DenseIds* ids : {&mirror_ids_, &image_ids_, &point_ids_, &leg_ids_}) ids->clear();
 }
 
-bool ChainPlanner::is_image(const TracedHits& hits, int k) const {
+bool SharedLegPlanner::is_image(const TracedHits& hits, int k) const {
   return preparer_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
 }
 
-ChainPlanner::Ends ChainPlanner::ends_of(const TracedHits& hits) const {
+SharedLegPlanner::Ends SharedLegPlanner::ends_of(const TracedHits& hits) const {
   Ends ends;
   for (int k = 0; k < hits.count; ++k) {
     if (is_image(hits, k)) continue;
@@ -91,8 +91,8 @@ ChainPlanner::Ends ChainPlanner::ends_of(const TracedHits& hits) const {
   return ends;
 }
 
-bool ChainPlanner::is_direct(size_t path) const {
-  if (!with_direct_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
+bool SharedLegPlanner::is_direct(size_t path) const {
+  if (!with_single_bounces_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
   const uint32_t mesh = paths_->hits_of(static_cast<int64_t>(path))->mesh_id;
   if (!preparer_->is_plane(mesh) || preparer_->may_stretch(mesh)) return false;
   if (paths_->diffuse[path] != 0) return true;
@@ -101,12 +101,12 @@ bool ChainPlanner::is_direct(size_t path) const {
 }
 
 // The coherent and the diffuse path of a point follow each other in the record.
-bool ChainPlanner::add_direct(size_t place, int64_t path) {
+bool SharedLegPlanner::add_direct(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
   if (!is_direct(p)) return false;
   const Hit* hit = paths_->hits_of(path);
   const size_t kind = paths_->diffuse[p] != 0;
-  constexpr int64_t kNone = ChainPlan::Direct::kNoPath;
+  constexpr int64_t kNone = SharedLegPlan::Direct::kNoPath;
   const bool is_known = !plan_.direct.empty() && plan_.direct.back().hit == hit && plan_.direct.back().path[kind] == kNone;
   if (!is_known) plan_.direct.push_back({hit, {kNone, kNone}, {0, 0}});
   plan_.direct.back().path[kind] = path;
@@ -114,7 +114,7 @@ bool ChainPlanner::add_direct(size_t place, int64_t path) {
   return true;
 }
 
-void ChainPlanner::add_chain(size_t place, int64_t path) {
+void SharedLegPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
   const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], (paths_->flags[p] & kReversedPath) != 0};
   const Ends ends = ends_of(hits);
@@ -130,15 +130,15 @@ void ChainPlanner::add_chain(size_t place, int64_t path) {
                           slide_of(path, ends), hits.is_reversed, is_coherent, weight});
 }
 
-uint32_t ChainPlanner::slide_of(int64_t path, const Ends& ends) {
-  if (!slides_ || !ends.has_specular) return ChainPlan::kNone;
+uint32_t SharedLegPlanner::slide_of(int64_t path, const Ends& ends) {
+  if (!slides_ || !ends.has_specular) return SharedLegPlan::kNone;
   plan_.sliding.push_back(path);
   return static_cast<uint32_t>(plan_.sliding.size() - 1);
 }
 
 // A leg is identified by its recorded hits alone: the antenna at which the path begins stands before the first of them, the
 // other antenna behind the last.
-uint32_t ChainPlanner::start_leg(const TracedHits& hits, int first) {
+uint32_t SharedLegPlanner::start_leg(const TracedHits& hits, int first) {
   if (first == 0) return straight_leg(hits.hit(0), hits.is_reversed);
   const Known run{hits.run(0, first), first + 1, hits.is_reversed};
   if (is_same(last_start_, run)) return last_start_.leg;
@@ -152,7 +152,7 @@ uint32_t ChainPlanner::start_leg(const TracedHits& hits, int first) {
   return last_start_.leg = known;
 }
 
-uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
+uint32_t SharedLegPlanner::end_leg(const TracedHits& hits, int last) {
   if (last == hits.count - 1) return straight_leg(hits.hit(last), !hits.is_reversed);
   const Known run{hits.run(last, hits.count - 1), hits.count - last, !hits.is_reversed};
   if (is_same(last_end_, run)) return last_end_.leg;
@@ -166,7 +166,7 @@ uint32_t ChainPlanner::end_leg(const TracedHits& hits, int last) {
   return last_end_.leg = known;
 }
 
-uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
+uint32_t SharedLegPlanner::image_in(uint32_t parent, const Hit& hit) {
   Hit plane = hit;
   if (preparer_->is_plane(hit.mesh_id)) plane.u = plane.v = 0.0f;
   const uint32_t mirror = mirror_ids_(pair_key(plane.mesh_id, plane.triangle_id), place_key(plane));
@@ -176,40 +176,40 @@ uint32_t ChainPlanner::image_in(uint32_t parent, const Hit& hit) {
   return image;
 }
 
-uint32_t ChainPlanner::point(const Hit& hit) {
+uint32_t SharedLegPlanner::point(const Hit& hit) {
   if (&hit == last_hit_) return last_point_;
   const uint32_t id = point_ids_(pair_key(hit.mesh_id, hit.triangle_id), place_key(hit));
   if (id == plan_.points.size()) {
     plan_.points.push_back(hit);
-    straight_.push_back({ChainPlan::kNone, ChainPlan::kNone});
+    straight_.push_back({SharedLegPlan::kNone, SharedLegPlan::kNone});
   }
   last_hit_ = &hit;
   return last_point_ = id;
 }
 
-uint32_t ChainPlanner::straight_leg(const Hit& hit, bool of_receivers) {
+uint32_t SharedLegPlanner::straight_leg(const Hit& hit, bool of_receivers) {
   const uint32_t at = point(hit);
   uint32_t& known = straight_[at][of_receivers];
-  if (known == ChainPlan::kNone) known = add_leg({0, at, of_receivers});
+  if (known == SharedLegPlan::kNone) known = add_leg({0, at, of_receivers});
   return known;
 }
 
-uint32_t ChainPlanner::leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers) {
+uint32_t SharedLegPlanner::leg_over_mirrors(uint32_t image, const Hit& hit, bool of_receivers) {
   const uint32_t at = point(hit), id = leg_ids_(pair_key(image, at), of_receivers);
   if (id == leg_over_mirrors_.size()) leg_over_mirrors_.push_back(add_leg({image, at, of_receivers}));
   return leg_over_mirrors_[id];
 }
 
-uint32_t ChainPlanner::add_leg(const ChainPlan::Leg& leg) {
+uint32_t SharedLegPlanner::add_leg(const SharedLegPlan::Leg& leg) {
   plan_.legs.push_back(leg);
   return static_cast<uint32_t>(plan_.legs.size() - 1);
 }
 
 // A path with one diffuse hit has an inner part only where its triangle may stretch, because that changes its area.
-uint32_t ChainPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
-  if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id))) return ChainPlan::kNone;
+uint32_t SharedLegPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
+  if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id))) return SharedLegPlan::kNone;
   const int count = ends.last - ends.first + 1;
-  ChainPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
+  SharedLegPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
   for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);
   uint32_t& known = inner_of_[hits.is_reversed](hits.run(ends.first, ends.last), count, found.diffuse);
   if (known != SegmentIds::kNone) return known;

@@ -1,4 +1,4 @@
-#include "echopath/trace/launch/aim.h"
+#include "echopath/trace/launch/ray_targets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace echopath {
 namespace {
 
 // Largest number of aims: with the field of view they stay below kNoStratum.
-constexpr size_t kMostAims = 65000;
+constexpr size_t kMaxAims = 65000;
 // Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
 
@@ -34,39 +34,39 @@ bool is_same(const Stratum& a, const Stratum& b) {
          (a.across - b.across).norm() < kSameStratum;
 }
 
-class Aimer {
+class RayTargetFinder {
  public:
-  Aimer(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const AimSettings& settings)
+  RayTargetFinder(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
       : scene_(scene), mirrors_(mirrors), settings_(settings),
         frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {}
 
-  std::optional<Aim> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
+  std::optional<RayTarget> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
 
-  // Aims at each image that a frustum may show.
-  std::vector<Aim> at_images(const Target& target) const {
-    std::vector<Aim> images;
+  // RayTargets at each image that a frustum may show.
+  std::vector<RayTarget> at_images(const Target& target) const {
+    std::vector<RayTarget> images;
     std::vector<Vec3> vertices(target.vertices.size());
     for (const MirrorFrustum& frustum : frusta_) {
       if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
       std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
                      [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
-      std::optional<Aim> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
+      std::optional<RayTarget> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
       if (!made) continue;
-      const auto same = std::find_if(images.begin(), images.end(), [&](const Aim& other) { return is_same(made->stratum, other.stratum); });
-      Aim& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
+      const auto same = std::find_if(images.begin(), images.end(), [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
+      RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
       image.sequences.push_back(frustum.sequence);
     }
     return images;
   }
 
  private:
-  std::optional<Aim> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name, int num_mirrors) const {
+  std::optional<RayTarget> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name, int num_mirrors) const {
     std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
     stratum->num_mirrors = num_mirrors;
-    Aim made{std::move(*stratum), target.object, {}, target.moves};
+    RayTarget made{std::move(*stratum), target.object, {}, target.moves};
     if (num_mirrors == 0) made.sequences.push_back(kDirect);
     return made;
   }
@@ -81,7 +81,7 @@ class Aimer {
 
   const Scene& scene_;
   const std::vector<Mirror>& mirrors_;
-  const AimSettings& settings_;
+  const RayTargetSettings& settings_;
   std::vector<MirrorFrustum> frusta_;
 };
 
@@ -100,40 +100,40 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
 }
 
 // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
-void limit(std::vector<Aim>& objects, std::vector<Aim>& images, Aims& out) {
+void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
   const size_t all = objects.size() + images.size();
-  std::stable_sort(images.begin(), images.end(), [](const Aim& a, const Aim& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
-  if (objects.size() > kMostAims) {
-    const auto wider = [](const Aim& a, const Aim& b) { return a.stratum.solid_angle() > b.stratum.solid_angle(); };
+  std::stable_sort(images.begin(), images.end(), [](const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
+  if (objects.size() > kMaxAims) {
+    const auto wider = [](const RayTarget& a, const RayTarget& b) { return a.stratum.solid_angle() > b.stratum.solid_angle(); };
     std::stable_sort(objects.begin(), objects.end(), wider);
-    objects.resize(kMostAims);
+    objects.resize(kMaxAims);
   }
-  images.resize(std::min(images.size(), kMostAims - objects.size()));
+  images.resize(std::min(images.size(), kMaxAims - objects.size()));
   out.num_left_out = static_cast<int64_t>(all - objects.size() - images.size());
   out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
 }
 
 }  // namespace
 
-double weight_of_aim(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
+double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
 
-Aims aim_at_objects(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                    const AimSettings& settings) {
-  Aims out;
+RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                    const RayTargetSettings& settings) {
+  RayTargets out;
   out.object_of_mesh.assign(scene.meshes().size(), -1);
-  const Aimer aimer(scene, geometry, mirrors, settings);
-  std::vector<Aim> objects, images;
+  const RayTargetFinder aimer(scene, geometry, mirrors, settings);
+  std::vector<RayTarget> objects, images;
   for (const SceneObject& object : objects_of(scene)) {
     const int index = out.num_objects++;
     for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
     const Target target = target_of(scene, geometry, object, index);
-    std::optional<Aim> direct = aimer.at_object(target);
+    std::optional<RayTarget> direct = aimer.at_object(target);
     if (!direct) {
       out.any_unaimed = true;
       continue;
     }
     objects.push_back(std::move(*direct));
-    std::vector<Aim> more = aimer.at_images(target);
+    std::vector<RayTarget> more = aimer.at_images(target);
     std::move(more.begin(), more.end(), std::back_inserter(images));
   }
   limit(objects, images, out);

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "array.h"
-#include "echopath/spectrum/angle_fft.h"
-#include "echopath/spectrum/beamform.h"
-#include "echopath/spectrum/estimate_angles.h"
-#include "echopath/spectrum/range_azimuth.h"
-#include "echopath/spectrum/tdm.h"
+#include "echopath/spectrum/angle/angle_fft.h"
+#include "echopath/spectrum/angle/beamform.h"
+#include "echopath/spectrum/angle/estimate_angles.h"
+#include "echopath/spectrum/angle/range_azimuth.h"
+#include "echopath/spectrum/array/tdm.h"
 #include "keywords.h"
 #include "run_job.h"
 #include "window_name.h"

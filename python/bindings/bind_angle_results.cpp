@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/spectrum/angle_fft.h"
-#include "echopath/spectrum/beamform.h"
-#include "echopath/spectrum/estimate_angles.h"
-#include "echopath/spectrum/range_azimuth.h"
+#include "echopath/spectrum/angle/angle_fft.h"
+#include "echopath/spectrum/angle/beamform.h"
+#include "echopath/spectrum/angle/estimate_angles.h"
+#include "echopath/spectrum/angle/range_azimuth.h"
 
 namespace echopath::bindings {
 namespace {

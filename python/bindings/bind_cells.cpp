@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/label/cell_errors.h"
-#include "echopath/label/cells.h"
+#include "echopath/label/cells/cell_errors.h"
+#include "echopath/label/cells/cells.h"
 #include "echopath/signal/noise.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "run_job.h"

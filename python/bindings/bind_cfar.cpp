@@ -9,7 +9,7 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/spectrum/peaks.h"
+#include "echopath/spectrum/cfar/peaks.h"
 #include "keywords.h"
 #include "run_job.h"
 

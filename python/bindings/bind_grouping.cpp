@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/label/families.h"
-#include "echopath/label/visibility.h"
+#include "echopath/label/objects/families.h"
+#include "echopath/label/objects/visibility.h"
 #include "named_selections.h"
 #include "run_job.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/label/expression.h"
+#include "echopath/label/expressions/expression.h"
 #include "named_selections.h"
 #include "run_job.h"
 

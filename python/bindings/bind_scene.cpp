@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/scene/coplanar.h"
-#include "echopath/scene/readers.h"
+#include "echopath/scene/overlap/coplanar.h"
+#include "echopath/scene/readers/readers.h"
 #include "echopath/scene/scene.h"
 #include "keywords.h"
 #include "run_job.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/sim/signal_probe.h"
+#include "echopath/sim/stream/signal_probe.h"
 
 namespace echopath::bindings {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "array.h"
 #include "echopath/base/errors.h"
-#include "echopath/scene/skin_parts.h"
+#include "echopath/scene/readers/skin_parts.h"
 #include "keywords.h"
 
 namespace echopath::bindings {

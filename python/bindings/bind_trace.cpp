@@ -8,7 +8,7 @@
 
 #include "array.h"
 #include "choice.h"
-#include "echopath/sim/ray_allocation.h"
+#include "echopath/sim/rays/ray_allocation.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "error_target.h"

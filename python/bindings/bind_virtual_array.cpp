@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/spectrum/steering.h"
-#include "echopath/spectrum/virtual_array.h"
+#include "echopath/spectrum/array/steering.h"
+#include "echopath/spectrum/array/virtual_array.h"
 
 namespace echopath::bindings {
 namespace {

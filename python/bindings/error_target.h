@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "echopath/sim/trace_to_error.h"
+#include "echopath/sim/rays/trace_to_error.h"
 
 namespace echopath::bindings {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "echopath/label/expressions/selection.h"
 #include "echopath/label/partition.h"
-#include "echopath/label/selection.h"
 
 namespace echopath::bindings {
 

@@ -40,7 +40,7 @@ class PathCells:
 def path_cells(paths, spectrum, *, tx=0, rx=0) -> PathCells:
     """The cell of each path in a range-Doppler map of its radar.
 
-    Model: the beat frequency and the slow-time phase of cpp/echopath/signal/carrier.h at the middle of the frame. A path
+    Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame. A path
     whose velocity changes during the frame, and the window's main lobe, spread its power over neighbouring cells.
     paths: of `trace`, P of them; spectrum: RangeDoppler, any map of the radar that traced them, for its axes
     tx, rx: indices of the channel's antennas

@@ -7,9 +7,9 @@
 
 #include "echopath/base/simd.h"
 #include "echopath/radar/radar.h"
-#include "echopath/signal/kernels.h"
-#include "echopath/signal/method.h"
-#include "echopath/signal/nufft_kernel.h"
+#include "echopath/signal/kernels/kernels.h"
+#include "echopath/signal/kernels/nufft_kernel.h"
+#include "echopath/signal/methods/method.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "echopath/base/parallel.h"
-#include "echopath/signal/echo_states.h"
+#include "echopath/signal/echoes/echo_states.h"
 
 namespace echopath {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 // Replays paths without the synthesis of their echoes.
-#include "echopath/sim/replay_stream.h"
+#include "echopath/sim/stream/replay_stream.h"
 
 namespace echopath {
 

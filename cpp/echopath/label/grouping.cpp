@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/label/families.h"
+#include "echopath/label/objects/families.h"
 
 namespace echopath {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "echopath/label/objects/surfaces.h"
 #include "echopath/label/partition.h"
-#include "echopath/label/surfaces.h"
 
 namespace echopath {
 

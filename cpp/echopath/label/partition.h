@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/label/selection.h"
+#include "echopath/label/expressions/selection.h"
 
 namespace echopath {
 

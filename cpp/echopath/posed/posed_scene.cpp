@@ -1,6 +1,6 @@
 #include "echopath/posed/posed_scene.h"
 
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "echopath/posed/posed_antenna.h"
+#include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/scene.h"
-#include "echopath/scene/surface_patch.h"
 
 namespace echopath {
 

@@ -9,7 +9,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
 #include "echopath/posed/posed_scene.h"
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"
-#include "echopath/signal/echoes.h"
+#include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {
 

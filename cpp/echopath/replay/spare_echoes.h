@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/signal/echoes.h"
+#include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {
 

@@ -10,7 +10,7 @@
 
 #include "echopath/em/material.h"
 #include "echopath/motion/deformation.h"
-#include "echopath/scene/mesh.h"
+#include "echopath/scene/mesh/mesh.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/signal/echo_tiles.h"
+#include "echopath/signal/echoes/echo_tiles.h"
 
 namespace echopath {
 

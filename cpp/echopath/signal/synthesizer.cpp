@@ -12,9 +12,9 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/simd.h"
-#include "echopath/signal/carrier.h"
-#include "echopath/signal/method.h"
-#include "echopath/signal/per_sample.h"
+#include "echopath/signal/kernels/carrier.h"
+#include "echopath/signal/methods/method.h"
+#include "echopath/signal/methods/per_sample.h"
 #include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {

@@ -8,7 +8,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
-#include "echopath/signal/echoes.h"
+#include "echopath/signal/echoes/echoes.h"
 #include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {

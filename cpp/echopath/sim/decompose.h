@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/label/grouping.h"
-#include "echopath/sim/cube_pass.h"
+#include "echopath/sim/stream/cube_pass.h"
 
 namespace echopath {
 

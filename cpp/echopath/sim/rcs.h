@@ -6,7 +6,7 @@
 
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
-#include "echopath/sim/trace_to_error.h"
+#include "echopath/sim/rays/trace_to_error.h"
 
 namespace echopath {
 

@@ -1,6 +1,6 @@
 #pragma once
 // Computes the IF cube of the whole signal from paths, streaming blocks of paths through replay and signal.
-#include "echopath/sim/cube_pass.h"
+#include "echopath/sim/stream/cube_pass.h"
 
 namespace echopath {
 

@@ -5,7 +5,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/replay/evaluate/radio_constants.h"
-#include "echopath/validity/frame_probe.h"
+#include "echopath/validity/frame/frame_probe.h"
 
 namespace echopath {
 namespace {

@@ -11,7 +11,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/replay/replay.h"
 #include "echopath/signal/noise.h"
-#include "echopath/validity/new_surface.h"
+#include "echopath/validity/surface/new_surface.h"
 #include "echopath/validity/validity_objects.h"
 
 namespace echopath {

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "echopath/validity/frame_check.h"
+#include "echopath/validity/frame/frame_check.h"
 
 namespace echopath {
 

@@ -1,4 +1,4 @@
-"""How well the rays know the powers of parts in cells, from batches of rays (cpp/echopath/label/cell_errors.h)."""
+"""How well the rays know the powers of parts in cells, from batches of rays (cpp/echopath/label/cells/cell_errors.h)."""
 from __future__ import annotations
 
 import numpy as np

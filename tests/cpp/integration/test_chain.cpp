@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "echopath/base/parallel.h"
-#include "echopath/scene/readers.h"
+#include "echopath/scene/readers/readers.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"
 #include "echopath/spectrum/range_doppler.h"

@@ -5,7 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
-#include "echopath/sim/ray_allocation.h"
+#include "echopath/sim/rays/ray_allocation.h"
 #include "support/scenes.h"
 
 namespace echopath {

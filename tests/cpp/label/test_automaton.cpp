@@ -7,8 +7,8 @@
 
 #include "cpp/label/hand_made_paths.h"
 #include "echopath/base/parallel.h"
-#include "echopath/label/automaton.h"
-#include "echopath/label/expression.h"
+#include "echopath/label/expressions/automaton.h"
+#include "echopath/label/expressions/expression.h"
 
 namespace echopath {
 namespace {

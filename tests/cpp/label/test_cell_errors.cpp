@@ -1,4 +1,4 @@
-#include "echopath/label/cell_errors.h"
+#include "echopath/label/cells/cell_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "echopath/label/cells.h"
+#include "echopath/label/cells/cells.h"
 
 #include <gtest/gtest.h>
 

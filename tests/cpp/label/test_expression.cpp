@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "echopath/label/expression.h"
+#include "echopath/label/expressions/expression.h"
 
 namespace echopath {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "cpp/label/hand_made_paths.h"
 #include "echopath/base/parallel.h"
-#include "echopath/label/families.h"
 #include "echopath/label/grouping.h"
+#include "echopath/label/objects/families.h"
 
 namespace echopath {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/label/selection.h"
+#include "echopath/label/expressions/selection.h"
 
 namespace echopath {
 namespace {

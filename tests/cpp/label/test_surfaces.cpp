@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/label/surfaces.h"
+#include "echopath/label/objects/surfaces.h"
 #include "support/scenes.h"
 
 namespace echopath {

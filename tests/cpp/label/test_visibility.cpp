@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "echopath/base/parallel.h"
-#include "echopath/label/visibility.h"
+#include "echopath/label/objects/visibility.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "echopath/replay/replay.h"
-#include "echopath/signal/echo_states.h"
+#include "echopath/signal/echoes/echo_states.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "echopath/replay/time/motion_knots.h"
-#include "echopath/signal/echo_states.h"
+#include "echopath/signal/echoes/echo_states.h"
 #include "support/scenes.h"
 
 namespace echopath {

@@ -1,4 +1,4 @@
-#include "echopath/scene/adjacency.h"
+#include "echopath/scene/mesh/adjacency.h"
 
 #include <gtest/gtest.h>
 

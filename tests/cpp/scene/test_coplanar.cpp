@@ -7,8 +7,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
 #include "echopath/motion/motion.h"
-#include "echopath/scene/box_tree.h"
-#include "echopath/scene/coplanar.h"
+#include "echopath/scene/overlap/box_tree.h"
+#include "echopath/scene/overlap/coplanar.h"
 #include "support/expect_error.h"
 
 namespace echopath {

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "echopath/scene/mesh.h"
+#include "echopath/scene/mesh/mesh.h"
 #include "support/expect_error.h"
 
 namespace echopath {

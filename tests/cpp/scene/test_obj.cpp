@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "echopath/base/errors.h"
-#include "echopath/scene/readers.h"
+#include "echopath/scene/readers/readers.h"
 #include "support/expect_error.h"
 #include "temporary_file.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "echopath/scene/reflection_point.h"
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/reflection_point.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

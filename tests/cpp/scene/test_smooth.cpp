@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/signal/carrier.h"
+#include "echopath/signal/kernels/carrier.h"
 
 namespace echopath {
 namespace {

@@ -5,9 +5,9 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/base/phasor.h"
 #include "echopath/base/simd.h"
-#include "echopath/signal/echo_tiles.h"
-#include "echopath/signal/kernels.h"
-#include "echopath/signal/nufft_kernel.h"
+#include "echopath/signal/echoes/echo_tiles.h"
+#include "echopath/signal/kernels/kernels.h"
+#include "echopath/signal/kernels/nufft_kernel.h"
 
 namespace echopath {
 namespace {

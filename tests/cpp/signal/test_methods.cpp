@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/signal/method.h"
+#include "echopath/signal/methods/method.h"
 
 namespace echopath {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "echopath/base/constants.h"
+#include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/range_doppler.h"
-#include "echopath/spectrum/steering.h"
 
 namespace echopath::testing {
 

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/angle_fft.h"
-#include "echopath/spectrum/virtual_array.h"
+#include "echopath/spectrum/angle/angle_fft.h"
+#include "echopath/spectrum/array/virtual_array.h"
 #include "plane_waves.h"
 
 namespace echopath {

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/beamform.h"
+#include "echopath/spectrum/angle/beamform.h"
 #include "plane_waves.h"
 
 namespace echopath {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/cfar.h"
+#include "echopath/spectrum/cfar/cfar.h"
 #include "plane_waves.h"
 #include "support/expect_error.h"
 #include "support/sanitized.h"

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/estimate_angles.h"
-#include "echopath/spectrum/tdm.h"
+#include "echopath/spectrum/angle/estimate_angles.h"
+#include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
 
 namespace echopath {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/peaks.h"
+#include "echopath/spectrum/cfar/peaks.h"
 #include "plane_waves.h"
 
 namespace echopath {

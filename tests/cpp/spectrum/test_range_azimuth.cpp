@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "echopath/base/parallel.h"
-#include "echopath/spectrum/range_azimuth.h"
+#include "echopath/spectrum/angle/range_azimuth.h"
 #include "plane_waves.h"
 
 namespace echopath {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "echopath/spectrum/tdm.h"
+#include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
 
 namespace echopath {

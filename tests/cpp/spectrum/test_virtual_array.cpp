@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "echopath/spectrum/virtual_array.h"
+#include "echopath/spectrum/array/virtual_array.h"
 #include "plane_waves.h"
 
 namespace echopath {

@@ -1,8 +1,8 @@
-#include "echopath/validity/surface_walk.h"
+#include "echopath/validity/surface/surface_walk.h"
 
 #include <gtest/gtest.h>
 
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 #include "support/scenes.h"
 
 namespace echopath {

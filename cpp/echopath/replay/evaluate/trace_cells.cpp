@@ -4,7 +4,7 @@
 
 #include "echopath/base/plane.h"
 #include "echopath/replay/evaluate/inner_part.h"
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

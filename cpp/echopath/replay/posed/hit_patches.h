@@ -2,7 +2,7 @@
 // Finds which vertices of deforming meshes a record needs.
 #include <vector>
 
-#include "echopath/scene/surface_patch.h"
+#include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {

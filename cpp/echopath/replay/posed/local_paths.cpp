@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "echopath/replay/kernels/cell_formula.h"
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
 namespace {

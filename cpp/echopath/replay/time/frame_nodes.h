@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/radar/radar.h"
-#include "echopath/signal/echoes.h"
+#include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {
 

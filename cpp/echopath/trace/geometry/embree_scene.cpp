@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "echopath/scene/smooth.h"
+#include "echopath/scene/mesh/smooth.h"
 #include "echopath/trace/geometry/embree_device.h"
 
 namespace echopath {

@@ -1,0 +1,131 @@
+#include "echopath/label/objects/surfaces.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "echopath/base/errors.h"
+#include "echopath/posed/posed_scene.h"
+#include "echopath/trace/launch/scene_objects.h"
+
+namespace echopath {
+namespace {
+
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+// Fills in the surfaces of meshes that belong to no object.
+class SurfaceFinder {
+ public:
+  SurfaceFinder(const Scene& scene, SurfaceMap& map)
+      : scene_(scene), map_(map), holds_object_(scene.nodes().size()), num_mirrors_(scene.nodes().size()),
+        surface_of_(scene.nodes().size(), kNone) {
+    for (uint32_t mesh = 0; mesh < map.of_mesh.size(); ++mesh) count(mesh);
+  }
+  void run() {
+    for (uint32_t mesh = 0; mesh < map_.of_mesh.size(); ++mesh) {
+      if (map_.of_mesh[mesh] == kNone) map_.of_mesh[mesh] = surface_at(highest_group(scene_.meshes()[mesh].node));
+    }
+  }
+
+ private:
+  int parent_of(int node) const { return scene_.nodes()[static_cast<size_t>(node)].parent; }
+
+  void count(uint32_t mesh) {
+    const bool in_object = map_.of_mesh[mesh] != kNone;
+    const bool is_mirror = scene_.node_of(mesh).material->mirror;
+    for (int node = scene_.meshes()[mesh].node; node >= 0; node = parent_of(node)) {
+      if (in_object) holds_object_[static_cast<size_t>(node)] = true;
+      else if (is_mirror) ++num_mirrors_[static_cast<size_t>(node)];
+    }
+  }
+
+  int highest_group(int node) const {
+    const auto is_one_surface = [&](int above) {
+      return !holds_object_[static_cast<size_t>(above)] && num_mirrors_[static_cast<size_t>(above)] < 2;
+    };
+    for (int above = parent_of(node); above >= 0 && is_one_surface(above); above = parent_of(above)) node = above;
+    return node;
+  }
+
+  uint32_t surface_at(int node) {
+    uint32_t& surface = surface_of_[static_cast<size_t>(node)];
+    if (surface == kNone) {
+      surface = static_cast<uint32_t>(map_.names.size());
+      map_.names.push_back(scene_.nodes()[static_cast<size_t>(node)].name);
+    }
+    return surface;
+  }
+
+  const Scene& scene_;
+  SurfaceMap& map_;
+  std::vector<bool> holds_object_;    // by node
+  std::vector<int> num_mirrors_;      // by node
+  std::vector<uint32_t> surface_of_;  // by node
+};
+
+void require_takes_mesh(bool takes_any, const std::string& glob, const std::vector<std::string>& mesh_names) {
+  if (takes_any) return;
+  std::string nearest;
+  for (const std::string& name : nearest_names(glob, names_with_ancestors(mesh_names))) {
+    nearest += (nearest.empty() ? "" : ", ") + name;
+  }
+  require(false, "objects", "must be globs that take meshes (nearest names: " + nearest + ")", "'" + glob + "'");
+}
+
+// Gives the meshes that `glob` takes to `object` unless another object has them.
+void take_meshes(const std::string& glob, uint32_t object, const std::vector<std::string>& mesh_names, SurfaceMap& map) {
+  bool takes_any = false;
+  for (size_t mesh = 0; mesh < mesh_names.size(); ++mesh) {
+    if (!glob_takes(glob, mesh_names[mesh])) continue;
+    takes_any = true;
+    if (map.of_mesh[mesh] == kNone) map.of_mesh[mesh] = object;
+  }
+  require_takes_mesh(takes_any, glob, mesh_names);
+}
+
+}  // namespace
+
+std::vector<uint32_t> SurfaceMap::meshes_of(uint32_t surface) const {
+  std::vector<uint32_t> meshes;
+  for (uint32_t mesh = 0; mesh < of_mesh.size(); ++mesh) {
+    if (of_mesh[mesh] == surface) meshes.push_back(mesh);
+  }
+  return meshes;
+}
+
+SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objects) {
+  const std::vector<std::string> mesh_names = scene.mesh_names();
+  SurfaceMap map;
+  map.of_mesh.assign(mesh_names.size(), kNone);
+  std::set<std::string> names;
+  for (const NamedGlobs& object : objects) {
+    require(!object.name.empty(), "objects", "must have non-empty names", "an empty one");
+    require(names.insert(object.name).second, "objects", "must have names that differ", object.name + " twice");
+    for (const std::string& glob : object.globs) take_meshes(glob, map.num_objects, mesh_names, map);
+    const bool has_mesh = std::find(map.of_mesh.begin(), map.of_mesh.end(), map.num_objects) != map.of_mesh.end();
+    require(has_mesh, "objects", "must each have a mesh that none before it takes", object.name);
+    map.names.push_back(object.name);
+    ++map.num_objects;
+  }
+  SurfaceFinder(scene, map).run();
+  return map;
+}
+
+SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
+  SurfaceMap map;
+  map.of_mesh.assign(scene.meshes().size(), kNone);
+  const PosedScene pose(scene, time);
+  for (const SceneObject& object : objects_of(scene)) {
+    std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
+    for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);
+    const VerticesOf vertices_of = [&](uint32_t mesh) -> const std::vector<Vec3>& { return vertices[mesh]; };
+    if (bounding_sphere(vertices_of, object.mesh_ids).holds(antenna)) continue;
+    for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
+    map.names.push_back(scene.nodes()[static_cast<size_t>(object.node)].name);
+    ++map.num_objects;
+  }
+  SurfaceFinder(scene, map).run();
+  return map;
+}
+
+}  // namespace echopath

@@ -1,0 +1,25 @@
+#pragma once
+// Reads mesh files in double precision.
+#include <string>
+#include <vector>
+
+#include "echopath/scene/mesh/mesh.h"
+
+namespace echopath {
+
+struct NamedMesh {
+  std::string name;  // group name of the file, or the file's stem where it has none
+  MeshPtr mesh;
+};
+
+// Reads OBJ (each group `g`, or object `o` where there is no group, becomes a mesh; groups of equal names are merged;
+// polygons are cut into triangles) or PLY (ASCII, binary little and big endian; any number type), as the file's extension
+// says. `unit` is in metres per file unit. original_triangle() of the meshes counts the faces of the file from 0. A group
+// without any area is left out. Raises FileError naming the file and, in text formats, the line; raises invalid_argument for
+// unit <= 0.
+std::vector<NamedMesh> load_meshes(const std::string& path, double unit = 1.0);
+
+// Reads all groups of a file as one mesh.
+MeshPtr load_mesh(const std::string& path, double unit = 1.0);
+
+}  // namespace echopath

@@ -1,0 +1,229 @@
+#include "echopath/sim/rays/find_glints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/base/plane.h"
+#include "echopath/replay/replay.h"
+#include "echopath/scene/mesh/reflection_point.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kBeside = 1.5;     // cells: a point of reflection is seen where a path lies this near
+constexpr double kSamePoint = 0.5;  // of the narrower Fresnel zone
+
+// Identifies paths of one stratum that run over the same flagged mirrors to the same mesh and on.
+struct RouteKind {
+  uint16_t stratum;
+  uint32_t mesh;
+  std::vector<uint32_t> before, behind;  // meshes of the mirrors, from antenna to antenna
+
+  bool operator<(const RouteKind& other) const {
+    return std::tie(stratum, mesh, before, behind) < std::tie(other.stratum, other.mesh, other.before, other.behind);
+  }
+};
+
+// Holds a path of a kind and its direction of launch.
+struct SeenPath {
+  Vec3 direction;
+  int64_t path;
+  double amplitude = 0.0;
+};
+
+// Returns the radar with one antenna each, where rays start and end.
+Radar radar_of_rays(const Radar& radar) {
+  Radar one = radar;
+  for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
+    const Vec3 mean = mean_position(*antennas, Transform::Identity());
+    antennas->resize(1);
+    antennas->front().position = mean;
+  }
+  return one;
+}
+
+class GlintSearch {
+ public:
+  GlintSearch(const Paths& paths, Job* job)
+      : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
+    sort_paths(job);
+    weigh_paths(job);
+    std::vector<uint8_t> is_met(triangles_.size(), 0);
+    for (const auto& [kind, seen] : kinds_) is_met[kind.mesh] = 1;
+    Job unseen(job);
+    parallel_for(std::ssize(is_met), [&](int64_t mesh) {
+      if (is_met[static_cast<size_t>(mesh)]) triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
+    }, &unseen);
+  }
+
+  std::vector<Glint> find(Job* job) const {
+    std::vector<const Kinds::value_type*> kinds;
+    for (const auto& kind : kinds_) kinds.push_back(&kind);
+    std::vector<std::vector<Glint>> found(kinds.size());
+    Job unseen(job);
+    parallel_for(std::ssize(kinds), [&](int64_t i) {
+      const auto k = static_cast<size_t>(i);
+      found[k] = glints_of(kinds[k]->first, kinds[k]->second);
+    }, &unseen);
+    std::vector<Glint> glints;
+    for (std::vector<Glint>& of_kind : found) std::move(of_kind.begin(), of_kind.end(), std::back_inserter(glints));
+    return glints;
+  }
+
+ private:
+  using Kinds = std::map<RouteKind, std::vector<SeenPath>>;
+
+  void sort_paths(Job* job) {
+    constexpr int64_t kTogether = 1 << 16;
+    for (int64_t path = 0; path < paths_.num_paths(); ++path) {
+      if (job && path % kTogether == 0) job->throw_if_cancelled();
+      std::optional<RouteKind> kind = kind_of(path);
+      if (kind) kinds_[std::move(*kind)].push_back({direction_of_launch(path), path});
+    }
+  }
+
+  // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
+  std::optional<RouteKind> kind_of(int64_t path) const {
+    const auto p = static_cast<size_t>(path);
+    if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
+    RouteKind kind{paths_.stratum[p], 0, {}, {}};
+    int surfaces = 0;
+    for (int k = 0; k < paths_.num_bounces[p]; ++k) {
+      const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
+      if (paths_.scene->node_of(mesh).material->mirror) {
+        (surfaces == 0 ? kind.before : kind.behind).push_back(mesh);
+      } else {
+        kind.mesh = mesh;
+        ++surfaces;
+      }
+    }
+    return surfaces == 1 ? std::optional(std::move(kind)) : std::nullopt;
+  }
+
+  Vec3 direction_of_launch(int64_t path) const {
+    const Hit& first = paths_.hits_of(path)[0];
+    const auto [a, b, c] = pose_.world_triangle(first.mesh_id, first.triangle_id);
+    return (a + first.u * (b - a) + first.v * (c - a) - paths_.frame.transmitter).normalized();
+  }
+
+  // Computes amplitudes without a filter, which are what one launch cell sends.
+  void weigh_paths(Job* job) {
+    std::vector<int64_t> indices;
+    for (const auto& [kind, seen] : kinds_) {
+      for (const SeenPath& one : seen) indices.push_back(one.path);
+    }
+    if (indices.empty()) return;
+    const Radar radar = radar_of_rays(paths_.radar);
+    const CellView unfiltered{0.0};
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    Replayer(paths_, radar).evaluate(indices, paths_.frame.trace_time, {&unfiltered, 1}, lengths, amplitudes, job);
+    size_t next = 0;
+    for (auto& [kind, seen] : kinds_) {
+      for (SeenPath& one : seen) one.amplitude = std::abs(amplitudes[next++]);
+    }
+  }
+
+  std::vector<ReflectingTriangle> triangles_of(uint32_t mesh_id) const {
+    const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
+    std::vector<ReflectingTriangle> out;
+    for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
+      out.push_back(reflecting_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]},
+                                        {normals[t[0]], normals[t[1]], normals[t[2]]}));
+    }
+    return out;
+  }
+
+  // Returns the plane of the largest triangle; the others lie in it to a tenth of a millimetre.
+  Plane plane_of(uint32_t mirror) const {
+    const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
+    Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
+    for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
+      const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
+      const Vec3 normal = (b - a).cross(c - a);
+      if (normal.squaredNorm() > largest.normal.squaredNorm()) largest = {a, normal};
+    }
+    largest.normal.normalize();
+    return largest;
+  }
+
+  std::vector<Glint> glints_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
+    std::vector<Plane> before;
+    for (const uint32_t mirror : kind.before) before.push_back(plane_of(mirror));
+    Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;
+    for (const Plane& plane : before) first = plane.image(first);
+    for (size_t k = kind.behind.size(); k-- > 0;) second = plane_of(kind.behind[k]).image(second);
+    std::vector<Glint> glints;
+    for (const ReflectingTriangle& triangle : triangles_[kind.mesh]) {
+      const std::optional<ReflectionPoint> point = find_reflection(triangle, first, second);
+      if (!point) continue;
+      Glint glint = glint_at(*point, first, kind.stratum);
+      for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].mirrored(glint.direction);
+      if (const SeenPath* beside = nearest(seen, glint, cell_of(kind.stratum))) {
+        const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[kind.stratum].ray_density;
+        glint.power = field * field;
+        glints.push_back(glint);
+      }
+    }
+    return glints;
+  }
+
+  Glint glint_at(const ReflectionPoint& point, const Vec3& first, size_t stratum) const {
+    const double wavenumber = kTwoPi * paths_.radar.waveform.start_frequency / kSpeedOfLight;
+    const Vec3 line = point.position - first;
+    const double distance = line.norm();
+    double sizes[2];
+    for (size_t i = 0; i < 2; ++i) {
+      const Vec3 zone = std::sqrt(kTwoPi / (wavenumber * std::abs(point.bends[i]) + 1e-12)) * point.axes[i];
+      sizes[i] = zone.cross(line).norm() / (distance * distance);
+    }
+    const Stratum& of = paths_.frame.strata[stratum];
+    return {of.is_focus() ? of.focus_of : static_cast<int>(stratum), line / distance, 0.0, std::min(sizes[0], sizes[1]),
+            std::max(sizes[0], sizes[1])};
+  }
+
+  double cell_of(size_t stratum) const { return 1.0 / std::sqrt(paths_.frame.lattice_density(stratum)); }  // rad
+
+  // Returns the path beside a glint, or null.
+  static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
+    const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
+    const auto found = std::min_element(seen.begin(), seen.end(),
+                                        [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
+    return away(*found) <= kBeside * kBeside * cell * cell ? &*found : nullptr;
+  }
+
+  const Paths& paths_;
+  const PosedScene pose_;
+  Kinds kinds_;
+  std::vector<std::vector<ReflectingTriangle>> triangles_;  // by mesh, of those that are met
+};
+
+// Neighbouring triangles, and several records of one way, find the same point.
+bool is_same(const Glint& a, const Glint& b) {
+  const double reach = kSamePoint * std::min(a.narrow, b.narrow);
+  return (a.direction - b.direction).squaredNorm() < reach * reach;
+}
+
+}  // namespace
+
+std::vector<Glint> find_glints(const Paths& paths, Job* job) {
+  std::vector<Glint> glints = GlintSearch(paths, job).find(job), kept;
+  std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
+  std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
+  for (const Glint& glint : glints) {
+    std::vector<Glint>& others = of_stratum[static_cast<size_t>(glint.stratum)];
+    if (others.size() == kMaxGlints) continue;
+    if (std::any_of(others.begin(), others.end(), [&](const Glint& other) { return is_same(glint, other); })) continue;
+    others.push_back(glint);
+    kept.push_back(glint);
+  }
+  return kept;
+}
+
+}  // namespace echopath

@@ -1,0 +1,23 @@
+#pragma once
+// Decides which points of reflection get rays of their own, and how many.
+#include <vector>
+
+#include "echopath/sim/rays/find_glints.h"
+#include "echopath/trace/launch/launch_focus.h"
+
+namespace echopath {
+
+// Holds what is known of the echo of a stratum.
+struct KnownEcho {
+  double power = 0.0;  // W
+  double high = 0.0;   // W, end of its interval
+};
+
+// Sets foci about the glints of each stratum that its rays would be too far apart for, and takes their rays from its share
+// in `guide.shares`, which counts in rays. Foci get at most half of it, by the part of the stratum's field that they hold,
+// so that echoes without a point of reflection, such as those of edges, keep what they need. Among foci, rays go by the
+// number of Fresnel zones and by the root of the glint's power. `frame` is that of the trace in which the glints were found;
+// `echoes` are by index of its strata, of those that are no foci; `glints` come strongest first.
+void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints, LaunchGuide& guide);
+
+}  // namespace echopath

@@ -1,0 +1,167 @@
+#include "echopath/sim/rays/ray_allocation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "echopath/power/received_power.h"
+#include "echopath/signal/noise.h"
+#include "echopath/sim/rays/plan_foci.h"
+#include "echopath/trace/launch/ray_targets.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kDynamicRange = 1e-6;  // of the strongest echo
+constexpr double kMinGrowth = 1.0 / 16.0;
+constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
+constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
+constexpr double kImageWeight = 0.5;    // beside that of the aim
+constexpr double kNeedIsKnownTo = 2.0;  // a factor: intervals of few rays are that uncertain
+constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
+constexpr int64_t kPilotDivisor = 8;
+constexpr int64_t kFewestPilotRays = 2048;
+
+double sum_of(const RayShares& shares) {
+  return std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const auto& share) { return sum + share.second; });
+}
+
+// Returns the received power of each stratum with its foci.
+std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
+  const size_t num_strata = paths.frame.strata.size();
+  std::vector<uint32_t> group(paths.stratum.size());
+  std::transform(paths.stratum.begin(), paths.stratum.end(), group.begin(), [&](uint16_t stratum) {
+    if (stratum >= num_strata) return static_cast<uint32_t>(num_strata);
+    const Stratum& of = paths.frame.strata[stratum];
+    return static_cast<uint32_t>(of.is_focus() ? of.focus_of : stratum);
+  });
+  return received_powers(paths, Sorting{group, num_strata + 1}, job);
+}
+
+double strongest_of(const std::vector<ReceivedPower>& powers) {
+  double strongest = 0.0;
+  for (const ReceivedPower& power : powers) strongest = std::max(strongest, power.power);
+  return strongest;
+}
+
+// Returns half the interval relative to the power, in dB; a power below the floor counts as if it were as strong as the
+// floor.
+double missing_db(const ReceivedPower& power, double least) {
+  const double level = std::max(power.power, least), half = std::max(power.high - power.power, power.power - power.low);
+  return level > 0 ? 10.0 * std::log10(1.0 + half / level) : 0.0;
+}
+
+// Marks the object nodes below which something moves.
+std::vector<bool> moving_objects(const Scene& scene) {
+  std::vector<bool> moves(scene.nodes().size());
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
+    if (scene.is_moving(mesh)) moves[static_cast<size_t>(scene.meshes()[mesh].object)] = true;
+  }
+  return moves;
+}
+
+RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double missing, double target_db) {
+  RayNeed need;
+  need.stratum = stratum.name;
+  need.echo = {power.power, power.high};
+  need.weight = weight_of_target(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
+  double growth = power.high > 0 ? std::clamp(missing / target_db, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
+  // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
+  if (stratum.object < 0) growth = 1.0;
+  need.rays = growth * num_rays;
+  return need;
+}
+
+// Raises the rays of the field of view where its echo is not resolved and a glint makes it.
+void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
+  const int field = static_cast<int>(frame.strata.size()) - 1;
+  const std::string& name = frame.strata.back().name;
+  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
+  const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
+                                       [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
+  if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
+}
+
+// Returns the echoes by index of the strata.
+std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
+  std::vector<KnownEcho> echoes(frame.strata.size());
+  size_t next = 0;
+  for (size_t k = 0; k < echoes.size(); ++k) {
+    if (!frame.strata[k].is_focus()) echoes[k] = needs.strata[next++].echo;
+  }
+  return echoes;
+}
+
+}  // namespace
+
+double RayNeeds::num_rays() const {
+  double sum = 0.0;
+  for (const RayNeed& need : strata) sum += need.rays;
+  return sum;
+}
+
+RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job) {
+  const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
+  const double least = floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
+  const std::vector<bool> moves = moving_objects(*paths.scene);
+  const RayShares launched = shares_of(paths.frame.strata);
+  RayNeeds needs;
+  for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
+    const Stratum& stratum = paths.frame.strata[k];
+    if (stratum.is_focus()) continue;
+    const double missing = missing_db(powers[k], least);
+    const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
+    const double target = is_moving ? kMovingTarget * target_db : target_db;
+    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
+    needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
+    if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
+  }
+  return needs;
+}
+
+RayShares share_out(const RayNeeds& needs, double num_rays) {
+  RayShares shares;
+  for (const RayNeed& need : needs.strata) shares[need.stratum] = need.rays;
+  if (needs.num_rays() <= num_rays) return shares;
+  std::vector<const RayNeed*> by_modesty;
+  double weights = 0.0, left = num_rays;
+  for (const RayNeed& need : needs.strata) {
+    by_modesty.push_back(&need);
+    weights += need.weight;
+  }
+  std::stable_sort(by_modesty.begin(), by_modesty.end(),
+                   [](const RayNeed* a, const RayNeed* b) { return a->rays * b->weight < b->rays * a->weight; });
+  for (const RayNeed* need : by_modesty) {
+    const double share = std::min(kNeedIsKnownTo * need->rays, left * need->weight / weights);
+    shares[need->stratum] = share;
+    left -= share;
+    weights -= need->weight;
+  }
+  return shares;
+}
+
+LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job) {
+  LaunchGuide guide;
+  guide.shares = share_out(needs, static_cast<double>(num_rays));
+  const std::vector<Glint> glints = find_glints(paths, job);
+  raise_field_of_view(paths.frame, needs, glints, guide.shares);
+  const double rays_per_share = static_cast<double>(num_rays) / sum_of(guide.shares);
+  for (auto& [name, share] : guide.shares) share *= rays_per_share;
+  set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
+  return guide;
+}
+
+Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
+  TraceSettings launch = settings;
+  launch.num_rays = settings.num_rays / kPilotDivisor;
+  if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays) return trace(scene, radar, settings, job, kept);
+  KeptGeometry own;
+  if (!kept) kept = &own;
+  Job unseen(job);  // its progress is that of the trace
+  const Paths pilot = trace(scene, radar, launch, &unseen, kept);
+  launch.num_rays = settings.num_rays;
+  launch.guide = guide_rays(pilot, ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), settings.num_rays, &unseen);
+  return trace(scene, radar, launch, job, kept);
+}
+
+}  // namespace echopath

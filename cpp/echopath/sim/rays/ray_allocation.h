@@ -1,0 +1,58 @@
+#pragma once
+// Puts rays where the error is: a trace of few rays tells how many each stratum needs.
+#include <string>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/sim/rays/plan_foci.h"
+#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/trace.h"
+
+namespace echopath {
+
+// Tells how many rays the echo of a stratum (of one object, or of one image of it) needs.
+struct RayNeed {
+  std::string stratum;     // its name
+  double rays = 0.0;
+  KnownEcho echo;
+  bool is_resolved = true;  // to the target, or below the floor
+  double weight = 1.0;     // of images, below that of objects
+};
+
+// Tells which echoes matter.
+enum class EchoFloor {
+  kNoise,      // those that may stand above the noise of a cell of the range-Doppler map
+  kStrongest,  // those down to 60 dB below the strongest
+};
+
+struct RayNeeds {
+  std::vector<RayNeed> strata;  // in the order of the trace's, without foci
+  double worst_db = 0.0;  // largest half interval of an echo above the floor
+
+  double num_rays() const;
+};
+
+// Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
+// to `target_db`, for objects that move to a quarter of it. The interval of a coherent echo falls about with the rays, that
+// of a diffuse one with their root; both get rays in proportion to the error over the target, within a factor of
+// kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends nothing back keeps a
+// quarter. Raises Cancelled.
+RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
+inline constexpr double kMaxGrowth = 32.0;
+
+// Shares of `num_rays` rays. Where they are too few, no stratum gets more for its weight than another that lacks rays: what needs
+// few for its weight gets twice of that, as few rays tell their need within a factor of two, and the others share the rest by
+// their weights. One that needs very many takes nothing away from those that fewer would serve.
+RayShares share_out(const RayNeeds& needs, double num_rays);
+
+// Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints
+// (plan_foci.h). Raises Cancelled.
+LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
+
+// Traces with rays shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h). A pilot
+// trace of an eighth of settings.num_rays tells the needs and is thrown away. Where settings.guide gives the shares, or rays
+// are few, there is no pilot, and rays are shared as in `trace`. Raises as `trace`.
+Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
+                    KeptGeometry* kept = nullptr);
+
+}  // namespace echopath

@@ -1,0 +1,37 @@
+#include "echopath/sim/rays/trace_to_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/sim/rays/ray_allocation.h"
+
+namespace echopath {
+
+void ErrorTarget::validate() const {
+  require(error_db > 0, "target_error_db", "must be positive", error_db);
+  require(max_rays >= 1, "max_rays", "must be >= 1", max_rays);
+}
+
+Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
+                     Job* job, KeptGeometry* kept) {
+  target.validate();
+  settings.validate();
+  require(settings.num_rays <= target.max_rays, "num_rays", "must not exceed max_rays", settings.num_rays);
+  KeptGeometry own;
+  if (!kept) kept = &own;
+  TraceSettings launch = settings;
+  for (;;) {
+    Paths paths = trace(scene, radar, launch, job, kept);
+    const RayNeeds needs = ray_needs(paths, target.error_db, target.floor, job);
+    paths.frame.target_error_db = target.error_db;
+    paths.frame.error_db = needs.worst_db;
+    const bool is_met = needs.worst_db <= target.error_db;
+    if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0) return paths;
+    const double wanted = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
+    launch.num_rays = std::clamp(std::llround(wanted), std::min<long long>(2 * launch.num_rays, target.max_rays),
+                                 static_cast<long long>(target.max_rays));
+    launch.guide = guide_rays(paths, needs, launch.num_rays, job);
+  }
+}
+
+}  // namespace echopath

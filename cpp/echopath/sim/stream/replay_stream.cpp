@@ -1,0 +1,274 @@
+#include "echopath/sim/stream/replay_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "echopath/base/large_array.h"
+#include "echopath/base/parallel.h"
+#include "echopath/signal/echoes/echoes.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
+constexpr int64_t kEchoesInFlight = 1 << 17;   // paths x channels; as many are handed over meanwhile
+constexpr int64_t kNodesOfAPath = 32;          // with more nodes per path, fewer echoes are in flight
+// The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
+// the first.
+constexpr int64_t kLargestBlock = 1000;
+
+// Echoes with nodes in every chirp are replayed few at a time, and the next take over their memory: a page that is touched
+// for the first time costs as much as a path does at all its nodes.
+constexpr int64_t kNodesOfChirps = 128;
+constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
+constexpr int64_t kMinBlock = 64;  // fills the registers with vectors of joined echoes
+
+int64_t block_size(int64_t num_channels, int64_t num_rows) {
+  const int64_t values = num_channels * std::max<int64_t>(1, num_rows / kNodesOfAPath);
+  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
+  if (num_rows <= kNodesOfChirps) return most;
+  return std::min(most, std::max(kMinBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_rows)));
+}
+
+constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds
+
+// Sorts the indices of the paths by the grid that they begin with (PathGrids), in their order.
+class PathsByGrid {
+ public:
+  PathsByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
+      : num_grids_(static_cast<size_t>(grids.num_grids())), grid_(static_cast<size_t>(num_paths)) {
+    const int64_t num_tasks = (num_paths + kPathsOfTask - 1) / kPathsOfTask;
+    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(num_grids_));
+    parallel_for(num_tasks, [&](int64_t task) {
+      if (job) job->throw_if_cancelled();
+      find_grids(grids, task);
+    });
+    std::vector<std::vector<int64_t>> lists = lists_of_counts();
+    parallel_for(num_tasks, [&](int64_t task) { fill(task, lists); });
+    lists_ = std::move(lists);
+  }
+
+  std::vector<std::vector<int64_t>> take() { return std::move(lists_); }
+
+ private:
+  std::pair<int64_t, int64_t> range_of(int64_t task) const {
+    return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(grid_.size()))};
+  }
+
+  void find_grids(const PathGrids& grids, int64_t task) {
+    const auto [begin, end] = range_of(task);
+    const std::span<uint8_t> here(grid_.data() + begin, static_cast<size_t>(end - begin));
+    grids.first(begin, here);
+    for (const uint8_t grid : here) ++place_[static_cast<size_t>(task)][grid];
+  }
+
+  // Turns the counts of the tasks into the places where each begins to write.
+  std::vector<std::vector<int64_t>> lists_of_counts() {
+    std::vector<size_t> sizes(num_grids_);
+    for (std::vector<size_t>& places : place_) {
+      for (size_t grid = 0; grid < num_grids_; ++grid) sizes[grid] += std::exchange(places[grid], sizes[grid]);
+    }
+    std::vector<std::vector<int64_t>> lists(num_grids_);
+    for (size_t grid = 0; grid < num_grids_; ++grid) resize_large(lists[grid], sizes[grid]);
+    return lists;
+  }
+
+  void fill(int64_t task, std::vector<std::vector<int64_t>>& lists) {
+    const auto [begin, end] = range_of(task);
+    std::vector<size_t>& places = place_[static_cast<size_t>(task)];
+    for (int64_t path = begin; path < end; ++path) {
+      const size_t grid = grid_[static_cast<size_t>(path)];
+      lists[grid][places[grid]++] = path;
+    }
+  }
+
+  size_t num_grids_;
+  std::vector<uint8_t> grid_;                // by path
+  std::vector<std::vector<size_t>> place_;   // [task][grid]
+  std::vector<std::vector<int64_t>> lists_;
+};
+
+// Returns the paths less those that were left, in their order.
+std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
+  std::vector<int64_t> rest;
+  rest.reserve(paths.size());
+  auto next = paths.begin();
+  for (const UnfollowedPath& failed : left) {
+    const auto end = std::find(next, paths.end(), failed.path);
+    rest.insert(rest.end(), next, end);
+    next = end + 1;
+  }
+  rest.insert(rest.end(), next, paths.end());
+  return rest;
+}
+
+}  // namespace
+
+struct ReplayStream::Block {
+  std::vector<Echoes> channels;
+  std::vector<int64_t> paths;    // [echo] its path, or the first of those joined in it
+  int64_t num_paths = 0;         // of all echoes
+  std::vector<UnfollowedPath> left;
+};
+
+// Holds blocks that are replayed together.
+struct ReplayStream::Window {
+  int first_channel = 0;
+  size_t num_channels = 0;
+  std::vector<Block> blocks;
+};
+
+// Hands windows to the sink, each while the next is replayed.
+class ReplayStream::WindowPipeline {
+ public:
+  WindowPipeline(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
+
+  // Hands the last window to the sink while `replay` makes the next, each with whatever threads the other leaves idle.
+  void beside(const std::function<void(Window& next)>& replay) {
+    Window next;
+    run_both([&] { finish(); }, [&] { replay(next); });
+    last_ = std::move(next);
+  }
+
+  void finish() {
+    std::vector<int64_t> paths;
+    int64_t num_paths = 0;
+    for (const Block& block : last_.blocks) {
+      paths.insert(paths.end(), block.paths.begin(), block.paths.end());
+      num_paths += block.num_paths;
+    }
+    std::vector<Echoes> echoes(last_.blocks.size());
+    for (size_t channel = 0; channel < last_.num_channels; ++channel) {
+      if (stream_.job_) stream_.job_->throw_if_cancelled();
+      for (size_t i = 0; i < echoes.size(); ++i) echoes[i] = std::move(last_.blocks[i].channels[channel]);
+      sink_(last_.first_channel + static_cast<int>(channel), echoes, {paths, num_paths});
+      stream_.replayer_.recycle(echoes);
+    }
+    last_ = {};
+  }
+
+ private:
+  const ReplayStream& stream_;
+  const Sink& sink_;
+  Window last_;
+};
+
+void ReplayStream::run(const Sink& sink) const {
+  WindowPipeline out(*this, sink);
+  const PathGrids grids = replayer_.path_grids();
+  std::vector<std::vector<int64_t>> by_grid = PathsByGrid(grids, num_paths_, job_).take();
+  add_still(by_grid.front(), out);
+  by_grid.front() = {};
+  add_moving(grids, std::move(by_grid), out);
+  out.finish();
+}
+
+void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const {
+  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
+}
+
+// Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
+// every chirp.
+void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const {
+  std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
+  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
+    const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+    const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
+    for (const UnfollowedPath& path : run_blocks(by_grid[static_cast<size_t>(polynomial)], extent, replay, out)) {
+      const NextGrid next = grids.next(path, polynomial);
+      (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
+    }
+  }
+  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
+    add_chirps(by_chirp, transmitter, out);
+    add_samples(by_grid.back(), transmitter, out);
+  }
+}
+
+// Holds only the scene as posed at the chirps of one transmitter.
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const {
+  const auto is_empty = [](const std::vector<int64_t>& paths) { return paths.empty(); };
+  if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
+  const int num_receivers = num_channels() / num_transmitters_;
+  const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
+  const PosedGrid chirps = replayer_.pose(replayer_.grids().chirps(transmitter));
+  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
+    run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
+               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
+  }
+}
+
+// Replays the paths that no polynomial follows.
+void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const {
+  if (paths.empty()) return;
+  const int num_receivers = num_channels() / num_transmitters_;
+  const PosedGrid samples = replayer_.pose(replayer_.grids().samples(transmitter));
+  run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
+             [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
+}
+
+// Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
+std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
+                                                 WindowPipeline& out) const {
+  const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = static_cast<int64_t>(paths.size());
+  std::vector<UnfollowedPath> all_left;
+  for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
+    const int64_t count = std::min(size * kBlocksInFlight, num_paths - begin);
+    const std::span<const int64_t> some(paths.data() + begin, static_cast<size_t>(count));
+    out.beside([&](Window& window) {
+      const std::vector<UnfollowedPath> left = replay_window(some, size, extent, replay, window);
+      all_left.insert(all_left.end(), left.begin(), left.end());
+    });
+  }
+  return all_left;
+}
+
+// Replays a window of blocks. Returns the paths that are left.
+std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
+                                                    const Extent& extent, const Replay& replay, Window& window) const {
+  const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
+  window.first_channel = extent.first_channel;
+  window.num_channels = static_cast<size_t>(extent.num_channels);
+  window.blocks.resize(static_cast<size_t>(num_blocks));
+  parallel_for(num_blocks, [&](int64_t i) {
+    if (job_) job_->throw_if_cancelled();
+    const int64_t first = i * block_size;
+    const auto part = paths.subspan(static_cast<size_t>(first), static_cast<size_t>(std::min(block_size, count - first)));
+    window.blocks[static_cast<size_t>(i)] = run_block(part, static_cast<size_t>(i), extent, replay);
+  });
+  if (watcher_) watcher_->end_blocks();
+  std::vector<UnfollowedPath> all_left;
+  for (const Block& block : window.blocks) all_left.insert(all_left.end(), block.left.begin(), block.left.end());
+  return all_left;
+}
+
+bool ReplayStream::is_watched(const Extent& extent) const {
+  for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
+    if (watcher_->watches(extent.first_channel + i)) return true;
+  }
+  return false;
+}
+
+ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size_t index, const Extent& extent,
+                                            const Replay& replay) const {
+  Block block;
+  std::vector<uint8_t> joined;
+  const bool joins_at_once = join_rule_ && extent.joins && !is_watched(extent);
+  if (joins_at_once) joined = (*join_rule_)(paths);
+  block.channels = replay(paths, joined, block.left);
+  block.paths = without(block.left, paths);
+  block.num_paths = static_cast<int64_t>(block.paths.size());
+  if (!joins_at_once) {
+    for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
+      const int channel = extent.first_channel + i;
+      if (watcher_->watches(channel)) watcher_->see(channel, index, block.channels[static_cast<size_t>(i)], block.paths);
+    }
+    if (!join_rule_) return block;
+    joined = (*join_rule_)(block.paths);
+    block.channels = replayer_.joined(std::move(block.channels), joined);
+  }
+  block.paths = first_of(block.paths, joined);
+  return block;
+}
+
+}  // namespace echopath

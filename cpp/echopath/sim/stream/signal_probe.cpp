@@ -1,0 +1,444 @@
+#include "echopath/sim/stream/signal_probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/lanes.h"
+#include "echopath/base/parallel.h"
+#include "echopath/base/phasor.h"
+#include "echopath/base/random.h"
+#include "echopath/base/simd.h"
+#include "echopath/signal/echoes/echo_states.h"
+#include "echopath/signal/kernels/carrier.h"
+#include "echopath/signal/kernels/kernels.h"
+#include "echopath/signal/methods/per_sample.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kSamples = ProbedChirp::kSamples;
+constexpr int kMostChirps = 2;  // of a pass
+constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
+constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
+constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
+
+// Holds sums of kSamples samples, or the offsets of these in samples from the first of the chirp.
+using SampleSums = std::array<double, kSamples>;
+
+// Holds the samples of a row, real parts first.
+struct SampleRow {
+  SampleSums re{}, im{};
+};
+
+// At most so many carriers are computed side by side.
+constexpr int kMaxLanes = 8;
+
+// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
+// phasor for the first and one for the step between them.
+template <int kLanes>
+ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
+                               double* sums) {
+  using Vec = Lanes<double, kLanes>;
+  Vec sum_re[kSamples], sum_im[kSamples];
+  for (int s = 0; s < kSamples; ++s) {
+    sum_re[s] = load_lanes<kLanes>(sums + s * kLanes);
+    sum_im[s] = load_lanes<kLanes>(sums + (kSamples + s) * kLanes);
+  }
+  for (int p = 0; p < count; p += kLanes) {
+    const Vec f = load_lanes<kLanes>(frequency + p), a = load_lanes<kLanes>(re + p), b = load_lanes<kLanes>(im + p);
+    const auto start = phasor_of_cycles(f * first), turn = phasor_of_cycles(f * step);
+    Vec c = a * start.re - b * start.im, d = a * start.im + b * start.re;
+    for (int s = 0; s < kSamples; ++s) {
+      sum_re[s] += c;
+      sum_im[s] += d;
+      const Vec next = c * turn.re - d * turn.im;
+      d = c * turn.im + d * turn.re;
+      c = next;
+    }
+  }
+  for (int s = 0; s < kSamples; ++s) {
+    store_lanes(sums + s * kLanes, sum_re[s]);
+    store_lanes(sums + (kSamples + s) * kLanes, sum_im[s]);
+  }
+}
+
+// Returns a number below `count` that depends on nothing but the arguments.
+int draw(uint64_t seed, int64_t index, int dimension, int count) {
+  const double unit = uniform2(seed, Stream::kProbe, static_cast<uint64_t>(index), static_cast<uint32_t>(dimension))[0];
+  return std::min(count - 1, static_cast<int>(unit * count));
+}
+
+// Holds sums over some echoes, in kLanes sums side by side.
+struct PowerSums {
+  static constexpr int kLanes = 8;
+  double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
+};
+
+// Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
+ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
+  for (int p = 0; p < count; ++p) power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
+  PowerSums sums;
+  for (int p = 0; p < count; p += PowerSums::kLanes) {
+    for (int lane = 0; lane < PowerSums::kLanes; ++lane) {
+      const double here = power[p + lane];
+      sums.power[lane] += here;
+      sums.root[lane] += std::sqrt(here);
+      sums.largest[lane] = std::max(sums.largest[lane], here);
+    }
+  }
+  *out = sums;
+}
+
+// Returns whether the amplitude of an echo is 0 at all nodes.
+bool is_dark(const Echoes& echoes, int64_t echo) {
+  for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
+    if (echoes.amplitude[i] != 0.0) return false;
+  }
+  return true;
+}
+
+// Holds an echo as the polynomials have it.
+struct DrawnEcho {
+  int64_t path;
+  double delay;                    // s
+  std::complex<double> amplitude;  // sqrt(W)
+};
+
+DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
+  EchoStates state;
+  evaluate_states(block, chirp, echo, 1, state);
+  return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
+}
+
+// `power` has room for EchoStates::kCapacity powers, W.
+PowerSums powers_of(EchoStates& states, int count, double* power) {
+  const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
+  std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
+  PowerSums sums;
+  run_simd<find_powers>(states.amplitude, filled, power, &sums);
+  return sums;
+}
+
+// Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
+void thin_out(std::vector<DrawnEcho>& echoes) {
+  if (echoes.size() <= kEchoesOfChirp) return;
+  std::stable_sort(echoes.begin(), echoes.end(),
+                   [](const DrawnEcho& a, const DrawnEcho& b) { return std::norm(a.amplitude) > std::norm(b.amplitude); });
+  const size_t half = kEchoesOfChirp / 2, others = echoes.size() - half;
+  for (size_t i = 0; i < half; ++i) echoes[half + i] = echoes[half + i * others / half];
+  echoes.resize(kEchoesOfChirp);
+}
+
+}  // namespace
+
+// Keeps the few strongest of the echoes that are shown to it, strongest first.
+class PassProbe::Strongest {
+ public:
+  // `largest` is the largest of these powers, W.
+  void show(const double* power, double largest, int64_t first, int count) {
+    if (largest <= best_.back().first) return;
+    for (int p = 0; p < count; ++p) {
+      if (power[p] > best_.back().first) insert(power[p], first + p);
+    }
+  }
+  void append_to(std::vector<int64_t>& echoes) const {
+    for (const auto& [power, echo] : best_) {
+      if (power > 0.0) echoes.push_back(echo);
+    }
+  }
+
+ private:
+  void insert(double power, int64_t echo) {
+    size_t i = kStrongest - 1;
+    for (; i > 0 && best_[i - 1].first < power; --i) best_[i] = best_[i - 1];
+    best_[i] = {power, echo};
+  }
+  std::array<std::pair<double, int64_t>, kStrongest> best_{};
+};
+
+// Holds carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
+struct PassProbe::Tones {
+  explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
+    for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMaxLanes);
+  }
+  static constexpr size_t kSums = 2 * kSamples * kMaxLanes;
+  std::vector<double> frequency, re, im;
+  std::vector<int> first, count;  // [row]
+  std::vector<double> sums;       // [row, kSums]
+
+  void sort(const Carriers& carriers) {
+    std::fill(count.begin(), count.end(), 0);
+    for (int p = 0; p < carriers.count; ++p) ++count[carriers.group[p]];
+    for (size_t row = 0; row < count.size(); ++row) {
+      first[row + 1] = first[row] + (count[row] + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+      for (std::vector<double>* values : {&frequency, &re, &im}) {
+        std::fill(values->begin() + first[row] + count[row], values->begin() + first[row + 1], 0.0);
+      }
+      count[row] = first[row];
+    }
+    for (int p = 0; p < carriers.count; ++p) {
+      const auto to = static_cast<size_t>(count[carriers.group[p]]++);
+      frequency[to] = carriers.frequency[p];
+      re[to] = carriers.re[p];
+      im[to] = carriers.im[p];
+    }
+  }
+
+  void add(const Carriers& carriers, double first_sample, double step) {
+    sort(carriers);
+    const bool is_wide = instruction_set() == InstructionSet::kAvx512;
+    for (size_t row = 0; row < count.size(); ++row) {
+      const auto at = static_cast<size_t>(first[row]);
+      const int num_tones = first[row + 1] - first[row];
+      double* const to = sums.data() + row * kSums;
+      if (num_tones == 0) continue;
+      if (is_wide) run_simd<add_tones<8>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
+      else run_simd<add_tones<4>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
+    }
+  }
+
+  void give(std::vector<SampleRow>& rows) const {
+    const size_t lanes = instruction_set() == InstructionSet::kAvx512 ? 8 : 4;
+    for (size_t row = 0; row < rows.size(); ++row) {
+      const double* from = sums.data() + row * kSums;
+      for (size_t s = 0; s < kSamples; ++s, from += lanes) {
+        rows[row].re[s] = std::accumulate(from, from + lanes, rows[row].re[s]);
+        rows[row].im[s] = std::accumulate(from + kSamples * lanes, from + (kSamples + 1) * lanes, rows[row].im[s]);
+      }
+    }
+  }
+};
+
+// Holds what was seen of one block, or of all so far.
+struct PassProbe::EchoTally {
+  explicit EchoTally(size_t num_shares) : rows(num_shares + 1), power(num_shares * kSumsOfShare) {}
+  std::vector<SampleRow> rows;  // coherent paths of each share; the last: paths over rough surfaces, whatever their share
+  std::vector<double> power;    // W of the latter, [share, kSumsOfShare]; the sums side by side add up
+  double power_sum = 0.0, strongest = 0.0;  // W
+  double amplitude_sum = 0.0;
+  std::vector<DrawnEcho> drawn;
+};
+
+// Holds a chirp of a channel that is probed, and what was seen of it so far.
+struct PassProbe::ChirpTarget {
+  explicit ChirpTarget(size_t num_shares) : tally(num_shares) {}
+  int channel = 0, chirp = 0;
+  int num_samples = 0;  // that differ; the others repeat them
+  SampleSums sample{};  // evenly spaced, from the first of the chirp
+  EchoTally tally;
+  std::array<std::optional<EchoTally>, ReplayStream::kBlocksInFlight> of_block;
+};
+
+void ProbedChirp::add(const ProbedChirp& other) {
+  for (size_t s = 0; s < value.size(); ++s) value[s] += other.value[s];
+  amplitude_sum += other.amplitude_sum;
+  num_echoes += other.num_echoes;
+  phase_error = std::max(phase_error, other.phase_error);
+  largest_phase_error = std::max(largest_phase_error, other.largest_phase_error);
+  amplitude_error = std::max(amplitude_error, other.amplitude_error);
+  for (size_t i = 0; i < shares.size(); ++i) {
+    for (size_t s = 0; s < shares[i].field.size(); ++s) shares[i].field[s] += other.shares[i].field[s];
+    shares[i].power += other.shares[i].power;
+  }
+  power_sum += other.power_sum;
+  strongest = std::max(strongest, other.strongest);
+}
+
+PassProbe::PassProbe(const Paths& paths, const Radar& radar, const Replayer& replayer, const SynthesisOptions& synthesis,
+                     const SignalProbe& probe)
+    : paths_(paths), radar_(radar), replayer_(replayer), model_(radar.waveform, 0), seed_(probe.seed) {
+  if (synthesis.per_sample) per_sample_ = std::make_unique<PerSample>(radar.waveform, model_);
+  const int num_chirps = std::min(kMostChirps, replayer.num_channels());
+  for (int i = 0; i < num_chirps; ++i) {
+    const int64_t index = int64_t{probe.first_chirp} * kMostChirps + i;
+    ChirpTarget& target = targets_.emplace_back(num_shares());
+    target.channel = draw(seed_, index, 0, replayer.num_channels());
+    target.chirp = draw(seed_, index, 1, radar.waveform.num_chirps);
+    draw_samples(seed_, index, radar.waveform.num_samples, target);
+  }
+}
+
+// Takes steps of half the longest to the longest, because neighbouring samples would all see the same.
+void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, ChirpTarget& target) {
+  target.num_samples = std::min(kSamples, num_samples);
+  const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
+  const int step = shortest + draw(seed, index, 2, longest - shortest + 1);
+  const int first = draw(seed, index, 3, num_samples - (target.num_samples - 1) * step);
+  for (int s = 0; s < kSamples; ++s) target.sample[static_cast<size_t>(s)] = first + s * step;
+}
+
+PassProbe::~PassProbe() = default;
+
+bool PassProbe::watches(int channel) const {
+  return std::any_of(targets_.begin(), targets_.end(), [&](const ChirpTarget& target) { return target.channel == channel; });
+}
+
+void PassProbe::see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) {
+  for (ChirpTarget& target : targets_) {
+    if (target.channel == channel) tally_block(target, echoes, paths, target.of_block[block].emplace(num_shares()));
+  }
+}
+
+void PassProbe::end_blocks() {
+  for (ChirpTarget& target : targets_) {
+    for (std::optional<EchoTally>& some : target.of_block) {
+      if (some) add(*some, target.tally);
+      some.reset();
+    }
+  }
+}
+
+size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.num_batches) + 1; }
+
+void PassProbe::add(const EchoTally& some, EchoTally& all) {
+  for (size_t row = 0; row < all.rows.size(); ++row) {
+    for (size_t s = 0; s < kSamples; ++s) {
+      all.rows[row].re[s] += some.rows[row].re[s];
+      all.rows[row].im[s] += some.rows[row].im[s];
+    }
+  }
+  for (size_t share = 0; share < all.power.size(); ++share) all.power[share] += some.power[share];
+  all.power_sum += some.power_sum;
+  all.strongest = std::max(all.strongest, some.strongest);
+  all.amplitude_sum += some.amplitude_sum;
+  all.drawn.insert(all.drawn.end(), some.drawn.begin(), some.drawn.end());
+}
+
+void PassProbe::tally_block(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            EchoTally& tally) const {
+  constexpr int kCapacity = EchoStates::kCapacity;
+  EchoStates states;
+  alignas(64) double power[kCapacity];
+  uint32_t row[kCapacity];
+  Strongest strongest;
+  Tones tones(tally.rows.size());
+  for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
+    const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
+    evaluate_states(block, target.chirp, begin, count, states);
+    const PowerSums sums = powers_of(states, count, power);
+    tally.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), tally.amplitude_sum);
+    tally.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), tally.power_sum);
+    strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);
+    sort_paths(paths.subspan(static_cast<size_t>(begin), static_cast<size_t>(count)), power, row, tally);
+    add_samples(target, block, begin, states, {row, static_cast<size_t>(count)}, tones, tally);
+  }
+  tones.give(tally.rows);
+  if (!block.sampling.is_static()) draw_echoes(target, block, paths, strongest, tally);
+}
+
+// Finds the row of each path. `power` is that of each, W.
+void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, EchoTally& tally) const {
+  const auto images = static_cast<uint32_t>(num_shares() - 1);
+  double strongest = tally.strongest;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const auto path = static_cast<size_t>(paths[i]);
+    const uint8_t batch = paths_.batch[path];
+    const uint32_t share = batch == kNoBatch ? images : 2u * batch + ((paths_.flags[path] & kSecondHalf) != 0 ? 1u : 0u);
+    const bool is_rough = paths_.diffuse[path] != 0;
+    row[i] = is_rough ? images + 1 : share;
+    tally.power[share * kSumsOfShare + i % kSumsOfShare] += is_rough ? power[i] : 0.0;
+    if (share != images) strongest = std::max(strongest, power[i]);
+  }
+  tally.strongest = strongest;
+}
+
+void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
+                            std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const {
+  const int count = static_cast<int>(row.size());
+  if (per_sample_ && !block.sampling.is_static()) {
+    for (int i = 0; i < count; ++i) {
+      SampleRow& to = tally.rows[row[static_cast<size_t>(i)]];
+      per_sample_->add_samples(block, target.chirp, begin + i, 1, target.sample, to.re, to.im);
+    }
+    return;
+  }
+  Carriers carriers;
+  carriers.count = count;
+  carriers.group = row.data();
+  signal_kernels().modulate(model_, states, count, carriers);
+  tones.add(carriers, target.sample[0], target.sample[1] - target.sample[0]);
+}
+
+void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
+                            const Strongest& strongest, EchoTally& tally) const {
+  std::vector<int64_t> echoes;
+  strongest.append_to(echoes);
+  for (size_t i = 0; i < kRandom && block.num_echoes > 0; ++i) {
+    echoes.push_back(draw(seed_, paths.front(), -1 - static_cast<int>(i), static_cast<int>(block.num_echoes)));
+  }
+  std::sort(echoes.begin(), echoes.end());
+  echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
+  for (const int64_t echo : echoes) {
+    if (!is_dark(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
+  }
+}
+
+void PassProbe::finish(SignalProbe& probe, Job* job) {
+  const int num_receivers = static_cast<int>(radar_.receivers.size());
+  for (ChirpTarget& target : targets_) {
+    ProbedChirp& chirp = probe.chirps.emplace_back();
+    chirp.tx = target.channel / num_receivers;
+    chirp.rx = target.channel % num_receivers;
+    chirp.chirp = probe.first_chirp + target.chirp;
+    chirp.amplitude_sum = target.tally.amplitude_sum;
+    sum_up(target, chirp);
+    thin_out(target.tally.drawn);
+    compare_echoes(target, chirp, job);
+  }
+}
+
+void PassProbe::sum_up(const ChirpTarget& target, ProbedChirp& chirp) const {
+  const EchoTally& tally = target.tally;
+  chirp.power_sum = tally.power_sum;
+  chirp.strongest = tally.strongest;
+  chirp.shares.resize(num_shares());
+  for (size_t s = 0; s < kSamples; ++s) {
+    const size_t from = s % static_cast<size_t>(target.num_samples);
+    chirp.sample[s] = static_cast<int>(target.sample[from]);
+    for (const SampleRow& row : tally.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
+    if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
+    for (size_t share = 0; share < num_shares(); ++share) {
+      chirp.shares[share].field[s] = {tally.rows[share].re[from], tally.rows[share].im[from]};
+    }
+  }
+  for (size_t share = 0; share < num_shares(); ++share) {
+    const auto first = tally.power.begin() + static_cast<ptrdiff_t>(share * kSumsOfShare);
+    chirp.shares[share].power = std::accumulate(first, first + kSumsOfShare, 0.0);
+  }
+}
+
+void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Job* job) const {
+  const std::vector<DrawnEcho>& drawn = target.tally.drawn;
+  if (drawn.empty()) return;
+  std::vector<int64_t> paths;
+  for (const DrawnEcho& echo : drawn) paths.push_back(echo.path);
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, target.chirp), lengths, amplitudes, job);
+  const size_t first = static_cast<size_t>(target.channel) * paths.size();
+  const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
+  double power = 0.0, of_phase = 0.0, of_amplitude = 0.0;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const std::complex<double> exact = amplitudes[first + i];
+    power += std::norm(exact);
+    of_amplitude += std::norm(drawn[i].amplitude - exact);
+    if (exact == 0.0) continue;
+    const double phase = wavenumber * std::abs(kSpeedOfLight * drawn[i].delay - lengths[first + i]);
+    of_phase += std::norm(exact) * phase * phase;
+    chirp.largest_phase_error = std::max(chirp.largest_phase_error, phase);
+  }
+  chirp.num_echoes = static_cast<int64_t>(paths.size());
+  if (power > 0.0) {
+    chirp.phase_error = std::sqrt(of_phase / power);
+    chirp.amplitude_error = std::sqrt(of_amplitude / power);
+  } else if (of_amplitude > 0.0) {
+    chirp.amplitude_error = 1.0;
+  }
+}
+
+}  // namespace echopath

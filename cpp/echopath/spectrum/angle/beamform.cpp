@@ -1,0 +1,121 @@
+#include "echopath/spectrum/angle/beamform.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/angle/beam_source.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
+constexpr int kMaxNeighbours = 64;
+constexpr double kMinLoading = 1e-9, kMaxLoading = 1e3;
+
+// Describes neighbouring ranges of one velocity, and where their powers are written.
+struct Strip {
+  int64_t velocity, first, count, out;
+};
+
+std::vector<Strip> strips_of(const RangeDoppler& map) {
+  std::vector<Strip> strips;
+  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  for (int64_t v = 0; v < static_cast<int64_t>(map.velocity.size()); ++v) {
+    for (int64_t first = 0; first < num_ranges; first += kRangesPerTask) {
+      strips.push_back({v, first, std::min(kRangesPerTask, num_ranges - first), v * num_ranges + first});
+    }
+  }
+  return strips;
+}
+
+std::vector<Strip> strips_of(const std::vector<Cell>& cells) {
+  std::vector<Strip> strips;
+  for (const Cell& cell : cells) strips.push_back({cell[0], cell[1], 1, static_cast<int64_t>(strips.size())});
+  return strips;
+}
+
+using Powers = std::vector<double>;  // [directions, kRangesPerTask]
+
+Powers bartlett_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip) {
+  Powers power(beams.num_directions() * kRangesPerTask);
+  beams.add_squares(source.weighted(strip.velocity, strip.first, strip.count), Combine::kSum, power);
+  return power;
+}
+
+Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip, const Job* job) {
+  Powers power(beams.num_directions() * kRangesPerTask);
+  for (int64_t i = 0; i < strip.count; ++i) {
+    const Eigen::VectorXd values = source.cell(strip.velocity, strip.first + i).power(beams, Combine::kSum, job);
+    for (int64_t d = 0; d < values.size(); ++d) power[d * kRangesPerTask + i] = values[d];
+  }
+  return power;
+}
+
+// Returns the powers [directions, num_cells].
+std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, BeamMethod method,
+                           const std::vector<Strip>& strips, int64_t num_cells, Job* job) {
+  const BeamKernel beams(steering_vectors(source.array(), angles.directions()));
+  std::vector<double> power(beams.num_directions() * num_cells);
+  if (job) job->start(static_cast<int64_t>(strips.size()));
+  parallel_for(static_cast<int64_t>(strips.size()), [&](int64_t task) {
+    const Strip& strip = strips[task];
+    const bool is_bartlett = method == BeamMethod::kBartlett;
+    const Powers values = is_bartlett ? bartlett_strip(source, beams, strip) : capon_strip(source, beams, strip, job);
+    for (int64_t d = 0; d < beams.num_directions(); ++d) {
+      std::copy_n(values.data() + d * kRangesPerTask, strip.count, power.data() + d * num_cells + strip.out);
+    }
+  }, job);
+  return power;
+}
+
+}  // namespace
+
+void BeamformOptions::validate() const {
+  require(diagonal_loading >= kMinLoading && diagonal_loading <= kMaxLoading, "diagonal_loading",
+          "must be in [1e-9, 1e3]", diagonal_loading);
+  for (const int reach : {velocity_neighbours, range_neighbours}) {
+    require(reach >= 0 && reach <= kMaxNeighbours, "neighbours", "must be in [0, 64]", reach);
+  }
+  const bool is_plain = window.kind == WindowKind::kRect;
+  require(method == BeamMethod::kBartlett || is_plain, "window", "must be rect for capon, which finds its own weights",
+          "another");
+}
+
+void require_cells_of(const RangeDoppler& map, const std::vector<Cell>& cells) {
+  const int64_t limits[] = {static_cast<int64_t>(map.velocity.size()), static_cast<int64_t>(map.range.size())};
+  for (const Cell& cell : cells) {
+    for (int k = 0; k < 2; ++k) {
+      if (cell[k] >= 0 && cell[k] < limits[k]) continue;
+      throw std::out_of_range("cells: must be (velocity, range) indices below (" + std::to_string(limits[0]) + ", " +
+                              std::to_string(limits[1]) + "), got (" + std::to_string(cell[0]) + ", " +
+                              std::to_string(cell[1]) + ")");
+    }
+  }
+}
+
+BeamPower beamform(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& options,
+                   Job* job) {
+  angles.validate();
+  const BeamSource source(map, radar, options);
+  const int64_t num_cells = static_cast<int64_t>(map.velocity.size() * map.range.size());
+  return {angles.azimuth, angles.elevation, map.velocity, map.range, false,
+          powers(source, angles, options.method, strips_of(map), num_cells, job)};
+}
+
+BeamPower beamform(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells, const AngleGrid& angles,
+                   const BeamformOptions& options, Job* job) {
+  angles.validate();
+  const BeamSource source(map, radar, options);
+  require_cells_of(map, cells);
+  BeamPower result{angles.azimuth, angles.elevation, {}, {}, true, {}};
+  for (const Cell& cell : cells) {
+    result.velocity.push_back(map.velocity[cell[0]]);
+    result.range.push_back(map.range[cell[1]]);
+  }
+  result.power = powers(source, angles, options.method, strips_of(cells), static_cast<int64_t>(cells.size()), job);
+  return result;
+}
+
+}  // namespace echopath

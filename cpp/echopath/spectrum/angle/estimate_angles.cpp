@@ -1,0 +1,178 @@
+#include "echopath/spectrum/angle/estimate_angles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/angle/beam_source.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kMaxPeaks = 64;
+constexpr int kRefinements = 10;       // rounds; each narrows the stencil
+constexpr double kNarrowing = 0.35;    // factor of the stencil per round: 3e-5 of a step of the grid at the end
+constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
+
+struct Peak {
+  double azimuth, elevation, power;
+};
+
+struct CellPeaks {
+  int fold = 0;
+  std::vector<Peak> peaks;  // strongest first
+};
+
+// Searches the peaks of one cell.
+class PeakSearch {
+ public:
+  PeakSearch(const BeamSource& source, const AngleGrid& angles, const EstimateOptions& options)
+      : source_(source), angles_(angles), options_(options), beams_(steering_vectors(source.array(), angles.directions())) {}
+
+  CellPeaks find(const Cell& cell) const {
+    CellPeaks best;
+    for (int k = 0; k <= 2 * options_.folds; ++k) {
+      const int fold = k % 2 == 0 ? -k / 2 : (k + 1) / 2;  // 0, 1, -1, 2, ...: a tie goes to the slowest
+      CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], fold))};
+      if (found.peaks.empty()) continue;
+      // The margin is relative, because hypotheses that the array cannot tell apart differ by rounding.
+      constexpr double kMargin = 1.0 + 1e-9;
+      if (best.peaks.empty() || found.peaks[0].power > kMargin * best.peaks[0].power) best = std::move(found);
+    }
+    return best;
+  }
+
+ private:
+  int64_t num_azimuths() const { return static_cast<int64_t>(angles_.azimuth.size()); }
+  int64_t num_elevations() const { return static_cast<int64_t>(angles_.elevation.size()); }
+
+  std::vector<Peak> peaks(const CellBeam& beam) const {
+    const Eigen::VectorXd power = beam.power(beams_);
+    std::vector<int64_t> tops;
+    for (int64_t d = 0; d < power.size(); ++d) {
+      if (is_top(power, d)) tops.push_back(d);
+    }
+    std::stable_sort(tops.begin(), tops.end(), [&](int64_t a, int64_t b) { return power[a] > power[b]; });
+    tops.resize(std::min<size_t>(tops.size(), options_.max_peaks));
+    std::vector<Peak> found;
+    for (const int64_t d : tops) found.push_back(refined(beam, d, power[d]));
+    return strongest(std::move(found));
+  }
+
+  // Returns whether a direction has power, no neighbour is higher, and none before it is as high.
+  bool is_top(const Eigen::VectorXd& power, int64_t d) const {
+    if (!(power[d] > 0.0)) return false;
+    const int64_t row = d / num_azimuths(), column = d % num_azimuths();
+    for (int64_t r = std::max<int64_t>(0, row - 1); r <= std::min(num_elevations() - 1, row + 1); ++r) {
+      for (int64_t c = std::max<int64_t>(0, column - 1); c <= std::min(num_azimuths() - 1, column + 1); ++c) {
+        const int64_t other = r * num_azimuths() + c;
+        if (power[other] > power[d] || (power[other] == power[d] && other < d)) return false;
+      }
+    }
+    return true;
+  }
+
+  // Climbs along azimuth and elevation in turn.
+  Peak refined(const CellBeam& beam, int64_t d, double power) const {
+    Peak peak{angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
+    double across = step(angles_.azimuth, d % num_azimuths()), up = step(angles_.elevation, d / num_azimuths());
+    for (int round = 0; round < kRefinements; ++round) {
+      climb(beam, peak, &Peak::azimuth, across, angles_.azimuth);
+      climb(beam, peak, &Peak::elevation, up, angles_.elevation);
+      across *= kNarrowing;
+      up *= kNarrowing;
+    }
+    return peak;
+  }
+
+  static double step(const std::vector<double>& axis, int64_t i) {
+    if (axis.size() == 1) return 0.0;
+    const int64_t last = static_cast<int64_t>(axis.size()) - 1;
+    return std::max(i > 0 ? axis[i] - axis[i - 1] : 0.0, i < last ? axis[i + 1] - axis[i] : 0.0);
+  }
+
+  // Moves to the highest of the peak, its neighbours at +-step along one angle, and the top of the parabola through the
+  // three.
+  void climb(const CellBeam& beam, Peak& peak, double Peak::*angle, double step, const std::vector<double>& axis) const {
+    if (step <= 0.0) return;
+    const double centre = peak.*angle, low = at(beam, peak, angle, centre - step, axis).power;
+    const double high = at(beam, peak, angle, centre + step, axis).power;
+    const double second_difference = low - 2.0 * peak.power + high;
+    const double offset = second_difference < 0.0 ? 0.5 * step * (low - high) / second_difference : 0.0;
+    for (const double shift : {-step, step, std::clamp(offset, -step, step)}) {
+      const Peak candidate = at(beam, peak, angle, centre + shift, axis);
+      if (candidate.power > peak.power) peak = candidate;
+    }
+  }
+
+  Peak at(const CellBeam& beam, Peak peak, double Peak::*angle, double value, const std::vector<double>& axis) const {
+    peak.*angle = std::clamp(value, axis.front(), axis.back());
+    const Vec3 toward = direction(peak.azimuth, peak.elevation);
+    peak.power = beam.power(BeamKernel(steering_vectors(source_.array(), {toward})))[0];
+    return peak;
+  }
+
+  std::vector<Peak> strongest(std::vector<Peak> found) const {
+    std::stable_sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.power > b.power; });
+    const double share = std::pow(10.0, -options_.peak_range_db / 10.0);
+    while (!found.empty() && found.back().power < share * found.front().power) found.pop_back();
+    return found;
+  }
+
+  const BeamSource& source_;
+  const AngleGrid& angles_;
+  const EstimateOptions& options_;
+  const BeamKernel beams_;
+};
+
+Vec3 mean_position(const std::vector<Antenna>& antennas) {
+  Vec3 sum = Vec3::Zero();
+  for (const Antenna& antenna : antennas) sum += antenna.position;
+  return sum / static_cast<double>(antennas.size());
+}
+
+}  // namespace
+
+void EstimateOptions::validate(int num_slots) const {
+  beams.validate();
+  require(max_peaks >= 1 && max_peaks <= kMaxPeaks, "max_peaks", "must be in [1, 64]", max_peaks);
+  require(peak_range_db >= kMinPeakRange && peak_range_db <= kMaxPeakRange, "peak_range_db", "must be in [0, 200]",
+          peak_range_db);
+  require(folds >= 0 && 2 * folds < std::max(2, num_slots), "folds",
+          "must be at least 0 and less than half the number of transmitters", folds);
+  require(folds == 0 || beams.compensate, "folds", "needs the phase between slots to be compensated", folds);
+}
+
+AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
+                               const AngleGrid& angles, const EstimateOptions& options, Job* job) {
+  angles.validate();
+  options.validate(static_cast<int>(radar.transmitters.size()));
+  require(options.folds == 0 || !map.is_tdm_compensated, "folds", "needs a map that was not compensated before",
+          options.folds);
+  const BeamSource source(map, radar, options.beams);
+  require_cells_of(map, cells);
+  const PeakSearch search(source, angles, options);
+  std::vector<CellPeaks> found(cells.size());
+  if (job) job->start(static_cast<int64_t>(cells.size()));
+  parallel_for(static_cast<int64_t>(cells.size()), [&](int64_t i) { found[i] = search.find(cells[i]); }, job);
+
+  const Vec3 middle = 0.5 * (mean_position(radar.transmitters) + mean_position(radar.receivers));
+  const double span = 2.0 * radar.waveform.max_velocity(map.num_transmitters);
+  AngleEstimates result;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    for (const Peak& peak : found[i].peaks) {
+      const double range = map.range[cells[i][1]];
+      result.cell.push_back(static_cast<int64_t>(i));
+      result.range.push_back(range);
+      result.velocity.push_back(map.velocity[cells[i][0]] + found[i].fold * span);
+      result.azimuth.push_back(peak.azimuth);
+      result.elevation.push_back(peak.elevation);
+      result.power.push_back(peak.power);
+      result.points.push_back(middle + range * direction(peak.azimuth, peak.elevation));
+    }
+  }
+  return result;
+}
+
+}  // namespace echopath

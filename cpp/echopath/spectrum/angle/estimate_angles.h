@@ -1,0 +1,39 @@
+#pragma once
+// Estimates where the echoes of chosen range-Doppler cells come from: the step from detections to points in space.
+#include <cstdint>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/radar/radar.h"
+#include "echopath/spectrum/angle/beamform.h"
+#include "echopath/spectrum/range_doppler.h"
+
+namespace echopath {
+
+struct EstimateOptions {
+  BeamformOptions beams;
+  int max_peaks = 1;           // per cell, at least 1
+  double peak_range_db = 10.0;  // dB below the strongest peak of a cell, within which others are kept
+  // The velocity may be v + 2 k v_max for |k| <= folds; the k with the strongest peak is taken, since TDM slots tell them
+  // apart. At most half the number of transmitters less one.
+  int folds = 0;
+
+  void validate(int num_slots) const;
+};
+
+struct AngleEstimates {
+  std::vector<int64_t> cell;  // [N] index into the cells given, ascending
+  std::vector<double> range, velocity, azimuth, elevation, power;  // [N] m, m/s, rad, rad, W
+  std::vector<Vec3> points;   // [N] m, in the radar's frame
+};
+
+// Finds the directions of the strongest peaks of beam power in each cell, strongest first. Parabolas through the power of
+// beams about a peak refine it beyond the grid; angles stay within the grid. A cell without power has no peak. A point is at
+// its cell's range from the middle of the mean transmitter and the mean receiver.
+// An array without vertical extent cannot tell elevations apart: give it one elevation.
+// Runs in parallel over cells; the result does not depend on the number of threads. Raises as `beamform`.
+inline constexpr double kSearchStep = kPi;  // largest_step of default_angles for a search: the array sets the step
+AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
+                               const AngleGrid& angles, const EstimateOptions& options = {}, Job* job = nullptr);
+
+}  // namespace echopath

@@ -1,0 +1,97 @@
+#include "echopath/spectrum/angle/range_azimuth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/angle/beam_source.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
+
+// Returns the ratio of a point's power to its sum over the velocities.
+double share_of_sum(const RangeDoppler& map, int num_chirps) {
+  const double bandwidth = equivalent_noise_bandwidth(window_samples(map.window, num_chirps));
+  return num_chirps / (bandwidth * static_cast<double>(map.velocity.size()));
+}
+
+int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
+  const auto is_nearer = [velocity](double a, double b) { return std::abs(a - velocity) < std::abs(b - velocity); };
+  const auto nearest = std::min_element(map.velocity.begin(), map.velocity.end(), is_nearer);
+  const size_t count = map.velocity.size();
+  const double step = count > 1 ? (map.velocity.back() - map.velocity.front()) / static_cast<double>(count - 1) : 0.0;
+  require(count == 1 || std::abs(*nearest - velocity) <= 0.5 * step * (1.0 + 1e-9), "velocity",
+          "must be on the map's axis (" + std::to_string(map.velocity.front()) + " to " +
+              std::to_string(map.velocity.back()) + " m/s)", velocity);
+  return nearest - map.velocity.begin();
+}
+
+using Powers = std::vector<double>;  // [directions, kRangesPerTask]
+
+// Computes the map of one choice of velocities, by strips of ranges.
+struct Picture {
+  const BeamSource& source;
+  const BeamKernel& beams;
+  std::optional<int64_t> velocity;
+  Combine combine;
+  const Job* job;
+
+  Powers bartlett(int64_t first, int64_t count) const {
+    Powers power(beams.num_directions() * kRangesPerTask);
+    const int64_t begin = velocity.value_or(0), end = velocity ? begin + 1 : source.num_velocities();
+    for (int64_t v = begin; v < end; ++v) {
+      if (job) job->throw_if_cancelled();
+      beams.add_squares(source.weighted(v, first, count), combine, power);
+    }
+    return power;
+  }
+
+  Powers capon(int64_t first, int64_t count) const {
+    Powers power(beams.num_directions() * kRangesPerTask);
+    for (int64_t i = 0; i < count; ++i) {
+      const CellBeam beam = velocity ? source.cell(*velocity, first + i) : source.all_velocities(first + i);
+      const Eigen::VectorXd values = beam.power(beams, combine, job);
+      for (int64_t d = 0; d < values.size(); ++d) power[d * kRangesPerTask + i] = values[d];
+    }
+    return power;
+  }
+};
+
+}  // namespace
+
+RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
+                           const VelocityChoice& choice, const BeamformOptions& options, Job* job) {
+  angles.validate();
+  const BeamSource source(map, radar, options);
+  RangeAzimuth result{angles.azimuth, map.range, angles.elevation, {}, {}};
+  std::optional<int64_t> row;
+  if (choice.velocity) {
+    row = nearest_velocity(map, *choice.velocity);
+    result.velocity = map.velocity[*row];
+  }
+  const bool is_sum = !row && choice.combine == Combine::kSum;
+  const double scale = is_sum ? share_of_sum(map, radar.waveform.num_chirps) : 1.0;
+  const BeamKernel beams(steering_vectors(source.array(), angles.directions()));
+  const Picture picture{source, beams, row, choice.combine, job};
+  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  const int64_t num_azimuths = static_cast<int64_t>(angles.azimuth.size());
+  result.power.assign(num_azimuths * num_ranges, 0.0);
+
+  const int64_t num_tasks = (num_ranges + kRangesPerTask - 1) / kRangesPerTask;
+  if (job) job->start(num_tasks);
+  parallel_for(num_tasks, [&](int64_t task) {
+    const int64_t first = task * kRangesPerTask, count = std::min(kRangesPerTask, num_ranges - first);
+    const bool is_bartlett = options.method == BeamMethod::kBartlett;
+    const Powers power = is_bartlett ? picture.bartlett(first, count) : picture.capon(first, count);
+    for (int64_t d = 0; d < beams.num_directions(); ++d) {
+      double* out = result.power.data() + d % num_azimuths * num_ranges + first;
+      for (int64_t i = 0; i < count; ++i) out[i] = std::max(out[i], scale * power[d * kRangesPerTask + i]);
+    }
+  }, job);
+  return result;
+}
+
+}  // namespace echopath

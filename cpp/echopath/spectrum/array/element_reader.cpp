@@ -1,0 +1,47 @@
+#include "echopath/spectrum/array/element_reader.h"
+
+#include "echopath/base/constants.h"
+#include "echopath/spectrum/array/tdm.h"
+
+namespace echopath {
+
+using Complex = std::complex<double>;
+
+ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array, const ChirpSequence& waveform,
+                             Overlaps overlaps, bool compensate)
+    : map_(map),
+      num_velocities_(static_cast<int64_t>(map.velocity.size())),
+      num_ranges_(static_cast<int64_t>(map.range.size())),
+      compensate_(compensate && !map.is_tdm_compensated),
+      first_{0} {
+  for (const VirtualElement& element : array.elements) {
+    const auto end = overlaps == Overlaps::kFirst ? element.channels.begin() + 1 : element.channels.end();
+    channel_.insert(channel_.end(), element.channels.begin(), end);
+    first_.push_back(static_cast<int64_t>(channel_.size()));
+  }
+  if (compensate_) phasor_ = slot_phasors(waveform, map.num_transmitters, map.velocity);
+}
+
+Complex ElementReader::weight(int64_t entry, int64_t velocity, int fold) const {
+  if (!compensate_) return 1.0;
+  const int64_t slot = channel_[entry] / map_.num_receivers;
+  const double turns = static_cast<double>(fold * slot % map_.num_transmitters) / map_.num_transmitters;
+  return phasor_[slot * num_velocities_ + velocity] * std::polar(1.0, -kTwoPi * turns);
+}
+
+void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values,
+                         int fold) const {
+  for (int64_t element = 0; element < num_elements(); ++element) {
+    const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
+    for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {
+      const Complex factor = share * weight(entry, velocity, fold);
+      const Complex* row = map_.values.data() + (channel_[entry] * num_velocities_ + velocity) * num_ranges_ + first;
+      const bool is_first = entry == first_[element];
+      for (int64_t i = 0; i < count; ++i) {
+        values(element, i) = is_first ? factor * row[i] : values(element, i) + factor * row[i];
+      }
+    }
+  }
+}
+
+}  // namespace echopath

@@ -1,0 +1,41 @@
+#pragma once
+// Reads cells of a range-Doppler map as vectors over the elements of its virtual array.
+#include <Eigen/Core>
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "echopath/spectrum/array/virtual_array.h"
+#include "echopath/spectrum/range_doppler.h"
+
+namespace echopath {
+
+// Tells whether channels that share an element are averaged or only the first is used.
+enum class Overlaps { kAverage, kFirst };
+
+// Reads snapshots. It keeps references to the map and the array.
+class ElementReader {
+ public:
+  // `compensate` takes out the phase between TDM slots, unless that has been done already.
+  ElementReader(const RangeDoppler& map, const VirtualArray& array, const ChirpSequence& waveform, Overlaps overlaps,
+                bool compensate);
+  int64_t num_elements() const { return static_cast<int64_t>(first_.size()) - 1; }
+  int64_t num_velocities() const { return num_velocities_; }
+  int64_t num_ranges() const { return num_ranges_; }
+
+  // Reads ranges [first, first + count) of one velocity into values [elements, count], sqrt(W). A target at v + 2 fold v_max
+  // has another phase between slots (tdm.h); `fold` has no effect without compensation.
+  void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, int fold = 0) const;
+
+ private:
+  std::complex<double> weight(int64_t entry, int64_t velocity, int fold) const;
+
+  const RangeDoppler& map_;
+  int64_t num_velocities_, num_ranges_;
+  bool compensate_;
+  std::vector<int64_t> first_;                 // [elements + 1] into channel_
+  std::vector<int64_t> channel_;               // tx * num_receivers + rx
+  std::vector<std::complex<double>> phasor_;   // [tx, V]
+};
+
+}  // namespace echopath

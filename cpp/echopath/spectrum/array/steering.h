@@ -1,0 +1,38 @@
+#pragma once
+// Defines directions, and the plane waves from them at the elements of a virtual array.
+#include <Eigen/Core>
+#include <vector>
+
+#include "echopath/base/constants.h"
+#include "echopath/spectrum/array/virtual_array.h"
+#include "echopath/spectrum/window.h"
+
+namespace echopath {
+
+// Holds directions in the radar's frame: azimuth about z from +x to the left (+y), elevation up from the xy-plane.
+struct AngleGrid {
+  std::vector<double> azimuth;    // [A] rad, ascending, in [-pi, pi]
+  std::vector<double> elevation;  // [E] rad, ascending, in [-pi/2, pi/2]
+
+  void validate() const;                // raises invalid_argument naming the field, the rule and the value
+  std::vector<Vec3> directions() const;  // [E, A] unit vectors
+};
+
+Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
+
+// Returns the directions that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within
+// the unambiguous field wavelength / (2 spacing) of its grid, in steps of a quarter of wavelength / extent, or of
+// `largest_step` rad where that is less; only 0 where the array has no extent (horizontal, vertical).
+inline constexpr double kPictureStep = kPi / 180.0;
+AngleGrid default_angles(const VirtualArray& array, double largest_step = kPictureStep);
+
+// Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
+// wavelength.
+Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions);
+
+// Returns weights [elements] of a window over the rows and the columns of the array's grid, whose sum is 1. Here windows are
+// symmetric and nowhere zero: cosines are sampled half-way between the steps.
+// Raises invalid_argument for windows other than rect without a grid.
+std::vector<double> element_weights(const VirtualArray& array, const Window& window);
+
+}  // namespace echopath

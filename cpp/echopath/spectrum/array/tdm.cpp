@@ -1,0 +1,59 @@
+#include "echopath/spectrum/array/tdm.h"
+
+#include <cstdlib>
+#include <string>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kMaxFold = 1000;
+
+}  // namespace
+
+std::vector<std::complex<double>> slot_phasors(const ChirpSequence& waveform, int num_slots,
+                                               const std::vector<double>& velocity) {
+  std::vector<std::complex<double>> phasors;
+  for (int slot = 0; slot < num_slots; ++slot) {
+    for (const double v : velocity) {
+      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * v / waveform.wavelength() * slot * waveform.chirp_interval));
+    }
+  }
+  return phasors;
+}
+
+void require_map_of(const RangeDoppler& map, const Radar& radar) {
+  const int num_tx = static_cast<int>(radar.transmitters.size()), num_rx = static_cast<int>(radar.receivers.size());
+  require(map.num_transmitters == num_tx && map.num_receivers == num_rx, "spectrum",
+          "must have the radar's " + std::to_string(num_tx) + " x " + std::to_string(num_rx) + " channels",
+          std::to_string(map.num_transmitters) + " x " + std::to_string(map.num_receivers));
+  const size_t size = size_t{1} * num_tx * num_rx * map.velocity.size() * map.range.size();
+  require(size > 0 && map.values.size() == size, "spectrum", "must have channels x velocities x ranges values",
+          map.values.size());
+}
+
+RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold, Job* job) {
+  radar.validate();
+  require_map_of(map, radar);
+  require(!map.is_tdm_compensated, "spectrum", "must not have been compensated before", "one that was");
+  require(std::abs(fold) <= kMaxFold, "fold", "must be in [-1000, 1000]", fold);
+  RangeDoppler result = map;
+  result.is_tdm_compensated = true;
+  const double span = 2.0 * radar.waveform.max_velocity(map.num_transmitters);
+  for (double& v : result.velocity) v += fold * span;
+  const auto phasors = slot_phasors(radar.waveform, map.num_transmitters, result.velocity);
+  const int64_t num_velocities = static_cast<int64_t>(map.velocity.size());
+  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  parallel_for(map.num_transmitters * map.num_receivers * num_velocities, [&](int64_t row) {
+    if (job) job->throw_if_cancelled();
+    const int64_t slot = row / (map.num_receivers * num_velocities);
+    const std::complex<double> phasor = phasors[slot * num_velocities + row % num_velocities];
+    for (int64_t r = row * num_ranges; r < (row + 1) * num_ranges; ++r) result.values[r] *= phasor;
+  });
+  return result;
+}
+
+}  // namespace echopath

@@ -1,0 +1,145 @@
+#include "echopath/spectrum/cfar/cfar.h"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+
+#include "echopath/base/parallel.h"
+#include "echopath/spectrum/array/tdm.h"
+#include "echopath/spectrum/cfar/training_power.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kTrainingVelocity = 4, kTrainingRange = 8;  // of an unpadded map
+constexpr size_t kKeptDesigns = 8;
+
+struct HalfWidths {
+  int guard = 0, training = 0;
+};
+
+// Returns the half widths along one axis. Guard cells without room for training cells beyond them are of no use.
+HalfWidths half_widths(std::optional<int> guard, std::optional<int> training, int lobe, int wanted, int64_t num_cells) {
+  HalfWidths widths{guard.value_or(lobe), training.value_or(0)};
+  if (!training) {
+    const int64_t room = (num_cells - 1) / 2 - widths.guard;
+    widths.training = static_cast<int>(std::clamp<int64_t>(room, 0, wanted));
+  }
+  if (!guard && widths.training == 0) widths.guard = 0;
+  return widths;
+}
+
+// Computing factors takes a tenth of a second, for large windows several seconds; the frames of a data set share them.
+CfarFactors kept_factors(const CfarDesign& design, Job* job) {
+  static std::mutex mutex;
+  static std::deque<std::pair<CfarDesign, CfarFactors>> kept;
+  const auto is_it = [&](const auto& entry) { return entry.first == design; };
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = std::find_if(kept.begin(), kept.end(), is_it);
+    if (found != kept.end()) return found->second;
+  }
+  const CfarFactors factors = cfar_factors(design, job);
+  const std::lock_guard lock(mutex);
+  if (std::none_of(kept.begin(), kept.end(), is_it)) kept.emplace_front(design, factors);
+  if (kept.size() > kKeptDesigns) kept.pop_back();
+  return factors;
+}
+
+struct Found {
+  int64_t range;
+  double noise;
+};
+
+class Detector {
+ public:
+  Detector(const CfarResult& result, TrainingPower& training) : result_(result), training_(training) {}
+
+  // Returns the cells of a row above their thresholds.
+  std::vector<Found> row(int64_t velocity) const {
+    return result_.design.method == CfarMethod::kCellAveraging ? averaged(velocity) : ordered(velocity);
+  }
+
+ private:
+  double factor(int64_t range) const {
+    const int64_t reach = result_.design.cells.reach_range();
+    return result_.factors.factor[std::min({range, result_.num_ranges - 1 - range, reach})];
+  }
+
+  std::vector<Found> averaged(int64_t velocity) const {
+    const double* power = result_.power.data() + velocity * result_.num_ranges;
+    const double share = 1.0 / static_cast<double>(result_.design.cells.num_training());
+    std::vector<double> sum(result_.num_ranges);
+    training_.sums(velocity, sum.data());
+    std::vector<Found> found;
+    for (int64_t r = 0; r < result_.num_ranges; ++r) {
+      if (power[r] > factor(r) * share * sum[r]) found.push_back({r, share * sum[r]});
+    }
+    return found;
+  }
+
+  std::vector<Found> ordered(int64_t velocity) const {
+    const double* power = result_.power.data() + velocity * result_.num_ranges;
+    const int64_t order = result_.design.order();
+    std::vector<Found> found;
+    for (int64_t r = 0; r < result_.num_ranges; ++r) {
+      if (!training_.is_order_below(velocity, r, order, power[r] / factor(r))) continue;
+      found.push_back({r, training_.ordered(velocity, r, order) / result_.factors.statistic});
+    }
+    return found;
+  }
+
+  const CfarResult& result_;
+  const TrainingPower& training_;
+};
+
+void detect(CfarResult& result, Job* job) {
+  TrainingPower training(result.power, result.num_velocities, result.num_ranges, result.design.cells);
+  if (result.design.method == CfarMethod::kCellAveraging) {
+    parallel_for(result.num_velocities, [&](int64_t v) { training.prepare_row(v); });
+  }
+  const Detector detector(result, training);
+  std::vector<std::vector<Found>> rows(result.num_velocities);
+  if (job) job->start(result.num_velocities);
+  parallel_for(result.num_velocities, [&](int64_t v) { rows[v] = detector.row(v); }, job);
+  for (int64_t v = 0; v < result.num_velocities; ++v) {
+    for (const Found& found : rows[v]) {
+      result.cells.push_back({v, found.range});
+      result.noise.push_back(found.noise);
+    }
+  }
+}
+
+}  // namespace
+
+CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOptions& options) {
+  radar.validate();
+  require_map_of(map, radar);
+  const ChirpSequence& waveform = radar.waveform;
+  CfarDesign design{options.method, options.false_alarm_rate, options.rank, {},
+                    {map.window, waveform.num_chirps, waveform.num_samples, map.zero_pad,
+                     map.num_transmitters * map.num_receivers}};
+  const int velocity_lobe = main_lobe_cells(map.window, waveform.num_chirps, map.zero_pad);
+  const int range_lobe = main_lobe_cells(map.window, waveform.num_samples, map.zero_pad);
+  const auto velocity = half_widths(options.guard_velocity, options.training_velocity, velocity_lobe,
+                                    kTrainingVelocity * map.zero_pad, static_cast<int64_t>(map.velocity.size()));
+  const auto range = half_widths(options.guard_range, options.training_range, range_lobe,
+                                 kTrainingRange * map.zero_pad, static_cast<int64_t>(map.range.size()));
+  design.cells = {velocity.guard, range.guard, velocity.training, range.training};
+  design.cells.validate(static_cast<int64_t>(map.velocity.size()), static_cast<int64_t>(map.range.size()));
+  design.validate();
+  return design;
+}
+
+CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options, Job* job) {
+  CfarResult result;
+  result.design = cfar_design(map, radar, options);
+  result.factors = kept_factors(result.design, job);
+  result.num_velocities = static_cast<int64_t>(map.velocity.size());
+  result.num_ranges = static_cast<int64_t>(map.range.size());
+  result.power = mean_power(map, job);
+  detect(result, job);
+  return result;
+}
+
+}  // namespace echopath

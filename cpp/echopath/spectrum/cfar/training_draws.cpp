@@ -1,0 +1,79 @@
+#include "echopath/spectrum/cfar/training_draws.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/base/random.h"
+
+namespace echopath {
+namespace {
+
+constexpr int kDrawsPerTask = 16;
+constexpr uint64_t kSeed = 1;
+
+}  // namespace
+
+TrainingDraws::TrainingDraws(const CfarDesign& design, const TrainingNoise& noise, const Eigen::MatrixXd& form,
+                             const std::vector<double>& eigenvalues, double tilt)
+    : design_(design), noise_(noise), tilt_(tilt),
+      root_(Eigen::LLT<Eigen::MatrixXd>(Eigen::MatrixXd::Identity(form.rows(), form.rows()) + tilt * form)) {
+  for (const double value : eigenvalues) log_mean_ -= design.noise.num_channels * std::log1p(tilt * value);
+}
+
+std::vector<TrainingDraw> TrainingDraws::draw(int count, Job* job) const {
+  std::vector<TrainingDraw> draws(count);
+  parallel_for((count + kDrawsPerTask - 1) / kDrawsPerTask, [&](int64_t task) {
+    if (job) job->throw_if_cancelled();
+    const int64_t end = std::min<int64_t>(count, (task + 1) * kDrawsPerTask);
+    for (int64_t i = task * kDrawsPerTask; i < end; ++i) draws[i] = one(i);
+  });
+  return draws;
+}
+
+// The columns are the real and imaginary parts of every channel.
+Eigen::MatrixXd TrainingDraws::white_numbers(int64_t index) const {
+  Eigen::MatrixXd numbers(root_.rows(), 2 * design_.noise.num_channels);
+  for (Eigen::Index c = 0; c < numbers.cols(); c += 2) {
+    for (Eigen::Index i = 0; i < numbers.rows(); ++i) {
+      const auto [u, v] = uniform2(kSeed, Stream::kTraining, static_cast<uint64_t>(index),
+                                   static_cast<uint32_t>(c / 2 * numbers.rows() + i));
+      const double radius = std::sqrt(-std::log1p(-u));  // parts of variance 1/2
+      numbers(i, c) = radius * std::cos(kTwoPi * v);
+      numbers(i, c + 1) = radius * std::sin(kTwoPi * v);
+    }
+  }
+  return numbers;
+}
+
+TrainingDraw TrainingDraws::one(int64_t index) const {
+  Eigen::MatrixXd numbers = white_numbers(index);
+  root_.matrixU().solveInPlace(numbers);
+  const Eigen::MatrixXd &left = noise_.velocity_factor(), &right = noise_.range_factor();
+  RowMatrix power = RowMatrix::Zero(left.rows(), right.rows());
+  for (Eigen::Index c = 0; c < numbers.cols(); ++c) {
+    const Eigen::Map<const RowMatrix> field(numbers.col(c).data(), left.cols(), right.cols());
+    power += (left * field * right.transpose()).cwiseAbs2();
+  }
+  return summed_up(power);
+}
+
+TrainingDraw TrainingDraws::summed_up(const RowMatrix& power) const {
+  const CfarWindow& cells = design_.cells;
+  std::vector<double> training;
+  for (int row = 0; row < cells.num_rows(); ++row) {
+    const bool beyond = std::abs(row - cells.reach_velocity()) > cells.guard_velocity;
+    for (int column = 0; column < cells.num_columns(); ++column) {
+      if (beyond || std::abs(column - cells.reach_range()) > cells.guard_range) training.push_back(power(row, column));
+    }
+  }
+  double sum = 0.0;
+  for (const double value : training) sum += value;
+  const auto place = training.begin() + (design_.order() - 1);
+  std::nth_element(training.begin(), place, training.end());
+  return {*place, tilt_ * sum + log_mean_};
+}
+
+}  // namespace echopath

@@ -1,0 +1,227 @@
+#include "echopath/validity/frame/frame_check.h"
+
+#include <algorithm>
+
+namespace echopath {
+namespace {
+
+Radar with_first_antennas(Radar radar) {
+  radar.transmitters.resize(1);
+  radar.receivers.resize(1);
+  return radar;
+}
+
+std::vector<uint8_t> moving_meshes(const Scene& scene) {
+  std::vector<uint8_t> moves;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves.push_back(scene.is_moving(id));
+  return moves;
+}
+
+void merge(const LengthError& at, LengthError& worst) {
+  worst.motion = std::max(worst.motion, at.motion);
+  worst.largest = std::max(worst.largest, at.largest);
+}
+
+// Keeps the worse of two times.
+void merge(const PathState& at, PathState& worst) {
+  merge(at.frozen, worst.frozen);
+  merge(at.stepped, worst.stepped);
+  worst.left |= at.left;
+  worst.blocked |= at.blocked;
+  worst.is_receiver_blocked |= at.is_receiver_blocked;
+  worst.is_turned |= at.is_turned;
+  worst.cosine_change = std::max(worst.cosine_change, at.cosine_change);
+}
+
+bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
+
+// Returns centre and radius of a ball about a mesh at one time, in the world.
+std::pair<Vec3, double> ball_of(const PosedScene& pose, uint32_t mesh_id) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
+  return {box.center(), 0.5 * box.diagonal().norm()};
+}
+
+}  // namespace
+
+FrameCheck::Scratch::Scratch(int longest) : probe(longest) {}
+
+// Holds one time of the frame.
+struct FrameCheck::View {
+  std::shared_ptr<const EmbreeScene> geometry;
+  PosedScene pose;
+  PosedScene rim;
+  FrameProbe probe;
+
+  View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> posed, double time)
+      : geometry(std::move(posed)), pose(*check.paths_.scene, time),
+        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.patches(), check.origin_, time),
+        probe(check.preparer_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
+};
+
+// Describes a ball that a mesh does not leave within the frame, relative to the mean transmitter of the trace.
+struct FrameCheck::Sweep {
+  Vec3 centre;
+  double radius;
+  int num_times;
+};
+
+FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
+    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
+      preparer_(paths, whole_patches(*paths.scene)),
+      walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
+      memory_(ReplayMemory::take()), mesh_moves_(moving_meshes(*paths.scene)) {
+  is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
+  is_still_ = is_geometry_still_ && !radar.motion;
+  const PosedScene pose(*paths.scene, paths.frame.trace_time);
+  origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
+  traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
+  trace_view_ = std::make_unique<const View>(*this, traced_, paths.frame.trace_time);
+  traced_nodes_ = posed_nodes({&paths.frame.trace_time, 1});
+  find_sweeps();
+}
+
+FrameCheck::~FrameCheck() { ReplayMemory::leave(std::move(memory_)); }
+
+void FrameCheck::find_sweeps() {
+  std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
+  std::vector<double> radii(times_.of_mesh.size());
+  for (int k = times_.num_base; k < std::ssize(times_.times); ++k) {
+    const PosedScene pose(*paths_.scene, times_.times[static_cast<size_t>(k)]);
+    for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
+      if (times_.of_mesh[id] <= k) continue;
+      const auto [centre, radius] = ball_of(pose, id);
+      centres[id].extend(centre);
+      radii[id] = std::max(radii[id], radius);
+    }
+  }
+  for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
+    if (times_.of_mesh[id] <= times_.num_base) continue;
+    sweeps_.push_back({centres[id].center() - paths_.frame.transmitter, 0.5 * centres[id].diagonal().norm() + radii[id], times_.of_mesh[id]});
+  }
+}
+
+int FrameCheck::times_of(const LocalPath& path) const {
+  int needed = times_.num_base;
+  if (sweeps_.empty()) return needed;
+  for (int k = 0; k < path.count; ++k) needed = std::max(needed, times_.of_mesh[path.hits[k].mesh_id]);
+  const PosedScene& traced = traced_nodes_.at(0);
+  const PosedAntenna &from = traced.transmitters.front(), &to = traced.receivers.front();
+  for (const Sweep& sweep : sweeps_) {
+    if (sweep.num_times <= needed) continue;
+    Vec3 last = from.position;
+    double nearest = 1e300;
+    for (int k = 0; k <= path.count; ++k) {
+      const int hit = path.is_reversed ? path.count - 1 - k : k;
+      Vec3 next = to.position;
+      if (k < path.count) {
+        PosedHit posed;
+        pose_facet(path.hits[hit], traced, posed);
+        next = posed.point;
+      }
+      nearest = std::min(nearest, distance_to_segment(sweep.centre, last, next));
+      last = next;
+    }
+    if (nearest < sweep.radius) needed = sweep.num_times;
+  }
+  return needed;
+}
+
+std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, double time, Job* job) {
+  const Scene& scene = *paths_.scene;
+  if (index == geometries_.size()) {
+    geometries_.push_back(std::make_shared<EmbreeScene>(scene, PosedScene(scene, time), origin_, job));
+  } else {
+    geometries_[index]->update(scene, PosedScene(scene, time), origin_, job);
+  }
+  return geometries_[index];
+}
+
+PosedNodes FrameCheck::posed_nodes(std::span<const double> times) const {
+  auto scenes = std::make_shared<PosedScenes>();
+  for (const double time : times) {
+    scenes->emplace_back(*paths_.scene, first_radar_, preparer_.patches(), paths_.frame.transmitter, time);
+  }
+  return PosedNodes(std::move(scenes));
+}
+
+void FrameCheck::pose(size_t first, size_t count, Job* job) {
+  views_.clear();
+  first_posed_ = first;
+  for (size_t i = 0; i < count && first + i < times_.times.size(); ++i) {
+    const double time = times_.times[first + i];
+    views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
+  }
+  posed_nodes_ = {};
+  if (!views_.empty()) posed_nodes_ = posed_nodes({times_.times.data() + first, views_.size()});
+}
+
+bool FrameCheck::is_still(const LocalPath& path) const {
+  const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
+  return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
+}
+
+std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const {
+  const size_t num_times = nodes.size();
+  if (num_times == 0 || paths.empty()) return {};
+  std::vector<double> lengths(paths.size() * num_times);
+  std::vector<std::complex<double>> amplitudes(lengths.size());
+  const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
+  std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
+  evaluator->begin(preparer_, first_radar_, specular_);
+  evaluator->plan(paths);
+  evaluator->evaluate(nodes, radio_, {0, {&all, 1}});
+  memory_->give(std::move(evaluator));
+  std::vector<Echo> echoes(lengths.size());
+  for (size_t i = 0; i < lengths.size(); ++i) {
+    Echo& echo = echoes[i % paths.size() * num_times + i / paths.size()];
+    echo.length = lengths[i];
+    echo.amplitude = amplitudes[i];
+  }
+  return echoes;
+}
+
+std::vector<Echo> FrameCheck::at_trace(std::span<const int64_t> paths) const { return echoes_at(paths, traced_nodes_); }
+
+std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, const LocalPaths& local,
+                                             std::span<const Echo> traced) const {
+  std::vector<int64_t> moving;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (!is_still(local.paths[i])) moving.push_back(paths[i]);
+  }
+  const std::vector<Echo> found = echoes_at(moving, posed_nodes_);
+  const auto num_times = static_cast<int64_t>(views_.size());
+  auto next = found.begin();
+  std::vector<Echo> echoes;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (is_still(local.paths[i])) {
+      echoes.insert(echoes.end(), views_.size(), traced[i]);
+    } else {
+      echoes.insert(echoes.end(), next, next + num_times);
+      next += num_times;
+    }
+  }
+  return echoes;
+}
+
+size_t FrameCheck::check(const LocalPath& path, int num_times, const Echo& traced, std::span<Echo> posed, Scratch& scratch,
+                         PathFinding& found) const {
+  const int64_t needed = num_times - static_cast<int64_t>(first_posed_);
+  const auto count = static_cast<size_t>(std::clamp<int64_t>(needed, 0, std::ssize(views_)));
+  if (found.num_powers == 0) {
+    found.power = std::norm(traced.amplitude);
+    found.num_powers = 1;
+  }
+  trace_view_->probe.cosines(path, scratch.probe, scratch.probe.reference);
+  scratch.known.resize(views_.size());
+  for (size_t i = 0; i < count; ++i) {
+    const PathState state = views_[i]->probe.check(path, scratch.probe, scratch.known[i]);
+    posed[i].is_lost = is_lost(state);
+    found.power += std::norm(posed[i].amplitude);
+    ++found.num_powers;
+    merge(state, found.state);
+  }
+  return count;
+}
+
+}  // namespace echopath

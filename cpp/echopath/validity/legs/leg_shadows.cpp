@@ -1,0 +1,143 @@
+#include "echopath/validity/legs/leg_shadows.h"
+
+#include <cmath>
+
+namespace echopath {
+namespace {
+
+constexpr double kSamePlace = 1e-6;        // m: bounces at an edge where two mirrors meet
+constexpr double kOnMirrorAbsolute = 1e-3;  // m: how far before its place a leg may meet another mirror's edge
+constexpr double kOnMirrorRelative = 1e-5;
+
+}  // namespace
+
+// Describes an end of a chain of legs: an antenna, or a point of a surface with a normal and, where it is curved, the point
+// of its facet.
+struct LegTester::End {
+  Vec3 point;
+  Vec3 normal = Vec3::Zero();
+  const Vec3* facet = nullptr;
+
+  // Returns a point from where the surface does not hide `toward` itself: the curved point of a hollow facet lies behind it.
+  const Vec3& seen_from(const Vec3& toward) const {
+    return facet && normal.dot(toward - point) * normal.dot(point - *facet) < 0 ? *facet : point;
+  }
+};
+
+// Returns the end at the flat triangle, where the trace found it.
+LegTester::End LegTester::facet_of(const PosedHit& hit) {
+  return hit.is_smooth ? End{hit.facet, hit.edge_u.cross(hit.edge_v).normalized()} : surface_of(hit);
+}
+
+// Returns the end on the curved surface, where the trace left it.
+LegTester::End LegTester::surface_of(const PosedHit& hit) { return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr}; }
+
+void LegTester::block(int leg) {
+  if (leg == path_.count) shadows_.is_end_blocked = true;
+  else shadows_.blocked |= uint64_t{1} << leg;
+}
+
+bool LegTester::is_known_blocked(int first, int last) const {
+  for (int leg = first; leg <= last; ++leg) {
+    if (leg == path_.count ? shadows_.is_end_blocked : (shadows_.blocked | shadows_.off_mirror) >> leg & 1) return true;
+  }
+  return false;
+}
+
+// Lifts a point off the surface on the side of `toward`; an antenna stays.
+Vec3 LegTester::lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const {
+  return geometry_.lifted(point, normal.dot(toward - point) >= 0 ? normal : Vec3(-normal));
+}
+
+// Lifts a point of reflection off all the mirrors [first, last) that meet in it.
+Vec3 LegTester::lifted_image(int image, int first, int last, const Vec3& toward) const {
+  Vec3 point = image_points_[image];
+  for (int k = first; k < last; ++k) {
+    if ((image_points_[k] - image_points_[image]).norm() <= kSamePlace) point = lifted(point, hits_[k].normal, toward);
+  }
+  return point;
+}
+
+// Finds the points of reflection on the mirrors [first, last), from the end backwards; returns false where one lies on no
+// straight line.
+bool LegTester::place_images(const Vec3& from, int first, int last, const Vec3& to) {
+  const auto height = [&](int k, const Vec3& point) { return hits_[k].normal.dot(point - hits_[k].point); };
+  Vec3 image = from;
+  for (int k = first; k < last; ++k) {
+    image -= 2.0 * height(k, image) * hits_[k].normal;
+    image_points_[k] = image;
+  }
+  Vec3 target = to;
+  for (int k = last; k-- > first;) {
+    const double before = height(k, target), behind = height(k, image_points_[k]);
+    if (std::abs(before) > kSamePlace) {
+      if (before * behind >= 0) {
+        shadows_.off_mirror |= uint64_t{1} << k;
+        return false;
+      }
+      target += before / (before - behind) * (image_points_[k] - target);
+    }
+    image_points_[k] = target;
+  }
+  return true;
+}
+
+// `image` is the mirror on which `to` should lie, -1 for none. For a leg to a mirror, what it meets first is asked for.
+bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
+  if (image < 0) return geometry_.occluded(from, to);
+  const double length = (to - from).norm();
+  RayHit met;
+  const EmbreeScene::Verdict verdict = geometry_.intersect(from, (to - from) / length, met);
+  if (verdict == EmbreeScene::Verdict::kFalseHit) return false;
+  const bool is_there = verdict == EmbreeScene::Verdict::kHit;
+  if (is_there && met.hit.mesh_id == path_.hits[image].mesh_id) return false;
+  const double slack = kOnMirrorAbsolute + kOnMirrorRelative * length;
+  if (is_there && std::abs(met.distance - length) < slack) return false;
+  if (is_there && met.distance < length) return true;
+  shadows_.off_mirror |= uint64_t{1} << image;
+  return false;
+}
+
+// Tests the legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.
+void LegTester::test(const End& from, int first, int last, const End& to) {
+  if (is_known_blocked(first, last) || !place_images(from.point, first, last, to.point)) return;
+  for (int leg = first; leg <= last; ++leg) {
+    const Vec3& start = leg > first ? image_points_[leg - 1] : from.seen_from(leg < last ? image_points_[leg] : to.point);
+    const Vec3& end = leg < last ? image_points_[leg] : to.seen_from(start);
+    if (leg > first && leg < last && (end - start).norm() <= kSamePlace) continue;
+    const Vec3 off_start = leg > first ? lifted_image(leg - 1, first, last, end) : lifted(start, from.normal, end);
+    const Vec3 off_end = leg < last ? end : lifted(end, to.normal, start);
+    if (is_blocked(off_start, off_end, leg < last ? leg : -1)) return block(leg);
+  }
+}
+
+// The trace found a smooth hit on its flat triangle, or looked back from the curved surface, so one of the two must be free.
+void LegTester::test_arrival(const End& from, int first, int last) {
+  const PosedHit& hit = hits_[last];
+  const LegShadows before = shadows_;
+  test(from, first, last, facet_of(hit));
+  const bool is_worse = (shadows_.blocked & ~before.blocked) != 0 || (shadows_.off_mirror & ~before.off_mirror) != 0;
+  if (!hit.is_smooth || !is_worse) return;
+  shadows_ = before;
+  test(from, first, last, surface_of(hit));
+}
+
+void LegTester::test_start(const Vec3& antenna) { test_arrival({antenna}, 0, path_.first_material); }
+
+void LegTester::test_inner() {
+  int previous = path_.first_material;
+  for (int k = previous + 1; k <= path_.last_material; ++k) {
+    if (path_.is_image(k)) continue;
+    test_arrival(surface_of(hits_[previous]), previous + 1, k);
+    previous = k;
+  }
+}
+
+void LegTester::test_end(const Vec3& antenna) {
+  const int last = path_.last_material;
+  test(surface_of(hits_[last]), last + 1, path_.count, {antenna});
+}
+
+void LegTester::test_images(const Vec3& start, const Vec3& end) { test({start}, 0, path_.count, {end}); }
+
+}  // namespace echopath

@@ -12,6 +12,7 @@ viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbco
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
 sanitized_dir=$PWD/build/asan
+tidy_dir=$PWD/build/tidy
 # The same tests on one instruction set after the other are not run sanitized.
 per_instruction_set='_(baseline|avx2)$'
 python=.venv/bin/python
@@ -22,6 +23,7 @@ usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> o
        ./bootstrap.sh demo --view      likewise, then the viewer, which shows which rays made which cell
        ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest), those in C++
                                        once more under the address and undefined-behaviour sanitizers
+       ./bootstrap.sh tidy             install, then clang-tidy over the core and its bindings (.clang-tidy lists the checks)
 TEXT
 }
 
@@ -62,10 +64,14 @@ make_environment() {
   fail "no Python 3.11 or later was found; name one with PYTHON=..."
 }
 
+install_build_tools() {
+  "$python" -c 'import setuptools, pybind11' 2>/dev/null || pip_install 'setuptools>=77' 'pybind11>=2.11'
+}
+
 # CMake's folder is shared with the C++ tests: the core is compiled once.
 build_extension() {
   export ECHOPATH_BUILD_DIR=$build_dir CMAKE_ARGS="--preset default -DECHOPATH_BUILD_TESTS=ON ${CMAKE_ARGS:-}"
-  "$python" -c 'import setuptools, pybind11' 2>/dev/null || pip_install 'setuptools>=77' 'pybind11>=2.11'
+  install_build_tools
   say "building the core (minutes the first time, seconds later)"
   "$python" setup.py -q build_ext --inplace
 }
@@ -126,10 +132,27 @@ run_sanitized() {
 
 closing_line() { grep 'tests passed' "$1/ctest.log"; }
 
+lint() {
+  local status=0
+  "$python" -m ruff check setup.py python viewer tests || status=$?
+  find cpp python/bindings tests \( -name '*.h' -o -name '*.cpp' \) -exec .venv/bin/clang-format --dry-run --Werror {} + ||
+    status=$?
+  return "$status"
+}
+
+# By itself, since it parses every file: it generates no code, so that nothing is built for it.
+run_tidy() {
+  install_build_tools
+  pip_install 'clang-tidy==23.1.4'
+  say "clang-tidy"
+  cmake --preset tidy -DPython_EXECUTABLE="$PWD/$python" >/dev/null
+  "$python" .venv/bin/run-clang-tidy.py -quiet -p "$tidy_dir" -clang-tidy-binary .venv/bin/clang-tidy -j "$(nproc)"
+}
+
 run_tests() {
   local cpp_status=0 sanitized_status=0 python_status=0 lint_status=0
   say "linting"
-  "$python" -m ruff check setup.py python viewer tests || lint_status=$?
+  lint || lint_status=$?
   say "building the C++ tests"
   cmake --build "$build_dir" --parallel "$(nproc)"
   say "C++ tests"
@@ -142,7 +165,7 @@ run_tests() {
   printf 'ctest, sanitized: %s\n' "$(closing_line "$sanitized_dir" || echo "ended with $sanitized_status")"
   printf 'ctest:  %s\n' "$(closing_line "$build_dir" || echo "ended with $cpp_status")"
   printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log" | sed 's/^=* *//; s/ *=*$//')"
-  [ "$lint_status" -eq 0 ] || fail "ruff found what is to be mended, see above under linting"
+  [ "$lint_status" -eq 0 ] || fail "ruff or clang-format found what is to be mended, see above under linting"
   [ "$cpp_status" -eq 0 ] && [ "$sanitized_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
 }
 
@@ -162,6 +185,11 @@ case $verb in
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"
+    ;;
+  tidy)
+    install_packages "${packages[@]}"
+    make_environment
+    run_tidy
     ;;
   -h | --help | help) usage ;;
   *)

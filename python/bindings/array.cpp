@@ -1,5 +1,6 @@
 #include "array.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -75,7 +76,8 @@ void put(const Quaternion& q, double* wxyz) {
 template <class Number, class Row>
 py::array_t<Number> rows_to_numpy(const std::vector<Row>& rows) {
   py::array_t<Number> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
-  if (!rows.empty()) std::memcpy(array.mutable_data(), rows.data(), rows.size() * sizeof(Row));
+  Number* to = array.mutable_data();
+  for (const Row& row : rows) to = std::copy_n(row.data(), 3, to);
   return array;
 }
 

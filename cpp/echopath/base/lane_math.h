@@ -133,7 +133,7 @@ struct LaneMath {
     return Vec{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
 #endif
   }
-  static constexpr int64_t kSignBit = int64_t{-1} ^ int64_t{0x7FFFFFFFFFFFFFFF};
+  static constexpr int64_t kSignBit = ~int64_t{0x7FFFFFFFFFFFFFFF};
   static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
   static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
   static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }

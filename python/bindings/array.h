@@ -46,11 +46,11 @@ std::vector<T> as_vector(py::handle value, std::string_view argument, std::strin
   return std::vector<T>(array.data(), array.data() + array.size());
 }
 
-py::array_t<double> to_numpy(const Vec3& value);                      // [3]
-py::array_t<double> to_numpy(const Quaternion& value);                // [4] (w, x, y, z)
-py::array_t<double> to_numpy(const Transform& value);                 // [4, 4]
-py::array_t<double> to_numpy(const std::vector<Vec3>& values);        // [N, 3]
-py::array_t<double> to_numpy(const std::vector<Quaternion>& values);  // [N, 4]
+py::array_t<double> to_numpy(const Vec3& value);                             // [3]
+py::array_t<double> to_numpy(const Quaternion& value);                       // [4] (w, x, y, z)
+py::array_t<double> to_numpy(const Transform& value);                        // [4, 4]
+py::array_t<double> to_numpy(const std::vector<Vec3>& values);               // [N, 3]
+py::array_t<double> to_numpy(const std::vector<Quaternion>& values);         // [N, 4]
 py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames);  // [T, V, 3], all frames of one size
 py::array_t<uint32_t> to_numpy(const std::vector<IndexTriple>& values);      // [F, 3]
 template <class T>

@@ -112,22 +112,21 @@ folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with th
 @@Returns AngleEstimates, arrays [M]: none for a cell without power. Raises ValueError or IndexError naming the argument.)";
 
 // The keywords that all beams have.
-const std::vector<std::string> kBeamKeywords = {"spectrum", "radar",    "azimuth",    "elevation",
-                                                "method",   "window",   "overlaps",   "compensate",
-                                                "progress", "diagonal_loading", "velocity_neighbours",
-                                                "range_neighbours", "forward_backward"};
+const std::vector<std::string> kBeamKeywords = {
+    "spectrum",   "radar",    "azimuth",          "elevation",           "method",           "window",          "overlaps",
+    "compensate", "progress", "diagonal_loading", "velocity_neighbours", "range_neighbours", "forward_backward"};
 
 BeamformOptions beams_of(const std::string& method, const py::object& window, const std::string& overlaps, bool compensate,
                          double diagonal_loading, int velocity_neighbours, int range_neighbours, bool forward_backward) {
-  return {as_beam_method(method), as_window(window), as_overlaps(overlaps), compensate, diagonal_loading,
-          velocity_neighbours, range_neighbours, forward_backward};
+  return {as_beam_method(method), as_window(window),   as_overlaps(overlaps), compensate,
+          diagonal_loading,       velocity_neighbours, range_neighbours,      forward_backward};
 }
 
 // Binds call(map, radar, angles, beams, progress, extra...) with the arguments of all beams around its own.
 template <class Result, class... Extra, class... Names>
 void def_beams(py::module_& m, const char* name, const py::object& elevation, double step, std::string doc,
-               Result (*call)(const RangeDoppler&, const Radar&, const AngleGrid&, const BeamformOptions&,
-                              const py::object&, Extra...),
+               Result (*call)(const RangeDoppler&, const Radar&, const AngleGrid&, const BeamformOptions&, const py::object&,
+                              Extra...),
                Names... names) {
   doc.replace(doc.find("@@"), 2, kBeamKeywordsDoc);
   std::vector<std::string> known = kBeamKeywords;
@@ -144,13 +143,12 @@ void def_beams(py::module_& m, const char* name, const py::object& elevation, do
     return call(map, radar, angles, beams, progress, extra...);
   };
   const BeamformOptions standard;
-  m.def(name, bound, py::arg("spectrum"), py::arg("radar"), py::arg("azimuth") = py::none(),
-        py::arg("elevation") = elevation, py::kw_only(), names..., py::arg("method") = "bartlett",
-        py::arg("window") = "rect", py::arg("overlaps") = "average", py::arg("compensate") = standard.compensate,
-        py::arg("diagonal_loading") = standard.diagonal_loading,
-        py::arg("velocity_neighbours") = standard.velocity_neighbours,
-        py::arg("range_neighbours") = standard.range_neighbours,
-        py::arg("forward_backward") = standard.forward_backward, py::arg("progress") = py::none(), doc.c_str());
+  m.def(
+      name, bound, py::arg("spectrum"), py::arg("radar"), py::arg("azimuth") = py::none(), py::arg("elevation") = elevation,
+      py::kw_only(), names..., py::arg("method") = "bartlett", py::arg("window") = "rect", py::arg("overlaps") = "average",
+      py::arg("compensate") = standard.compensate, py::arg("diagonal_loading") = standard.diagonal_loading,
+      py::arg("velocity_neighbours") = standard.velocity_neighbours, py::arg("range_neighbours") = standard.range_neighbours,
+      py::arg("forward_backward") = standard.forward_backward, py::arg("progress") = py::none(), doc.c_str());
 }
 
 BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
@@ -180,9 +178,8 @@ RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, cons
                  [&](Job& job) { return range_azimuth(map, radar, angles, choice, beams, &job); });
 }
 
-AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
-                         const BeamformOptions& beams, const py::object& progress, py::object cells, int max_peaks,
-                         double peak_range_db, int folds) {
+AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
+                         const py::object& progress, py::object cells, int max_peaks, double peak_range_db, int folds) {
   const std::vector<Cell> chosen = as_cells(cells);
   const EstimateOptions options{beams, max_peaks, peak_range_db, folds};
   return run_job("estimate_angles", progress,

@@ -44,8 +44,9 @@ void bind_base(py::module_& m) {
         "num_threads: 0 (one per core) or more. Results do not depend on it, not by a bit.\n"
         "Raises ValueError if negative.");
   m.def("num_threads", &num_threads, "Number of threads of the parallel loops.");
-  m.def("instruction_set", [] { return name_of(instruction_set()); },
-        "That of the inner loops: baseline, avx2 or avx512; the environment variable ECHOPATH_INSTRUCTION_SET forces one.");
+  m.def(
+      "instruction_set", [] { return name_of(instruction_set()); },
+      "That of the inner loops: baseline, avx2 or avx512; the environment variable ECHOPATH_INSTRUCTION_SET forces one.");
   m.def("nearest_names", &nearest_names, py::arg("word"), py::arg("candidates"), py::arg("count") = 3,
         "The candidates most like `word` by edit distance, best first, at most `count`.");
   m.def("_wait", &wait_seconds, py::arg("seconds"), py::arg("progress") = py::none());

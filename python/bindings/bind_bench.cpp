@@ -24,9 +24,8 @@ py::dict time_bare_queries(Scene scene, const Radar& radar, int64_t num_rays, in
   settings.num_rays = num_rays;
   settings.max_bounces = max_bounces;
   settings.seed = seed;
-  const BareQueries found = run_job("queries", py::none(), [&](Job& job) {
-    return measure_bare_queries(scene, radar, settings, repetitions, &job);
-  });
+  const BareQueries found = run_job(
+      "queries", py::none(), [&](Job& job) { return measure_bare_queries(scene, radar, settings, repetitions, &job); });
   py::dict out;
   out["num_rays"] = found.num_rays;
   out["num_paths"] = found.num_paths;
@@ -63,16 +62,14 @@ int64_t time_replay(const Paths& paths, const Radar& radar, double phase_toleran
 
 py::tuple hits_of_rays(Scene scene, const py::object& origins, const py::object& directions, double time) {
   const std::vector<Vec3> from = as_points(origins, "origins"), along = as_points(directions, "directions");
-  RayAnswers found =
-      run_job("first_hits", py::none(), [&](Job& job) { return first_hits(scene, time, from, along, &job); });
+  RayAnswers found = run_job("first_hits", py::none(), [&](Job& job) { return first_hits(scene, time, from, along, &job); });
   return py::make_tuple(numpy_take(std::move(found.mesh_id)), numpy_take(std::move(found.triangle_id)),
                         numpy_take(std::move(found.distance)), numpy_take(std::move(found.is_false)));
 }
 
 py::array blocked(Scene scene, const py::object& starts, const py::object& ends, double time) {
   const std::vector<Vec3> from = as_points(starts, "starts"), to = as_points(ends, "ends");
-  return numpy_take(
-      run_job("blocked", py::none(), [&](Job& job) { return blocked_segments(scene, time, from, to, &job); }));
+  return numpy_take(run_job("blocked", py::none(), [&](Job& job) { return blocked_segments(scene, time, from, to, &job); }));
 }
 
 void bind_times(py::module_& m) {
@@ -86,12 +83,13 @@ trace_seconds (rays and record), bare_seconds (queries packed alike) and single_
 [repetitions] in s: elapsed, and processor of all threads together.)");
   m.def("replay_only", &time_replay, py::arg("paths"), py::arg("radar"), py::kw_only(),
         py::arg("phase_tolerance") = ReplaySettings{}.phase_tolerance,
-        "What replay costs without synthesis: evaluates all paths at all chirps and channels, one echo for paths over the same "
+        "What replay costs without synthesis: evaluates all paths at all chirps and channels, one echo for paths over the "
+        "same "
         "hits as synthesis has them, and returns how many path-chirps that were.");
-  m.def("trial_node_times", [](const ChirpSequence& waveform, int num_nodes) {
-    return to_numpy(trial_node_times(waveform, num_nodes));
-  }, py::arg("waveform"), py::arg("num_nodes"),
-        "Times [num_nodes] in s of the nodes of synthesis_trial.");
+  m.def(
+      "trial_node_times",
+      [](const ChirpSequence& waveform, int num_nodes) { return to_numpy(trial_node_times(waveform, num_nodes)); },
+      py::arg("waveform"), py::arg("num_nodes"), "Times [num_nodes] in s of the nodes of synthesis_trial.");
   m.def("synthesis_trial", &synthesis_trial, py::arg("waveform"), py::arg("delays"), py::arg("amplitudes"), py::kw_only(),
         py::arg("method") = "auto", py::arg("tolerance") = SynthesisOptions{}.tolerance,
         "What synthesis of echoes costs that polynomials give over a frame: delays [K, P] in s and amplitudes [K, P] in "

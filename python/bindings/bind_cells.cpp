@@ -16,8 +16,8 @@
 namespace echopath::bindings {
 namespace {
 
-using Powers = py::array_t<double, py::array::c_style>;   // [K, V, R]
-using Cells = py::array_t<int16_t, py::array::c_style>;   // [V, R]
+using Powers = py::array_t<double, py::array::c_style>;  // [K, V, R]
+using Cells = py::array_t<int16_t, py::array::c_style>;  // [V, R]
 
 template <class T>
 std::span<const T> view(const py::array_t<T, py::array::c_style>& array) {

@@ -39,21 +39,22 @@ Returns a CfarResult. Raises ValueError naming the argument, also for windows of
 padding.)";
 
 CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
-                   std::optional<int> guard_velocity, std::optional<int> guard_range,
-                   std::optional<int> training_velocity, std::optional<int> training_range, double rank,
-                   const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "cfar", {"spectrum", "radar", "method", "false_alarm_rate", "guard_velocity", "guard_range",
-                                   "training_velocity", "training_range", "rank", "progress"});
-  const CfarOptions options{kCfarMethod.value_of(method), false_alarm_rate,  guard_velocity, guard_range,
-                            training_velocity,            training_range,    rank};
+                   std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
+                   std::optional<int> training_range, double rank, const py::object& progress, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "cfar",
+                 {"spectrum", "radar", "method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity",
+                  "training_range", "rank", "progress"});
+  const CfarOptions options{
+      kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank};
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
 }
 
 void check_cfar(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
                 std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
                 std::optional<int> training_range, double rank) {
-  cfar_design(map, radar, {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
-                           training_range, rank});
+  cfar_design(map, radar,
+              {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
+               training_range, rank});
 }
 
 py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
@@ -98,29 +99,39 @@ std::string text_of(const CfarResult& result) {
 
 void bind_cfar(py::module_& m) {
   py::class_<CfarResult>(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.")
-      .def_property_readonly("power", [](const py::object& self) {
-        const auto& result = self.cast<const CfarResult&>();
-        return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
-      }, "[velocity, range] W, mean over channels")
+      .def_property_readonly(
+          "power",
+          [](const py::object& self) {
+            const auto& result = self.cast<const CfarResult&>();
+            return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
+          },
+          "[velocity, range] W, mean over channels")
       .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
-      .def_property_readonly("cells", [](const CfarResult& self) { return cells_array(self.cells); },
-                             "[D, 2] (velocity, range) indices of the cells found, ascending")
-      .def_property_readonly("noise", [](const py::object& self) {
-        return numpy_view(self.cast<const CfarResult&>().noise, self);
-      }, "[D] W, mean power of the noise about each cell found, as its training cells tell it")
-      .def_property_readonly("factor", [](const CfarResult& self) {
-        return self.factors.factor.back() * self.factors.statistic;
-      }, "power over noise, linear, from which a cell away from the ends of the range axis is found")
-      .def_property_readonly("method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); },
-                             "\"ca\" or \"os\"")
-      .def_property_readonly("false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; },
-                             "of one cell")
-      .def_property_readonly("guard", [](const CfarResult& self) {
-        return py::make_tuple(self.design.cells.guard_velocity, self.design.cells.guard_range);
-      }, "half widths along (velocity, range) in cells")
-      .def_property_readonly("training", [](const CfarResult& self) {
-        return py::make_tuple(self.design.cells.training_velocity, self.design.cells.training_range);
-      }, "cells beyond the guard cells on each side, along (velocity, range)")
+      .def_property_readonly(
+          "cells", [](const CfarResult& self) { return cells_array(self.cells); },
+          "[D, 2] (velocity, range) indices of the cells found, ascending")
+      .def_property_readonly(
+          "noise", [](const py::object& self) { return numpy_view(self.cast<const CfarResult&>().noise, self); },
+          "[D] W, mean power of the noise about each cell found, as its training cells tell it")
+      .def_property_readonly(
+          "factor", [](const CfarResult& self) { return self.factors.factor.back() * self.factors.statistic; },
+          "power over noise, linear, from which a cell away from the ends of the range axis is found")
+      .def_property_readonly(
+          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\" or \"os\"")
+      .def_property_readonly(
+          "false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; }, "of one cell")
+      .def_property_readonly(
+          "guard",
+          [](const CfarResult& self) {
+            return py::make_tuple(self.design.cells.guard_velocity, self.design.cells.guard_range);
+          },
+          "half widths along (velocity, range) in cells")
+      .def_property_readonly(
+          "training",
+          [](const CfarResult& self) {
+            return py::make_tuple(self.design.cells.training_velocity, self.design.cells.training_range);
+          },
+          "cells beyond the guard cells on each side, along (velocity, range)")
       .def("__len__", [](const CfarResult& self) { return self.cells.size(); })
       .def("__repr__", [](const CfarResult& self) { return text_of(self); });
 

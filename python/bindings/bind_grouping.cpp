@@ -110,18 +110,25 @@ py::list sight_list(const std::vector<ObjectVisibility>& seen) {
 }
 
 void bind_visibility(py::module_& m) {
-  m.def("check_objects", [](const Scene& scene, const Objects& objects) { surfaces_of(scene, objects); }, py::arg("scene"),
-        py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
-  m.def("visibility_in_trace", [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
-                                  const py::object& progress) {
-    return sight_list(visibility_in_trace(paths, radar, objects, progress));
-  }, py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("progress"),
-        "As visibility, at the time of a trace and of the objects that find_families has for it.");
-  m.def("visibility", [](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects,
-                         std::optional<double> time, int num_directions, const py::object& progress) {
-    return sight_list(visibility_of(scene, radar, objects, time, num_directions, progress));
-  }, py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"), py::arg("progress"),
-        "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.");
+  m.def(
+      "check_objects", [](const Scene& scene, const Objects& objects) { surfaces_of(scene, objects); }, py::arg("scene"),
+      py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
+  m.def(
+      "visibility_in_trace",
+      [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, const py::object& progress) {
+        return sight_list(visibility_in_trace(paths, radar, objects, progress));
+      },
+      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("progress"),
+      "As visibility, at the time of a trace and of the objects that find_families has for it.");
+  m.def(
+      "visibility",
+      [](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
+         int num_directions, const py::object& progress) {
+        return sight_list(visibility_of(scene, radar, objects, time, num_directions, progress));
+      },
+      py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
+      py::arg("progress"),
+      "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.");
 }
 
 void bind_family(py::module_& m) {
@@ -149,9 +156,10 @@ via: names of what mirrored it, each once, in the order of the first bounce ther
                              R"(Label of the Radar Ghost Dataset without the object's class, to which 1000 C is to be added
 (C: 1 pedestrian, 2 cyclist, 3 car, 4 large vehicle, 5 motorcycle): 111 real, 112 type 1 of order 2, 122 type 2 of order
 2, 124 type 2 of order 3; 100 every other ghost, which the dataset leaves undecided; 0 background (no class).)")
-      .def_property_readonly("is_ghost", [](const Family& self) { return self.ghost_type > 0; },
-                             "neither real nor background")
-      .def("__eq__", [](const Family& a, const Family& b) { return a == b; }, py::is_operator())
+      .def_property_readonly(
+          "is_ghost", [](const Family& self) { return self.ghost_type > 0; }, "neither real nor background")
+      .def(
+          "__eq__", [](const Family& a, const Family& b) { return a == b; }, py::is_operator())
       .def("__hash__", [state](const Family& self) { return py::hash(state(self)); })
       .def("__str__", &Family::name)
       .def("__repr__", [](const Family& self) { return "<Family " + self.name() + ">"; })
@@ -169,9 +177,10 @@ void bind_grouping(py::module_& m) {
   py::class_<KeyedGrouping>(m, "Grouping", "A rule that sorts the paths of any record of a scene into parts, for decompose.")
       .def_static("selections", &selections_grouping, py::arg("parts"),
                   "parts: [(name, selection), ...]; the first that takes a path has it. Keys: names, \"other\" last.")
-      .def_static("batches", [] { return KeyedGrouping{by_batches(), &batch_key}; },
-                  "Keys: (batch, \"coherent\") and (batch, \"diffuse\"); last (None, \"coherent\"), paths by images, which "
-                  "stand in each batch's estimate in full.")
+      .def_static(
+          "batches", [] { return KeyedGrouping{by_batches(), &batch_key}; },
+          "Keys: (batch, \"coherent\") and (batch, \"diffuse\"); last (None, \"coherent\"), paths by images, which "
+          "stand in each batch's estimate in full.")
       .def_static("all_of", &all_of, py::arg("groupings"), "Combinations that occur. Keys: tuples of keys.");
   m.def("find_families", &families_of, py::arg("paths"), py::arg("objects"),
         R"(The family of each path.

@@ -35,8 +35,8 @@ py::array_t<bool> matches_of(const Selection& selection, const Paths& paths) {
 }
 
 py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
-  Partition partition = run_job("partition", py::none(),
-                                [&](Job& job) { return make_partition(paths, named_selections(parts), &job); });
+  Partition partition =
+      run_job("partition", py::none(), [&](Job& job) { return make_partition(paths, named_selections(parts), &job); });
   return py::make_tuple(partition.names, numpy_take(std::move(partition.group)));
 }
 
@@ -83,21 +83,28 @@ the fault; matching raises one when a glob takes no mesh of the scene.)");
       .def("check", &check_globs, py::arg("scene"),
            "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.")
       .def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
-      .def("__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
-      .def("__rand__", [](const Selection& a, const Selection& b) { return b & a; }, py::is_operator())
-      .def("__or__", [](const Selection& a, const Selection& b) { return a | b; }, py::is_operator())
-      .def("__ror__", [](const Selection& a, const Selection& b) { return b | a; }, py::is_operator())
+      .def(
+          "__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
+      .def(
+          "__rand__", [](const Selection& a, const Selection& b) { return b & a; }, py::is_operator())
+      .def(
+          "__or__", [](const Selection& a, const Selection& b) { return a | b; }, py::is_operator())
+      .def(
+          "__ror__", [](const Selection& a, const Selection& b) { return b | a; }, py::is_operator())
       .def("__invert__", [](const Selection& a) { return ~a; })
       .def("__bool__", [](const Selection&) -> bool { refuse_truth("a Selection"); })
       .def("__str__", &Selection::text)
       .def("__repr__", [](const Selection& self) { return "<Selection " + self.text() + ">"; });
   py::detail::get_type_info(typeid(Selection))->implicit_conversions.push_back(&selection_of_text);
-  m.def("hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
-        "Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.");
-  m.def("first", [](const std::string& glob) { return Selection::first(glob); }, py::arg("glob"),
-        "Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.");
-  m.def("last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"),
-        "Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.");
+  m.def(
+      "hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
+      "Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.");
+  m.def(
+      "first", [](const std::string& glob) { return Selection::first(glob); }, py::arg("glob"),
+      "Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.");
+  m.def(
+      "last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"),
+      "Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.");
 }
 
 void bind_num_bounces(py::module_& m) {
@@ -138,9 +145,9 @@ void bind_label(py::module_& m) {
   bind_selection(m);
   bind_power(m);
   bind_num_bounces(m);
-  m.def("check_part_names", [](const SelectionPairs& parts) { check_part_names(named_selections(parts)); },
-        py::arg("parts"),
-        "Raises ValueError where a name of [(name, selection), ...] is empty, \"other\" or given twice.");
+  m.def(
+      "check_part_names", [](const SelectionPairs& parts) { check_part_names(named_selections(parts)); }, py::arg("parts"),
+      "Raises ValueError where a name of [(name, selection), ...] is empty, \"other\" or given twice.");
   m.def("partition_groups", &partition_groups, py::arg("paths"), py::arg("parts"),
         R"(The part of each path in a partition.
 

@@ -20,8 +20,7 @@ constexpr auto kInterpolation = choice<Interpolation>("interpolation", "cubic", 
 py::tuple as_tuple(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TimeSpan whole;
-  return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin,
-                        span.end >= whole.end ? kInfinity : span.end);
+  return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin, span.end >= whole.end ? kInfinity : span.end);
 }
 
 std::string description(const char* kind, const TimeSpan& span, size_t num_times, Interpolation interpolation) {
@@ -71,12 +70,15 @@ double turn_rate_of(const Moving& self, double begin, double end) {
 void bind_motions(py::module_& m) {
   py::class_<Motion, std::shared_ptr<Motion>>(
       m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.")
-      .def("at", [](const Motion& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
-           "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.")
-      .def_property_readonly("breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
-                             "Times [N] in s, ascending, where the motion is not smooth.")
-      .def_property_readonly("span", [](const Motion& self) { return as_tuple(self.span()); },
-                             "(begin, end) in s of the times it is defined on; infinite where unlimited.")
+      .def(
+          "at", [](const Motion& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
+          "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.")
+      .def_property_readonly(
+          "breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
+          "Times [N] in s, ascending, where the motion is not smooth.")
+      .def_property_readonly(
+          "span", [](const Motion& self) { return as_tuple(self.span()); },
+          "(begin, end) in s of the times it is defined on; infinite where unlimited.")
       .def("turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
 
   py::class_<LinearMotion, Motion, std::shared_ptr<LinearMotion>>(m, "LinearMotion", R"(Constant velocity and rotation.
@@ -89,13 +91,12 @@ Raises ValueError for values that are not finite.)")
       .def_property_readonly(
           "velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
       .def_property_readonly(
-          "angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); },
-          "[3] in rad/s")
+          "angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); }, "[3] in rad/s")
       .def("__repr__", [](const LinearMotion& self) {
         std::ostringstream text;
         const Vec3 &v = self.velocity(), &w = self.angular_velocity();
-        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=("
-             << w.x() << ", " << w.y() << ", " << w.z() << ") rad/s)";
+        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=(" << w.x()
+             << ", " << w.y() << ", " << w.z() << ") rad/s)";
         return text.str();
       });
 }
@@ -110,14 +111,17 @@ interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; e
 Between two keys a rotation goes the shorter way. Raises ValueError naming the argument.)")
       .def(py::init(&keyframe_motion), py::arg("times"), py::arg("translations") = py::none(),
            py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
-      .def_property_readonly("times", [](const KeyframeMotion& self) { return to_numpy(self.times()); }, "[T] in s")
-      .def_property_readonly("translations", [](const KeyframeMotion& self) { return to_numpy(self.translations()); },
-                             "[T, 3] in m, [0, 3] where none were given")
-      .def_property_readonly("rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
-                             "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
-      .def_property_readonly("interpolation",
-                             [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
-                             "\"cubic\" or \"linear\"")
+      .def_property_readonly(
+          "times", [](const KeyframeMotion& self) { return to_numpy(self.times()); }, "[T] in s")
+      .def_property_readonly(
+          "translations", [](const KeyframeMotion& self) { return to_numpy(self.translations()); },
+          "[T, 3] in m, [0, 3] where none were given")
+      .def_property_readonly(
+          "rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
+          "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
+      .def_property_readonly(
+          "interpolation", [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
+          "\"cubic\" or \"linear\"")
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
       });
@@ -126,13 +130,16 @@ Between two keys a rotation goes the shorter way. Raises ValueError naming the a
 void bind_deformation(py::module_& m) {
   py::class_<Deformation, std::shared_ptr<Deformation>>(
       m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.")
-      .def("at", [](const Deformation& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
-           "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
+      .def(
+          "at", [](const Deformation& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
+          "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
       .def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
-      .def_property_readonly("breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
-                             "Times [N] in s, ascending, where it is not smooth.")
-      .def_property_readonly("span", [](const Deformation& self) { return as_tuple(self.span()); },
-                             "(begin, end) in s of the times it is defined on; infinite where unlimited.")
+      .def_property_readonly(
+          "breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
+          "Times [N] in s, ascending, where it is not smooth.")
+      .def_property_readonly(
+          "span", [](const Deformation& self) { return as_tuple(self.span()); },
+          "(begin, end) in s of the times it is defined on; infinite where unlimited.")
       .def("turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
 }
 
@@ -145,12 +152,13 @@ vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices t
 interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
 Raises ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)")
       .def(py::init(&vertex_sequence), py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
-      .def_property_readonly("times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
-      .def_property_readonly("vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); },
-                             "[T, V, 3] in m, a copy")
-      .def_property_readonly("interpolation",
-                             [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
-                             "\"cubic\" or \"linear\"")
+      .def_property_readonly(
+          "times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
+      .def_property_readonly(
+          "vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); }, "[T, V, 3] in m, a copy")
+      .def_property_readonly(
+          "interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
+          "\"cubic\" or \"linear\"")
       .def("__repr__", [](const VertexSequence& self) {
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";
         return kind + description("", self.span(), self.times().size(), self.interpolation()).substr(1);

@@ -62,15 +62,13 @@ PathsPtr select_mask(const Paths& paths, const py::array& mask) {
 
 PathsPtr select_with_own_hits(const Paths& paths, const py::array& mask) {
   const std::vector<uint8_t> keep = as_mask(mask);
-  return run_job("select", py::none(), [&](Job& job) {
-    return std::make_shared<Paths>(paths.select(keep, &job).with_own_hits(&job));
-  });
+  return run_job("select", py::none(),
+                 [&](Job& job) { return std::make_shared<Paths>(paths.select(keep, &job).with_own_hits(&job)); });
 }
 
 PathsPtr select_paths(const Paths& paths, const Selection& selection) {
-  return run_job("select", py::none(), [&](Job& job) {
-    return std::make_shared<Paths>(paths.select(selection.matches(paths, &job), &job));
-  });
+  return run_job("select", py::none(),
+                 [&](Job& job) { return std::make_shared<Paths>(paths.select(selection.matches(paths, &job), &job)); });
 }
 
 // Paths of each part, in the order of the names.
@@ -158,11 +156,12 @@ share hits; selections share all hits of their trace.)")
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")
-      .def_property_readonly("curved_cell", &curved_cell_of,
-                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat "
-                             "chains")
-      .def_property_readonly("scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); },
-                             "snapshot of the scene")
+      .def_property_readonly(
+          "curved_cell", &curved_cell_of,
+          "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat "
+          "chains")
+      .def_property_readonly(
+          "scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); }, "snapshot of the scene")
       .def_readonly("radar", &Paths::radar, "snapshot of the radar")
       .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
       .def_property_readonly("amplitude", &amplitude_of,
@@ -187,8 +186,8 @@ share hits; selections share all hits of their trace.)")
            "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
       .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
                   py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(),
-                  py::arg("scene"), py::arg("radar"), py::arg("frame"),
+                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(), py::arg("scene"),
+                  py::arg("radar"), py::arg("frame"),
                   R"(Paths of arrays as the properties give them.
 
 hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:

@@ -79,9 +79,10 @@ and are NaN for one batch.)")
       .def_property_readonly("interval_db", &ReceivedPower::interval_db,
                              "dB, half the interval, the larger one of its sides; infinite where it reaches down to nothing")
       .def_readonly("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors")
-      .def_property_readonly("error_db", &ReceivedPower::error_db,
-                             "dB, 10 log10(1 + standard_error / power); infinite of one batch, which has no standard error, and where "
-                             "that is more than half the power")
+      .def_property_readonly(
+          "error_db", &ReceivedPower::error_db,
+          "dB, 10 log10(1 + standard_error / power); infinite of one batch, which has no standard error, and where "
+          "that is more than half the power")
       .def("__repr__", &power_text);
   m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
         py::arg("progress") = py::none(),

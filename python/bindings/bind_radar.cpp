@@ -31,12 +31,11 @@ void make_unit(Vector& vector, const char* argument) {
   if (std::abs(norm - 1.0) > kUnitRounding) vector /= norm;
 }
 
-ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate,
-                             int num_chirps, double chirp_interval, bool real, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "ChirpSequence", {"start_frequency", "bandwidth", "num_samples", "sampling_rate",
-                                            "num_chirps", "chirp_interval", "real"});
-  const ChirpSequence waveform{start_frequency, bandwidth,      num_samples, sampling_rate,
-                               num_chirps,      chirp_interval, real};
+ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate, int num_chirps,
+                             double chirp_interval, bool real, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "ChirpSequence",
+                 {"start_frequency", "bandwidth", "num_samples", "sampling_rate", "num_chirps", "chirp_interval", "real"});
+  const ChirpSequence waveform{start_frequency, bandwidth, num_samples, sampling_rate, num_chirps, chirp_interval, real};
   waveform.validate();
   return waveform;
 }
@@ -49,8 +48,7 @@ AntennaPattern isotropic(double gain, const py::kwargs& unknown) {
 AntennaPattern cosine_power(double exponent, std::optional<double> peak_gain, const py::kwargs& unknown) {
   refuse_unknown(unknown, "CosinePower", {"exponent", "peak_gain"});
   if (peak_gain) {
-    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None",
-            *peak_gain);
+    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None", *peak_gain);
   }
   return AntennaPattern::cosine_power(exponent, peak_gain.value_or(0.0));
 }
@@ -63,8 +61,8 @@ AntennaPattern gain_table(const py::object& azimuth, const py::object& elevation
   const auto gains = checked_array<double>(gain, "gain", "[E, A]");
   const std::vector<double> columns = as_vector<double>(azimuth, "azimuth", "[A]");
   const std::vector<double> rows = as_vector<double>(elevation, "elevation", "[E]");
-  const bool fits = gains.shape(0) == static_cast<py::ssize_t>(rows.size()) &&
-                    gains.shape(1) == static_cast<py::ssize_t>(columns.size());
+  const bool fits =
+      gains.shape(0) == static_cast<py::ssize_t>(rows.size()) && gains.shape(1) == static_cast<py::ssize_t>(columns.size());
   require(fits, "gain", "must have a row for each elevation and a column for each azimuth",
           std::to_string(gains.shape(0)) + " x " + std::to_string(gains.shape(1)));
   const std::vector<double> samples(gains.data(), gains.data() + gains.size());
@@ -84,20 +82,18 @@ Antenna antenna(const py::object& position, const py::object& orientation, const
   return made;
 }
 
-Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters,
-            const std::vector<Antenna>& receivers, double transmit_power, double noise_figure_db,
-            const std::string& multiplexing, const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Radar", {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db",
-                                    "multiplexing", "motion"});
-  Radar made{waveform,        transmitters,        receivers, transmit_power,
-             noise_figure_db, kMultiplexing.value_of(multiplexing), motion};
+Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters, const std::vector<Antenna>& receivers,
+            double transmit_power, double noise_figure_db, const std::string& multiplexing,
+            const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
+  refuse_unknown(unknown, "Radar",
+                 {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db", "multiplexing", "motion"});
+  Radar made{waveform, transmitters, receivers, transmit_power, noise_figure_db, kMultiplexing.value_of(multiplexing),
+             motion};
   made.validate();
   return made;
 }
 
-const char* kind_of(const AntennaPattern& pattern) {
-  return kPatternKind.name_of(pattern.kind);
-}
+const char* kind_of(const AntennaPattern& pattern) { return kPatternKind.name_of(pattern.kind); }
 
 // One of the arrays of a table, in a new NumPy array; None for other patterns and where there is no phase.
 py::object axis_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
@@ -108,8 +104,8 @@ py::object axis_of(const AntennaPattern& pattern, const std::vector<double>& (Ga
 py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
   if (!pattern.table || ((*pattern.table).*getter)().empty()) return py::none();
   const GainTable& table = *pattern.table;
-  return numpy_take(std::vector<double>((table.*getter)()), {static_cast<py::ssize_t>(table.elevation().size()),
-                                                             static_cast<py::ssize_t>(table.azimuth().size())});
+  return numpy_take(std::vector<double>((table.*getter)()),
+                    {static_cast<py::ssize_t>(table.elevation().size()), static_cast<py::ssize_t>(table.azimuth().size())});
 }
 
 py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, const py::object& directions) {
@@ -205,14 +201,18 @@ void bind_antenna(py::module_& m) {
            "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.")
       .def_property_readonly("efficiency", &AntennaPattern::efficiency,
                              "integral of the gain over the sphere / 4 pi; at most 1 for a power gain")
-      .def_property_readonly("azimuth", [](const AntennaPattern& self) { return axis_of(self, &GainTable::azimuth); },
-                             "[A] rad of a table, else None")
-      .def_property_readonly("elevation", [](const AntennaPattern& self) { return axis_of(self, &GainTable::elevation); },
-                             "[E] rad of a table, else None")
-      .def_property_readonly("table_gain", [](const AntennaPattern& self) { return samples_of(self, &GainTable::gain); },
-                             "[E, A] linear power gain of a table, else None")
-      .def_property_readonly("table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
-                             "[E, A] rad of a table with phases, else None")
+      .def_property_readonly(
+          "azimuth", [](const AntennaPattern& self) { return axis_of(self, &GainTable::azimuth); },
+          "[A] rad of a table, else None")
+      .def_property_readonly(
+          "elevation", [](const AntennaPattern& self) { return axis_of(self, &GainTable::elevation); },
+          "[E] rad of a table, else None")
+      .def_property_readonly(
+          "table_gain", [](const AntennaPattern& self) { return samples_of(self, &GainTable::gain); },
+          "[E, A] linear power gain of a table, else None")
+      .def_property_readonly(
+          "table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
+          "[E, A] rad of a table with phases, else None")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
   m.def("Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
   m.def("CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
@@ -241,12 +241,14 @@ Raises ValueError naming the argument.)")
       .def(py::init(&antenna), py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(),
            py::arg("orientation") = py::make_tuple(1.0, 0.0, 0.0, 0.0), py::arg("pattern") = py::none(),
            py::arg("polarization") = py::make_tuple(0.0, 0.0, 1.0))
-      .def_property_readonly("position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] in m")
-      .def_property_readonly("orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
-                             "[4] (w, x, y, z), radar from antenna")
+      .def_property_readonly(
+          "position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] in m")
+      .def_property_readonly(
+          "orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
+          "[4] (w, x, y, z), radar from antenna")
       .def_readonly("pattern", &Antenna::pattern, "AntennaPattern")
-      .def_property_readonly("polarization", [](const Antenna& self) { return to_numpy(self.polarization); },
-                             "[3], unit")
+      .def_property_readonly(
+          "polarization", [](const Antenna& self) { return to_numpy(self.polarization); }, "[3], unit")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
 }
 
@@ -272,15 +274,17 @@ Raises ValueError naming the argument.)")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB")
-      .def_property_readonly("multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); },
-                             "\"tdm\"")
-      .def_property_readonly("motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
-                             "Motion of the radar's frame, or None")
+      .def_property_readonly(
+          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
+      .def_property_readonly(
+          "motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
+          "Motion of the radar's frame, or None")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
       .def("chirp_time", &Radar::chirp_time, py::arg("tx"), py::arg("chirp"),
            "Time of the middle of a chirp of transmitter tx (indices), s after the frame's start. Raises IndexError.")
-      .def("world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
-           py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
+      .def(
+          "world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
+          py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
 }
 

@@ -134,9 +134,16 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   const Effort effort = target_error_db ? toward(ErrorTarget{*target_error_db, max_rays}, num_rays, num_batches)
                                         : Effort{num_rays.value_or(defaults.num_rays), num_batches, std::nullopt};
   require(!return_error || effort.batches > 1, "batches", "must be >= 2 for return_error", effort.batches);
-  const RcsSettings settings{frequency,   channels.rows, channels.model,                 effort.num_rays,
-                             max_bounces, seed,          kFootprint.value_of(footprint), kSampler.value_of(sampler),
-                             effort.batches, effort.target};
+  const RcsSettings settings{frequency,
+                             channels.rows,
+                             channels.model,
+                             effort.num_rays,
+                             max_bounces,
+                             seed,
+                             kFootprint.value_of(footprint),
+                             kSampler.value_of(sampler),
+                             effort.batches,
+                             effort.target};
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) warn_of_missed_targets(entries, *target_error_db);
   Shape shape;

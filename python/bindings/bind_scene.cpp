@@ -30,9 +30,7 @@ double as_number(const py::object& value, const char* argument) {
   return *checked_array<double>(value, argument, "[]").data();
 }
 
-bool as_bool(const py::object& value, const char* argument) {
-  return *checked_array<bool>(value, argument, "[]").data();
-}
+bool as_bool(const py::object& value, const char* argument) { return *checked_array<bool>(value, argument, "[]").data(); }
 
 std::optional<double> as_optional_number(const py::object& value, const char* argument) {
   return value.is_none() ? std::nullopt : std::optional<double>(as_number(value, argument));
@@ -40,9 +38,8 @@ std::optional<double> as_optional_number(const py::object& value, const char* ar
 
 // --- Material ---
 
-const std::vector<std::string> kMaterialFields = {"conductor",    "permittivity",     "conductivity",
-                                                  "reflectivity", "roughness_height", "scattering",
-                                                  "cross_polarization", "mirror"};
+const std::vector<std::string> kMaterialFields = {"conductor",        "permittivity", "conductivity",       "reflectivity",
+                                                  "roughness_height", "scattering",   "cross_polarization", "mirror"};
 
 std::shared_ptr<Material> material(const py::object& conductor, const py::object& permittivity,
                                    const py::object& conductivity, const py::object& reflectivity,
@@ -111,8 +108,9 @@ Raises ValueError naming the field, the rule and the value.)")
       .def(py::init(&material), py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
            py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
            py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false)
-      .def_static("metal", [](bool mirror) { return std::make_shared<Material>(Material::metal(mirror)); },
-                  py::arg("mirror") = false, "A perfect conductor; mirror: a plane larger than its Fresnel zone.")
+      .def_static(
+          "metal", [](bool mirror) { return std::make_shared<Material>(Material::metal(mirror)); },
+          py::arg("mirror") = false, "A perfect conductor; mirror: a plane larger than its Fresnel zone.")
       .def("replace", &replaced, "A copy with some fields changed: material.replace(mirror=True).")
       .def_readonly("conductor", &Material::conductor, "bool")
       .def_readonly("permittivity", &Material::permittivity, "complex, relative, or None")
@@ -122,9 +120,10 @@ Raises ValueError naming the field, the rule and the value.)")
       .def_readonly("scattering", &Material::scattering, "S in [0, 1], or None")
       .def_readonly("cross_polarization", &Material::cross_polarization, "K in [0, 0.5]")
       .def_readonly("mirror", &Material::mirror, "bool")
-      .def("__eq__", [](const Material& self, const py::object& other) {
-        return py::isinstance<Material>(other) && fields_of(self).equal(fields_of(other.cast<const Material&>()));
-      })
+      .def("__eq__",
+           [](const Material& self, const py::object& other) {
+             return py::isinstance<Material>(other) && fields_of(self).equal(fields_of(other.cast<const Material&>()));
+           })
       .def("__hash__", [](const Material& self) { return py::hash(py::tuple(fields_of(self).attr("values")())); })
       .def("__repr__", &material_text);
 }
@@ -188,8 +187,9 @@ out. Raises ValueError for indices out of range and where no face has an area.)"
       .def_property_readonly("num_duplicated_vertices", &Mesh::num_duplicated_vertices, "added where sheets meet")
       .def_property_readonly("is_closed", &Mesh::is_closed, "no boundary edge, no duplicated vertex")
       .def_property_readonly("area", &Mesh::area, "m^2")
-      .def_property_readonly("whole", [](const Mesh& self) { return shared(self.whole()); },
-                             "the Mesh that this is a part of, None for a whole")
+      .def_property_readonly(
+          "whole", [](const Mesh& self) { return shared(self.whole()); },
+          "the Mesh that this is a part of, None for a whole")
       .def_property_readonly("whole_triangle", view_of(&Mesh::whole_triangle), "[F] triangle of `whole`, [0] for a whole")
       .def("part", &part_of, py::arg("triangles"), R"(Some triangles as a mesh of their own, to be labelled.
 
@@ -257,8 +257,7 @@ struct MeshEntry {
 uint32_t checked_mesh_id(const Scene& scene, int64_t mesh_id) {
   const auto count = static_cast<int64_t>(scene.meshes().size());
   if (mesh_id >= 0 && mesh_id < count) return static_cast<uint32_t>(mesh_id);
-  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " +
-                          std::to_string(mesh_id));
+  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " + std::to_string(mesh_id));
 }
 
 // All nodes or none.
@@ -291,8 +290,8 @@ struct NamedOverlap {
 };
 
 std::vector<NamedOverlap> named_overlaps(Scene scene, double time, double max_distance) {
-  const auto found = run_job("coplanar overlaps", py::none(),
-                             [&](Job& job) { return coplanar_overlaps(scene, time, max_distance, &job); });
+  const auto found =
+      run_job("coplanar overlaps", py::none(), [&](Job& job) { return coplanar_overlaps(scene, time, max_distance, &job); });
   std::vector<NamedOverlap> named;
   for (const CoplanarOverlap& one : found) {
     named.push_back({one, scene.node_of(one.first_mesh_id).name, scene.node_of(one.second_mesh_id).name});
@@ -316,18 +315,19 @@ void bind_overlaps(py::module_& m) {
           "mesh_ids",
           [](const NamedOverlap& self) { return py::make_tuple(self.overlap.first_mesh_id, self.overlap.second_mesh_id); },
           "their mesh IDs, the lower one first")
-      .def_property_readonly("num_triangles", [](const NamedOverlap& self) { return self.overlap.num_triangles; },
-                             "of both meshes, that lie on one of the other")
-      .def_property_readonly("area", [](const NamedOverlap& self) { return self.overlap.area; },
-                             "m^2, summed over pairs of triangles")
-      .def_property_readonly("distance", [](const NamedOverlap& self) { return self.overlap.distance; },
-                             "m, largest between the two")
+      .def_property_readonly(
+          "num_triangles", [](const NamedOverlap& self) { return self.overlap.num_triangles; },
+          "of both meshes, that lie on one of the other")
+      .def_property_readonly(
+          "area", [](const NamedOverlap& self) { return self.overlap.area; }, "m^2, summed over pairs of triangles")
+      .def_property_readonly(
+          "distance", [](const NamedOverlap& self) { return self.overlap.distance; }, "m, largest between the two")
       .def("__repr__", &overlap_text);
 }
 
 std::string scene_text(const Scene& self) {
-  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) +
-         " meshes, " + std::to_string(self.num_triangles()) + " triangles)";
+  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) + " meshes, " +
+         std::to_string(self.num_triangles()) + " triangles)";
 }
 
 void bind_nodes(py::module_& m) {
@@ -378,15 +378,18 @@ void bind_scene_tree(py::module_& m) {
   py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene", "A tree of named nodes with placements, motions and meshes.")
       .def(py::init<>())
       .def("_add_nodes", &add_nodes, py::arg("nodes"))
-      .def_property_readonly("nodes", [](const Scene& self) { return self.nodes(); }, "list of Node, parents first")
+      .def_property_readonly(
+          "nodes", [](const Scene& self) { return self.nodes(); }, "list of Node, parents first")
       .def_property_readonly("meshes", &mesh_entries, "list of SceneMesh by mesh ID")
       .def_property_readonly("num_triangles", &Scene::num_triangles)
       .def_property_readonly("num_nodes", [](const Scene& self) { return self.nodes().size(); })
-      .def_property_readonly("breakpoints", [](const Scene& self) { return to_numpy(self.breakpoints()); },
-                             "Times [N] in s, ascending, where some motion is not smooth.")
+      .def_property_readonly(
+          "breakpoints", [](const Scene& self) { return to_numpy(self.breakpoints()); },
+          "Times [N] in s, ascending, where some motion is not smooth.")
       .def("find", &Scene::find, py::arg("name"), "Index of the node with that full name, None where there is none.")
-      .def("is_moving", [](const Scene& self, int64_t id) { return self.is_moving(checked_mesh_id(self, id)); },
-           py::arg("mesh_id"), "Whether the mesh moves or deforms at some time. Raises IndexError.")
+      .def(
+          "is_moving", [](const Scene& self, int64_t id) { return self.is_moving(checked_mesh_id(self, id)); },
+          py::arg("mesh_id"), "Whether the mesh moves or deforms at some time. Raises IndexError.")
       .def("require_times", &Scene::require_times, py::arg("begin"), py::arg("end"),
            "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).")
       .def("world_vertices", &world_vertices_of, py::arg("mesh_id"), py::arg("time") = 0.0,

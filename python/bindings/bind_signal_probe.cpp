@@ -83,9 +83,8 @@ there.)")
       .def_property_readonly("power_sum", column(&ProbedChirp::power_sum), "[N] in W, sum of |amplitude|^2 of all paths")
       .def_property_readonly("strongest", column(&ProbedChirp::strongest),
                              "[N] in W, the largest |amplitude|^2 of a path that rays found")
-      .def("__repr__", [](const SignalProbe& self) {
-        return "SignalProbe(" + std::to_string(self.chirps.size()) + " chirps)";
-      });
+      .def("__repr__",
+           [](const SignalProbe& self) { return "SignalProbe(" + std::to_string(self.chirps.size()) + " chirps)"; });
 }
 
 }  // namespace echopath::bindings

@@ -15,8 +15,8 @@
 namespace echopath::bindings {
 namespace {
 
-const std::vector<std::string> kSynthesisKeywords = {"tolerance", "method", "replay", "evaluate", "phase_tolerance",
-                                            "retrace", "keyframes", "progress", "probe"};
+const std::vector<std::string> kSynthesisKeywords = {"tolerance", "method",    "replay",   "evaluate", "phase_tolerance",
+                                                     "retrace",   "keyframes", "progress", "probe"};
 
 enum class Evaluation { kInterpolated, kChirps, kSamples };
 constexpr auto kEvaluation = choice<Evaluation>("evaluate", "interpolated", "chirps", "samples");
@@ -54,9 +54,8 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
   refuse_unknown(unknown, "synthesize", kSynthesisKeywords);
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
-  return cube_array(run_job("synthesize", progress, [&](Job& job) {
-    return synthesize(paths, radar_or_own(paths, radar), settings, &job);
-  }));
+  return cube_array(run_job("synthesize", progress,
+                            [&](Job& job) { return synthesize(paths, radar_or_own(paths, radar), settings, &job); }));
 }
 
 py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vector<KeyedGrouping>& views, double tolerance,
@@ -68,9 +67,8 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
   set_probe(probe, settings);
   std::vector<Grouping> rules;
   for (const KeyedGrouping& view : views) rules.push_back(view.rule);
-  auto cubes = run_job("decompose", progress, [&](Job& job) {
-    return decompose(paths, radar_or_own(paths, radar), rules, settings, &job);
-  });
+  auto cubes = run_job("decompose", progress,
+                       [&](Job& job) { return decompose(paths, radar_or_own(paths, radar), rules, settings, &job); });
   py::list out;
   for (size_t view = 0; view < views.size(); ++view) {
     py::dict parts;

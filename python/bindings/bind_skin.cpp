@@ -130,16 +130,22 @@ Raises ValueError naming the argument.)")
       .def(py::init(&named_joint), py::arg("name"), py::arg("parent") = py::none(), py::kw_only(),
            py::arg("position") = py::none(), py::arg("transform") = py::none(), py::arg("motion") = py::none(),
            py::arg("inverse_bind") = py::none())
-      .def_property_readonly("name", [](const NamedJoint& self) { return self.joint.name; }, "of the joint")
-      .def_property_readonly("parent", [](const NamedJoint& self) { return self.parent; }, "name of the parent, or None")
-      .def_property_readonly("transform", [](const NamedJoint& self) { return to_numpy(self.joint.placement); },
-                             "[4, 4] at rest, relative to the parent, m")
-      .def_property_readonly("motion",
-                             [](const NamedJoint& self) { return std::const_pointer_cast<Motion>(self.joint.motion); },
-                             "a motion or None")
-      .def_property_readonly("inverse_bind", [](const NamedJoint& self) -> py::object {
-        return self.joint.inverse_bind ? py::object(to_numpy(*self.joint.inverse_bind)) : py::none();
-      }, "[4, 4], or None where it follows from the joints at rest")
+      .def_property_readonly(
+          "name", [](const NamedJoint& self) { return self.joint.name; }, "of the joint")
+      .def_property_readonly(
+          "parent", [](const NamedJoint& self) { return self.parent; }, "name of the parent, or None")
+      .def_property_readonly(
+          "transform", [](const NamedJoint& self) { return to_numpy(self.joint.placement); },
+          "[4, 4] at rest, relative to the parent, m")
+      .def_property_readonly(
+          "motion", [](const NamedJoint& self) { return std::const_pointer_cast<Motion>(self.joint.motion); },
+          "a motion or None")
+      .def_property_readonly(
+          "inverse_bind",
+          [](const NamedJoint& self) -> py::object {
+            return self.joint.inverse_bind ? py::object(to_numpy(*self.joint.inverse_bind)) : py::none();
+          },
+          "[4, 4], or None where it follows from the joints at rest")
       .def("__repr__", [](const NamedJoint& self) {
         return "Joint('" + self.joint.name + "'" + (self.parent ? ", '" + *self.parent + "')" : ")");
       });
@@ -156,14 +162,18 @@ joint_indices: [V, K] which joint each weight is of; None: column j of weights i
 Raises ValueError naming the argument.)")
       .def(py::init(&skin), py::arg("vertices"), py::arg("joints"), py::arg("weights"),
            py::arg("joint_indices") = py::none())
-      .def_property_readonly("vertices", [](const Skin& self) { return to_numpy(self.vertices()); }, "[V, 3] in m, as bound")
+      .def_property_readonly(
+          "vertices", [](const Skin& self) { return to_numpy(self.vertices()); }, "[V, 3] in m, as bound")
       .def_property_readonly("joints", &named_joints, "list [J] of Joint, each with its inverse_bind")
-      .def_property_readonly("weights", [](const Skin& self) { return by_vertex(self, self.weights().weight); },
-                             "[V, K], K the most joints that a vertex follows; filled up with 0")
-      .def_property_readonly("joint_indices", [](const Skin& self) { return by_vertex(self, self.weights().joint); },
-                             "[V, K] joint of each weight")
-      .def("joint_transforms", [](const Skin& self, double time) { return matrices(self.joint_transforms(time)); },
-           py::arg("time"), R"(What moves the vertices that follow one joint alone: skin_from_joint(time) * inverse_bind.
+      .def_property_readonly(
+          "weights", [](const Skin& self) { return by_vertex(self, self.weights().weight); },
+          "[V, K], K the most joints that a vertex follows; filled up with 0")
+      .def_property_readonly(
+          "joint_indices", [](const Skin& self) { return by_vertex(self, self.weights().joint); },
+          "[V, K] joint of each weight")
+      .def(
+          "joint_transforms", [](const Skin& self, double time) { return matrices(self.joint_transforms(time)); },
+          py::arg("time"), R"(What moves the vertices that follow one joint alone: skin_from_joint(time) * inverse_bind.
 
 time: s. Returns [J, 4, 4], translations in m. Raises ValueError outside `span`.)")
       .def("parts", &parts_of_skin, py::arg("mesh"), R"(The regions of a skinned mesh: triangles by dominant joint.

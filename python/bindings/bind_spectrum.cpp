@@ -16,8 +16,7 @@ namespace {
 RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const py::object& window, int zero_pad) {
   const std::vector<std::complex<double>> values = as_cube(cube, radar);
   const Window taper = as_window(window);
-  return run_job("range_doppler", py::none(),
-                 [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
+  return run_job("range_doppler", py::none(), [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
 }
 
 py::array values_of(const py::object& self) {
@@ -41,15 +40,16 @@ std::string text_of(const RangeDoppler& map) {
 void bind_spectrum(py::module_& m) {
   py::class_<RangeDoppler>(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.")
       .def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
-      .def_property_readonly("velocity", [](const py::object& self) {
-        return numpy_view(self.cast<const RangeDoppler&>().velocity, self);
-      }, "[velocity] in m/s, ascending, receding positive")
-      .def_property_readonly("range", [](const py::object& self) {
-        return numpy_view(self.cast<const RangeDoppler&>().range, self);
-      }, "[range] in m, ascending from 0")
+      .def_property_readonly(
+          "velocity", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().velocity, self); },
+          "[velocity] in m/s, ascending, receding positive")
+      .def_property_readonly(
+          "range", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().range, self); },
+          "[range] in m, ascending from 0")
       .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
-      .def_property_readonly("window", [](const RangeDoppler& self) { return window_value(self.window); },
-                             "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
+      .def_property_readonly(
+          "window", [](const RangeDoppler& self) { return window_value(self.window); },
+          "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
@@ -63,10 +63,13 @@ window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe l
 zero_pad: 1 to 64, transforms of so many times the samples and chirps
 Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
 Raises ValueError naming the argument.)");
-  m.def("window", [](const std::string& name, int n, double sidelobe_db) {
-    return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
-  }, py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
-        "Samples [n] of a window: cosines periodic; \"chebyshev\" symmetric, sidelobes `sidelobe_db` dB down.");
+  m.def(
+      "window",
+      [](const std::string& name, int n, double sidelobe_db) {
+        return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
+      },
+      py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
+      "Samples [n] of a window: cosines periodic; \"chebyshev\" symmetric, sidelobes `sidelobe_db` dB down.");
 }
 
 }  // namespace echopath::bindings

@@ -30,12 +30,13 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
   return toward(target, std::nullopt, batches);
 }
 
-PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces,
-                     uint64_t seed, double start_time, const std::string& polarization, const std::string& footprint,
+PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
+                     double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
                      int64_t max_rays, const py::object& progress, KeptGeometry* kept, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace", {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint",
-                                    "sampler", "batches", "target_error_db", "max_rays", "progress"});
+  refuse_unknown(unknown, "trace",
+                 {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint", "sampler", "batches",
+                  "target_error_db", "max_rays", "progress"});
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
   settings.num_rays = effort.num_rays;
@@ -60,8 +61,8 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
 }  // namespace
 
 void bind_trace(py::module_& m) {
-  py::class_<KeptGeometry, std::shared_ptr<KeptGeometry>>(m, "KeptGeometry",
-      "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
+  py::class_<KeptGeometry, std::shared_ptr<KeptGeometry>>(
+      m, "KeptGeometry", "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
       .def(py::init<>());
 
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),

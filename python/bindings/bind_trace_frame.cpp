@@ -13,10 +13,12 @@
 namespace echopath::bindings {
 
 void bind_trace_frame(py::module_& m) {
-  py::class_<Stratum>(m, "Stratum", "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.")
-      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density,
-                       std::string name, const py::object& across, double half_azimuth, double low, double high,
-                       int object, int num_mirrors, int focus_of) {
+  py::class_<Stratum>(m, "Stratum",
+                      "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), "
+                      "rays evenly over them.")
+      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density, std::string name,
+                       const py::object& across, double half_azimuth, double low, double high, int object, int num_mirrors,
+                       int focus_of) {
              Stratum made;
              made.axis = as_vec3(axis, "axis");
              made.versine = versine;
@@ -32,15 +34,17 @@ void bind_trace_frame(py::module_& m) {
              made.name = std::move(name);
              return made;
            }),
-           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"),
-           py::arg("name"), py::arg("across") = py::make_tuple(0.0, 0.0, 0.0), py::arg("half_azimuth") = 0.0,
-           py::arg("low") = 0.0, py::arg("high") = 0.0, py::arg("object") = -1,
-           py::arg("num_mirrors") = 0, py::arg("focus_of") = -1)
-      .def_property_readonly("axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
+           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"), py::arg("name"),
+           py::arg("across") = py::make_tuple(0.0, 0.0, 0.0), py::arg("half_azimuth") = 0.0, py::arg("low") = 0.0,
+           py::arg("high") = 0.0, py::arg("object") = -1, py::arg("num_mirrors") = 0, py::arg("focus_of") = -1)
+      .def_property_readonly(
+          "axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
       .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle of a cone; 2 is the whole sphere")
-      .def_property_readonly("across", [](const Stratum& self) { return to_numpy(self.across); },
-                             "[3] unit, world axes, along the great circle of a strip; zeros of a cone")
-      .def_readonly("half_azimuth", &Stratum::half_azimuth, "rad along the great circle on both sides of the axis; 0 of a cone")
+      .def_property_readonly(
+          "across", [](const Stratum& self) { return to_numpy(self.across); },
+          "[3] unit, world axes, along the great circle of a strip; zeros of a cone")
+      .def_readonly("half_azimuth", &Stratum::half_azimuth,
+                    "rad along the great circle on both sides of the axis; 0 of a cone")
       .def_readonly("low", &Stratum::low, "least sine of the elevation over the great circle, toward axis x across")
       .def_readonly("high", &Stratum::high, "largest sine of the elevation")
       .def_property_readonly("solid_angle", &Stratum::solid_angle, "sr")
@@ -51,20 +55,18 @@ void bind_trace_frame(py::module_& m) {
                     "index of the stratum of which it takes over a part, with rays that lie closer; -1: none")
       .def_readonly("object", &Stratum::object, "index of the scene's node that it aims at; -1: none")
       .def_readonly("ray_density", &Stratum::ray_density, "rays per sr")
-      .def("__repr__", [](const Stratum& self) {
-        return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
-      });
+      .def("__repr__",
+           [](const Stratum& self) { return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)"; });
 
   py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
       .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
-                       int64_t small,
-                       int64_t false_hits, int64_t unaimed, int64_t unfollowed) {
+                       int64_t small, int64_t false_hits, int64_t unaimed, int64_t unfollowed) {
              return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed, unfollowed};
            }),
            py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
-           py::arg("num_paths") = 0,
-           py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0, py::arg("num_small_mirrors") = 0,
-           py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0, py::arg("num_unfollowed_beams") = 0)
+           py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
+           py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
+           py::arg("num_unfollowed_beams") = 0)
       .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
@@ -84,9 +86,18 @@ void bind_trace_frame(py::module_& m) {
                        std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
                        const std::string& footprint, const TraceStatistics& statistics, int num_batches,
                        double target_error_db, double error_db, const std::string& sampler) {
-             return TraceFrame{start_time, trace_time,  as_vec3(transmitter, "transmitter"), as_vec3(receiver, "receiver"),
-                               std::move(strata), seed, max_bounces, kPolarization.value_of(polarization),
-                               kFootprint.value_of(footprint), kSampler.value_of(sampler), statistics, num_batches,
+             return TraceFrame{start_time,
+                               trace_time,
+                               as_vec3(transmitter, "transmitter"),
+                               as_vec3(receiver, "receiver"),
+                               std::move(strata),
+                               seed,
+                               max_bounces,
+                               kPolarization.value_of(polarization),
+                               kFootprint.value_of(footprint),
+                               kSampler.value_of(sampler),
+                               statistics,
+                               num_batches,
                                target_error_db,
                                error_db};
            }),
@@ -96,26 +107,29 @@ void bind_trace_frame(py::module_& m) {
            py::arg("sampler") = "lattice")
       .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
-      .def_property_readonly("transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
-                             "[3] m, where rays started, world")
-      .def_property_readonly("receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
-                             "[3] m, where hits were connected to, world")
+      .def_property_readonly(
+          "transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },
+          "[3] m, where rays started, world")
+      .def_property_readonly(
+          "receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
+          "[3] m, where hits were connected to, world")
       .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
       .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
       .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
       .def_property_readonly(
           "polarization", [](const TraceFrame& self) { return kPolarization.name_of(self.polarization); },
           "\"scalar\" or \"jones\"")
-      .def_property_readonly("footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
-                             "\"second_order\", \"edges\", \"first_order\" or \"none\"")
+      .def_property_readonly(
+          "footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
+          "\"second_order\", \"edges\", \"first_order\" or \"none\"")
       .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
-      .def_property_readonly("sampler",
-                             [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
-                             "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
+      .def_property_readonly(
+          "sampler", [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
+          "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
 }
 

@@ -40,9 +40,9 @@ auto share(double ValidityShares::* field) {
 
 std::string repr_of(const Validity& self) {
   std::ostringstream text;
-  text << "Validity(" << (self.warnings().empty() ? "one trace serves"
-                                                  : std::to_string(self.warnings().size()) + " warnings")
-       << ", " << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
+  text << "Validity("
+       << (self.warnings().empty() ? "one trace serves" : std::to_string(self.warnings().size()) + " warnings") << ", "
+       << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
   return text.str();
 }
 
@@ -65,11 +65,12 @@ void bind_shares(py::module_& m) {
 }
 
 void bind_objects(py::module_& m) {
-  py::class_<ObjectValidity, ValidityShares>(m, "ObjectValidity",
-                                             "What one trace does not serve of an object: of the paths that scattered on it last.")
+  py::class_<ObjectValidity, ValidityShares>(
+      m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.")
       .def_readonly("name", &ObjectValidity::name, "of the object")
       .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
-      .def_readonly("disappears", &ObjectValidity::disappears, "share of its power that is lost, mean over the times of the check")
+      .def_readonly("disappears", &ObjectValidity::disappears,
+                    "share of its power that is lost, mean over the times of the check")
       .def_readonly("error_db", &ObjectValidity::error_db,
                     "dB, of its power over the frame: the replay over what is there with new surface; 0: not known")
       .def_readonly("seen_power", &ObjectValidity::seen_power, "W, largest power with which the times of the check see it")
@@ -79,8 +80,9 @@ void bind_objects(py::module_& m) {
                     "at most 60 dB below the strongest object, and above the noise of a range-Doppler cell")
       .def("__repr__", [](const ObjectValidity& self) {
         std::ostringstream text;
-        text << "<ObjectValidity " << self.name << (self.ok() ? ": ok" : ": not served") << ", new_surface=" << self.new_surface
-             << ", disappears=" << self.disappears << ", error_db=" << self.error_db << ">";
+        text << "<ObjectValidity " << self.name << (self.ok() ? ": ok" : ": not served")
+             << ", new_surface=" << self.new_surface << ", disappears=" << self.disappears << ", error_db=" << self.error_db
+             << ">";
         return text.str();
       });
 }
@@ -105,8 +107,9 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
                              "share of the power of surfaces that turn to or away from the rays")
       .def_property_readonly("new_surface_share", share(&ValidityShares::new_surface),
                              "share of single echoes of all that is seen: of what was hidden from the trace")
-      .def_property_readonly("replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
-                             "\"material\" or \"fermat\": the replay that was certified")
+      .def_property_readonly(
+          "replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
+          "\"material\" or \"fermat\": the replay that was certified")
       .def_readonly("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power")
       .def_readonly("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas")
       .def_readonly("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas")
@@ -116,12 +119,17 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
       .def_property_readonly("keyframes", &Validity::keyframes,
                              "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
       .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
-      .def_property_readonly("ok", [](const Validity& self) { return self.warnings().empty(); }, "no warnings: every object in the dynamic range is served")
-      .def_property_readonly("objects", [](const Validity& self) {
-        py::dict out;
-        for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object;
-        return out;
-      }, "{name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength")
+      .def_property_readonly(
+          "ok", [](const Validity& self) { return self.warnings().empty(); },
+          "no warnings: every object in the dynamic range is served")
+      .def_property_readonly(
+          "objects",
+          [](const Validity& self) {
+            py::dict out;
+            for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object;
+            return out;
+          },
+          "{name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength")
       .def_property_readonly("power", array_column(&ValidityArrays::power), "[P] W")
       .def_property_readonly("phase_error", array_column(&ValidityArrays::phase_error),
                              "[P] rad, largest where no point of reflection has left its surface")
@@ -150,15 +158,16 @@ std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, dou
 
 void bind_renewal(py::module_& m) {
   py::class_<Renewal, std::shared_ptr<Renewal>>(m, "Renewal", "A record brought up to another time; made by `renew`.")
-      .def_property_readonly("paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
-                             "Paths that are still there, in their order.")
+      .def_property_readonly(
+          "paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
+          "Paths that are still there, in their order.")
       .def_readonly("num_blocked", &Renewal::num_blocked, "Paths left out because something stands in the way of a leg.")
       .def_readonly("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface.")
       .def_readonly("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew.")
       .def("__repr__", [](const Renewal& self) {
-        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) + ", num_blocked=" +
-               std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) + ", num_moved=" +
-               std::to_string(self.num_moved) + ")";
+        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) +
+               ", num_blocked=" + std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) +
+               ", num_moved=" + std::to_string(self.num_moved) + ")";
       });
   m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
         py::arg("progress") = py::none(),
@@ -181,10 +190,11 @@ void bind_validity(py::module_& m) {
   bind_shares(m);
   bind_objects(m);
   bind_report(m);
-  m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
-        py::arg("progress") = py::none(),
-        R"(Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
+  m.def(
+      "validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
+      py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
+      py::arg("progress") = py::none(),
+      R"(Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
 
 Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two for
 each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points of

@@ -66,8 +66,8 @@ py::tuple default_axes(const VirtualArray& array, double largest_step) {
 
 std::string text_of(const VirtualArray& array) {
   std::ostringstream text;
-  text << "VirtualArray(" << array.num_transmitters << " x " << array.num_receivers << " channels, "
-       << array.elements.size() << " elements";
+  text << "VirtualArray(" << array.num_transmitters << " x " << array.num_receivers << " channels, " << array.elements.size()
+       << " elements";
   if (array.grid) {
     const ArrayGrid& grid = *array.grid;
     text << " on a grid of " << grid.num_rows << " x " << grid.num_columns;
@@ -99,12 +99,13 @@ as the array's plane allows.)")
       .def_property_readonly("grid_spacing", &grid_spacing, "(row, column) step in m, 0 where there is one, or None")
       .def_property_readonly("grid_axes", &grid_axes, "[2, 3] unit vectors along which rows and columns count up, or None")
       .def_property_readonly("grid_index", &grid_index, "[N, 2] row and column of each element, or None")
-      .def_property_readonly("grid_deviation", [](const VirtualArray& self) -> py::object {
-        return self.grid ? py::cast(self.grid->deviation) : py::none();
-      }, "m, largest distance of an element from its point of the grid, or None")
+      .def_property_readonly(
+          "grid_deviation",
+          [](const VirtualArray& self) -> py::object { return self.grid ? py::cast(self.grid->deviation) : py::none(); },
+          "m, largest distance of an element from its point of the grid, or None")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
-      .def_property_readonly("centre", [](const VirtualArray& self) { return to_numpy(self.centre()); },
-                             "[3] m, mean of the elements")
+      .def_property_readonly(
+          "centre", [](const VirtualArray& self) { return to_numpy(self.centre()); }, "[3] m, mean of the elements")
       .def("default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
            R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 

@@ -22,8 +22,8 @@ inline std::vector<std::complex<double>> as_cube(py::handle value, const Radar& 
   for (py::ssize_t axis = 0; axis < 4; ++axis) {
     if (array.shape(axis) == shape[axis]) continue;
     std::ostringstream text;
-    text << "cube: must have shape [tx, rx, chirp, sample] = [" << shape[0] << ", " << shape[1] << ", " << shape[2]
-         << ", " << shape[3] << "], got [" << array.shape(0) << ", " << array.shape(1) << ", " << array.shape(2) << ", "
+    text << "cube: must have shape [tx, rx, chirp, sample] = [" << shape[0] << ", " << shape[1] << ", " << shape[2] << ", "
+         << shape[3] << "], got [" << array.shape(0) << ", " << array.shape(1) << ", " << array.shape(2) << ", "
          << array.shape(3) << "]";
     throw std::invalid_argument(text.str());
   }

@@ -38,8 +38,8 @@ Antenna antenna_of(const py::object& value, const char* argument, const std::vec
 }
 
 struct Series {
-  std::vector<double> lengths;                      // [T, P]
-  std::vector<std::complex<double>> amplitudes;     // [T, P]
+  std::vector<double> lengths;                   // [T, P]
+  std::vector<std::complex<double>> amplitudes;  // [T, P]
 };
 
 // Of all paths. Runs beside Python, so that Ctrl-C is answered.
@@ -104,14 +104,16 @@ py::array points_of(const Paths& paths, double time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
     const PosedScene pose(*paths.scene, time);
     std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
-    parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
-      const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
-      for (int64_t i = block * kHitsPerTask; i < end; ++i) {
-        const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
-        const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
-        Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
-      }
-    }, &job);
+    parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask,
+                 [&](int64_t block) {
+                   const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
+                   for (int64_t i = block * kHitsPerTask; i < end; ++i) {
+                     const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+                     const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+                     Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+                   }
+                 },
+                 &job);
     return out;
   });
   return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});

@@ -70,12 +70,15 @@ PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const 
     out.cell = recorded_cell(paths_.curved_cell[index]);
   } else if (paths_.frame.footprint != Footprint::kNone) {
     std::vector<PosedHit> hits(static_cast<size_t>(path.count));
-    for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], preparer_.at_trace(), k == path.last_material, hits[static_cast<size_t>(k)]);
-    Line line = line_over(hits.data(), Vec3::Zero(), 0, path.first_material, hits[static_cast<size_t>(path.first_material)].point);
+    for (int k = 0; k < path.count; ++k)
+      pose_hit(path.hits[k], preparer_.at_trace(), k == path.last_material, hits[static_cast<size_t>(k)]);
+    Line line =
+        line_over(hits.data(), Vec3::Zero(), 0, path.first_material, hits[static_cast<size_t>(path.first_material)].point);
     double length = line.length;
     for (int before = path.first_material, k = before + 1; k <= path.last_material; ++k) {
       if (path.is_image(k)) continue;
-      line = line_over(hits.data(), hits[static_cast<size_t>(before)].point, before + 1, k, hits[static_cast<size_t>(k)].point);
+      line =
+          line_over(hits.data(), hits[static_cast<size_t>(before)].point, before + 1, k, hits[static_cast<size_t>(k)].point);
       length += line.length;
       before = k;
     }
@@ -94,7 +97,8 @@ PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const 
 // A path between two antennas at one time.
 class PathByPath::Walk {
  public:
-  Walk(const LocalPath& path, const PosedHit* hits, const PosedAntenna& start, const PosedAntenna& end, const RadioConstants& radio)
+  Walk(const LocalPath& path, const PosedHit* hits, const PosedAntenna& start, const PosedAntenna& end,
+       const RadioConstants& radio)
       : path_(path), hits_(hits), radio_(radio) {
     for (int k = 0; k < path.count; ++k) {
       if (!path.is_image(k)) points_.push_back(k);
@@ -155,7 +159,8 @@ class PathByPath::Walk {
     const CellTangents tangents = cell_tangents(of.cell, hit);
     double tube = length_in;
     if (of.cell.is_curved) tube = root_area(tangents, hit, of.density) * std::sqrt(std::abs(cos_in));
-    CellWaves<double> waves{std::abs(cos_in), std::abs(cos_out), cos_in > 0 ? 1.0 : -1.0, 1.0 / length_in, 1.0 / out.length, {}, {}};
+    CellWaves<double> waves{
+        std::abs(cos_in), std::abs(cos_out), cos_in > 0 ? 1.0 : -1.0, 1.0 / length_in, 1.0 / out.length, {}, {}};
     for (size_t a = 0; a < 2; ++a) {
       waves.along_arrival[a] = tangents[a].dot(in.arrival);
       waves.along_departure[a] = tangents[a].dot(out.departure);
@@ -167,8 +172,8 @@ class PathByPath::Walk {
   const LocalPath& path_;
   const PosedHit* hits_;
   const RadioConstants& radio_;
-  std::vector<int> points_;   // material ones
-  std::vector<Line> lines_;   // before, between and behind them
+  std::vector<int> points_;  // material ones
+  std::vector<Line> lines_;  // before, between and behind them
   double length_ = 0.0;
   Vec3 departure_, arrival_;  // directions of travel at the antennas
   AntennaGain first_gain_, last_gain_;
@@ -179,7 +184,8 @@ std::vector<PathValue> PathByPath::operator()(int64_t index) const {
   const LocalPaths block = preparer_({&index, 1});
   const LocalPath& path = block.paths.front();
   std::vector<PosedHit> recorded(static_cast<size_t>(path.count));
-  for (int k = 0; k < path.count; ++k) pose_hit(path.hits[k], scene_, k == path.last_material, recorded[static_cast<size_t>(k)]);
+  for (int k = 0; k < path.count; ++k)
+    pose_hit(path.hits[k], scene_, k == path.last_material, recorded[static_cast<size_t>(k)]);
   const Cell cell = path.last_material < 0 ? Cell{} : cell_of(path, p);
   std::vector<PathValue> values;
   for (const PosedAntenna& transmitter : scene_.transmitters) {
@@ -188,7 +194,8 @@ std::vector<PathValue> PathByPath::operator()(int64_t index) const {
       const PosedAntenna& end = path.is_reversed ? transmitter : receiver;
       std::vector<PosedHit> hits = recorded;
       SpecularSlide slide;
-      if (specular_ == SpecularPoints::kFermat && path.last_material >= 0) step_to_fermat(path, start.position, slide, hits.data());
+      if (specular_ == SpecularPoints::kFermat && path.last_material >= 0)
+        step_to_fermat(path, start.position, slide, hits.data());
       const Walk walk(path, hits.data(), start, end, radio_);
       const std::complex<double> bare = std::complex<double>(paths_.weight[p]) * walk.phasor() * walk.factor(cell);
       PathValue value{walk.length(), bare, std::abs(bare)};

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "echopath/replay/evaluate/launch_cell.h"
-#include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"
 
 namespace echopath::testing {
 
 struct PathValue {
-  double length;                    // m
-  std::complex<double> amplitude;   // sqrt(W)
-  double largest;                   // sqrt(W), |amplitude| of antennas whose polarisations agree with the path best
+  double length;                   // m
+  std::complex<double> amplitude;  // sqrt(W)
+  double largest;                  // sqrt(W), |amplitude| of antennas whose polarisations agree with the path best
 };
 
 class PathByPath {

@@ -6,7 +6,7 @@
 namespace echopath::testing {
 namespace {
 
-constexpr double kUnsure = 1e-6;   // m
+constexpr double kUnsure = 1e-6;    // m
 constexpr double kOwnPlane = 1e-9;  // m: a leg begins and ends on rectangles that do not block it
 
 struct Plane {

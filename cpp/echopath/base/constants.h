@@ -12,9 +12,9 @@
 
 namespace echopath {
 
-inline constexpr double kSpeedOfLight = 299792458.0;         // m/s
-inline constexpr double kBoltzmann = 1.380649e-23;           // J/K
-inline constexpr double kReferenceTemperature = 290.0;       // K, IEEE noise figure
+inline constexpr double kSpeedOfLight = 299792458.0;             // m/s
+inline constexpr double kBoltzmann = 1.380649e-23;               // J/K
+inline constexpr double kReferenceTemperature = 290.0;           // K, IEEE noise figure
 inline constexpr double kVacuumPermittivity = 8.8541878128e-12;  // F/m
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;

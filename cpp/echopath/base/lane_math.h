@@ -104,7 +104,8 @@ ECHOPATH_INLINE Vec sums(const Vec* x) {
 // Its first lanes are the sums of all lanes of a and of b.
 ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
 #if ECHOPATH_LANES == 8
-  Vec pair = __builtin_shuffle(a, b, Mask{0, 8, 2, 10, 4, 12, 6, 14}) + __builtin_shuffle(a, b, Mask{1, 9, 3, 11, 5, 13, 7, 15});
+  Vec pair =
+      __builtin_shuffle(a, b, Mask{0, 8, 2, 10, 4, 12, 6, 14}) + __builtin_shuffle(a, b, Mask{1, 9, 3, 11, 5, 13, 7, 15});
   pair = pair + __builtin_shuffle(pair, Mask{4, 5, 6, 7, 0, 1, 2, 3});
   return pair + __builtin_shuffle(pair, Mask{2, 3, 0, 1, 6, 7, 4, 5});
 #elif ECHOPATH_LANES == 4
@@ -135,7 +136,9 @@ struct LaneMath {
   }
   static constexpr int64_t kSignBit = ~int64_t{0x7FFFFFFFFFFFFFFF};
   static ECHOPATH_INLINE Vec magnitude(Vec x) { return from_bits(bits(x) & ~kSignBit); }
-  static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) { return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit)); }
+  static ECHOPATH_INLINE Vec with_sign_of(Vec x, Vec sign) {
+    return from_bits((bits(x) & ~kSignBit) | (bits(sign) & kSignBit));
+  }
   static ECHOPATH_INLINE Vec larger(Vec x, Vec y) { return x > y ? x : y; }
   static ECHOPATH_INLINE Vec smaller(Vec x, Vec y) { return x < y ? x : y; }
   static ECHOPATH_INLINE bool any(Mask x) {

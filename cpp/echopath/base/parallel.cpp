@@ -81,9 +81,8 @@ void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
   const auto run_range = [&](const tbb::blocked_range<int64_t>& range) {
     for (int64_t i = range.begin(); i != range.end(); ++i) step(i);
   };
-  current_arena()->execute([&] {
-    tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, 1), run_range, tbb::simple_partitioner());
-  });
+  current_arena()->execute(
+      [&] { tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, 1), run_range, tbb::simple_partitioner()); });
 }
 
 void run_pair(const std::function<void()>& first, const std::function<void()>& second) {

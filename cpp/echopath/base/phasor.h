@@ -70,8 +70,8 @@ ECHOPATH_INLINE ComplexOf<Real> phasor_of_half_turns(Real x) {
 // e^{j 2 pi x}.
 template <class Real>
 ECHOPATH_INLINE ComplexOf<Real> phasor_of_cycles(Real x) {
-  const Real reduced = 2.0 * (x - round_to_integer(x));      // half turns in [-1, 1]
-  const Real half_turns = round_to_integer(reduced);        // -1, 0 or 1
+  const Real reduced = 2.0 * (x - round_to_integer(x));  // half turns in [-1, 1]
+  const Real half_turns = round_to_integer(reduced);     // -1, 0 or 1
   const Real sign = 1.0 - 2.0 * half_turns * half_turns;
   const ComplexOf<Real> phasor = phasor_of_half_turns(reduced - half_turns);
   return {sign * phasor.re, sign * phasor.im};

@@ -11,8 +11,15 @@ namespace echopath {
 
 // Independent uses of one seed.
 enum class Stream : uint32_t {
-  kLaunchShift = 1, kBounce = 2, kPhase = 3, kNoise = 4, kLaunchPoint = 5, kScatterShift = 7, kScatterPoint = 8,
-  kProbe = 9, kTraining = 16
+  kLaunchShift = 1,
+  kBounce = 2,
+  kPhase = 3,
+  kNoise = 4,
+  kLaunchPoint = 5,
+  kScatterShift = 7,
+  kScatterPoint = 8,
+  kProbe = 9,
+  kTraining = 16
 };
 
 // The four words of as many counters as there are lanes, or what has become of them.
@@ -55,8 +62,9 @@ ECHOPATH_INLINE double unit_interval(uint32_t high, uint32_t low) {
 
 // Two uniform numbers in [0, 1) with 53 bits for (seed, stream, index, dimension).
 inline std::array<double, 2> uniform2(uint64_t seed, Stream stream, uint64_t index, uint32_t dimension) {
-  const auto bits = philox4x32({static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32), dimension,
-                                static_cast<uint32_t>(stream)}, philox_key(seed));
+  const auto bits = philox4x32(
+      {static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32), dimension, static_cast<uint32_t>(stream)},
+      philox_key(seed));
   return {unit_interval(bits[0], bits[1]), unit_interval(bits[2], bits[3])};
 }
 

@@ -73,9 +73,8 @@ struct FunctionTarget<InstructionSet::kAvx512> {
 // Runs a plain loop, an ECHOPATH_INLINE function that takes numbers and pointers, compiled for the instruction set picked.
 template <auto kLoop, class... Args>
 void run_simd(Args... args) {
-  with_instruction_set([&](auto set) __attribute__((always_inline)) {
-    FunctionTarget<decltype(set)::value>::template run<kLoop>(args...);
-  });
+  with_instruction_set(
+      [&](auto set) __attribute__((always_inline)) { FunctionTarget<decltype(set)::value>::template run<kLoop>(args...); });
 }
 
 // A table of functions compiled for one instruction set: each file that is compiled for it specialises this for its table.
@@ -85,9 +84,8 @@ const Table& kernels_for();
 // That of the instruction set picked.
 template <class Table>
 const Table& kernels() {
-  return with_instruction_set([](auto set) __attribute__((always_inline)) -> const Table& {
-    return kernels_for<Table, decltype(set)::value>();
-  });
+  return with_instruction_set(
+      [](auto set) __attribute__((always_inline)) -> const Table& { return kernels_for<Table, decltype(set)::value>(); });
 }
 
 }  // namespace echopath

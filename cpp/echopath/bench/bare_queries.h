@@ -13,10 +13,10 @@ struct BareQueries {
     std::vector<double> elapsed, processor;
   };
   int64_t num_rays = 0, num_paths = 0;
-  int64_t num_queries = 0;         // closest-hit and shadow queries of the rays
-  int64_t num_in_packets = 0;      // of these queries
-  int64_t num_shadow = 0;          // of these queries
-  double build_seconds = 0.0;      // once for all rays: geometry, mirrors, launch plan
+  int64_t num_queries = 0;     // closest-hit and shadow queries of the rays
+  int64_t num_in_packets = 0;  // of these queries
+  int64_t num_shadow = 0;      // of these queries
+  double build_seconds = 0.0;  // once for all rays: geometry, mirrors, launch plan
   // Measured in turn: rays and record; the same queries packed as the tracer packs them; the same queries one by one.
   Seconds trace, bare, single;
 };

@@ -13,7 +13,8 @@ void evaluate_chirps(const Echoes& echoes, int64_t begin, int64_t end, int num_c
   constexpr int kChirpsAtOnce = 4;
   EchoStates states[kChirpsAtOnce];
   for (int chirp = 0; chirp < num_chirps; chirp += kChirpsAtOnce) {
-    evaluate_states(echoes, chirp, std::min(kChirpsAtOnce, num_chirps - chirp), begin, static_cast<int>(end - begin), states);
+    evaluate_states(echoes, chirp, std::min(kChirpsAtOnce, num_chirps - chirp), begin, static_cast<int>(end - begin),
+                    states);
   }
 }
 

@@ -14,7 +14,8 @@ constexpr int64_t kRaysPerBlock = 4096;
 // Holds the scene at one time, with an origin next to the first of the points.
 struct PosedGeometry {
   PosedGeometry(const Scene& scene, double time, const std::vector<Vec3>& points, Job* job)
-      : pose(scene, time), origin(EmbreeScene::origin_near(scene, pose, points.empty() ? Vec3(Vec3::Zero()) : points.front())),
+      : pose(scene, time),
+        origin(EmbreeScene::origin_near(scene, pose, points.empty() ? Vec3(Vec3::Zero()) : points.front())),
         triangles(scene, pose, origin, job) {}
   PosedScene pose;
   Vec3 origin;

@@ -36,7 +36,8 @@ Echoes trial_echoes(const ChirpSequence& waveform, int num_nodes, std::vector<do
   return echoes;
 }
 
-SynthesisTrial try_synthesis(const ChirpSequence& waveform, const Echoes& echoes, const SynthesisOptions& options, Job* job) {
+SynthesisTrial try_synthesis(const ChirpSequence& waveform, const Echoes& echoes, const SynthesisOptions& options,
+                             Job* job) {
   SynthesisTrial trial;
   const Stopwatch watch;
   Synthesizer synthesizer(waveform, 1, 1, echoes.num_echoes, options);

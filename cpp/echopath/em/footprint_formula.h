@@ -14,7 +14,7 @@ enum class Footprint {
 // Holds the phase of the path across the footprint, g.x + x.h.x / 2, with x in launch cells along the two footprint axes.
 template <class Real>
 struct FootprintPhaseOf {
-  Real g1{}, g2{};          // rad per cell
+  Real g1{}, g2{};           // rad per cell
   Real h11{}, h12{}, h22{};  // rad per cell^2
 };
 

@@ -23,7 +23,9 @@ std::complex<double> transmitted_cosine(std::complex<double> permittivity, doubl
   return root.imag() > 0 ? -root : root;
 }
 
-std::complex<double> te_of(std::complex<double> q, double cos_incidence) { return (cos_incidence - q) / (cos_incidence + q); }
+std::complex<double> te_of(std::complex<double> q, double cos_incidence) {
+  return (cos_incidence - q) / (cos_incidence + q);
+}
 
 std::complex<double> tm_of(std::complex<double> q, std::complex<double> permittivity, double cos_incidence) {
   return (permittivity * cos_incidence - q) / (permittivity * cos_incidence + q);

@@ -108,7 +108,8 @@ ECHOPATH_INLINE HitMatrix scattered_modes(const HitGeometryOfModes& hit, double 
   const FacetTurn turn = facet_turn(hit);
   const double cosine = reflection * turn.cosine, sine = reflection * turn.sine, kept = mixing.kept;
   // (kept - j turned) + 2 j turned axis axis^T
-  const double te_te = mixing.turned * (2.0 * axis.te * axis.te - 1.0), tm_tm = mixing.turned * (2.0 * axis.tm * axis.tm - 1.0);
+  const double te_te = mixing.turned * (2.0 * axis.te * axis.te - 1.0),
+               tm_tm = mixing.turned * (2.0 * axis.tm * axis.tm - 1.0);
   const double te_tm = 2.0 * mixing.turned * axis.te * axis.tm;
   return {{cosine * kept, cosine * te_te - sine * te_tm},
           {-sine * kept, cosine * te_tm - sine * tm_tm},

@@ -85,7 +85,8 @@ FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, 
 FieldVector radiated_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal, const Vec3& out,
                            const ModeCoefficients& coefficients) {
   const HitGeometryOfModes hit = geometry_of(direction, normal, out);
-  const ComplexOf<double> te{coefficients.te.real(), coefficients.te.imag()}, tm{coefficients.tm.real(), coefficients.tm.imag()};
+  const ComplexOf<double> te{coefficients.te.real(), coefficients.te.imag()},
+      tm{coefficients.tm.real(), coefficients.tm.imag()};
   return through(hit, radiated_modes(hit, te, tm), incident);
 }
 

@@ -8,14 +8,14 @@ namespace echopath {
 
 // Takes exactly one of conductor, permittivity, reflectivity, and at most one of roughness_height, scattering.
 struct Material {
-  bool conductor = false;                             // perfect conductor
-  std::optional<std::complex<double>> permittivity;   // relative, eps' - j eps'', imaginary part <= 0
-  double conductivity = 0.0;                          // S/m, adds -j sigma/(w eps0)
-  std::optional<double> reflectivity;                 // power reflectivity in [0, 1] at every angle (reflects like a conductor)
-  double roughness_height = 0.0;                      // rms height in m (Ament)
-  std::optional<double> scattering;                   // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
-  double cross_polarization = 0.0;                    // in [0, 0.5], share of diffuse power in the cross polarisation
-  bool mirror = false;  // a plane larger than its Fresnel zone, treated by images
+  bool conductor = false;                            // perfect conductor
+  std::optional<std::complex<double>> permittivity;  // relative, eps' - j eps'', imaginary part <= 0
+  double conductivity = 0.0;                         // S/m, adds -j sigma/(w eps0)
+  std::optional<double> reflectivity;  // power reflectivity in [0, 1] at every angle (reflects like a conductor)
+  double roughness_height = 0.0;       // rms height in m (Ament)
+  std::optional<double> scattering;    // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
+  double cross_polarization = 0.0;     // in [0, 0.5], share of diffuse power in the cross polarisation
+  bool mirror = false;                 // a plane larger than its Fresnel zone, treated by images
 
   static Material metal(bool mirror = false);
   // Raises invalid_argument naming the field, the rule and the value.

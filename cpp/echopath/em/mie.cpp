@@ -11,10 +11,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kLargestSize = 1e6;   // ka
-constexpr double kTiny = 1e-250;       // where the downward recurrence starts
-constexpr double kHuge = 1e200;        // where it is scaled back
-constexpr int kGuardOrders = 16;       // orders above the last one from which the downward recurrence forgets its start
+constexpr double kLargestSize = 1e6;  // ka
+constexpr double kTiny = 1e-250;      // where the downward recurrence starts
+constexpr double kHuge = 1e200;       // where it is scaled back
+constexpr int kGuardOrders = 16;      // orders above the last one from which the downward recurrence forgets its start
 
 // Returns the Riccati-Bessel functions x j_n(x), n = 0..count, by downward recurrence; upward they lose all digits above n =
 // x.

@@ -15,7 +15,8 @@ constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
 
 constexpr size_t kManyParts = 4;
 
-ECHOPATH_INLINE void assign(const uint8_t* taken, uint32_t part, size_t count, uint8_t* __restrict left, uint32_t* __restrict group) {
+ECHOPATH_INLINE void assign(const uint8_t* taken, uint32_t part, size_t count, uint8_t* __restrict left,
+                            uint32_t* __restrict group) {
   for (size_t path = 0; path < count; ++path) {
     left[path] ^= taken[path];
     group[path] = taken[path] ? part : group[path];

@@ -29,9 +29,9 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
 // Combines several partitions of the same paths in one group index: one group per combination of parts that occurs.
 struct CombinedPartition {
   std::vector<Partition> partitions;
-  std::vector<uint32_t> group;               // [P]
+  std::vector<uint32_t> group;  // [P]
   uint32_t num_groups = 0;
-  std::vector<uint32_t> part_of_group;       // [num_groups, num_partitions] part in each partition, rows ascending
+  std::vector<uint32_t> part_of_group;  // [num_groups, num_partitions] part in each partition, rows ascending
 
   uint32_t part_in(uint32_t combined_group, size_t partition) const {
     return part_of_group[combined_group * partitions.size() + partition];

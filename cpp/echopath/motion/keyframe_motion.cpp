@@ -16,8 +16,7 @@ constexpr double kUnitRounding = 1e-14;
 void check_translations(const std::vector<Vec3>& translations, size_t num_times) {
   if (translations.empty()) return;
   require(translations.size() == num_times, "translations", "must be as many as times", translations.size());
-  for (const Vec3& value : translations)
-    require(value.allFinite(), "translations", "must be finite", value.transpose());
+  for (const Vec3& value : translations) require(value.allFinite(), "translations", "must be finite", value.transpose());
 }
 
 // Normalises the quaternions and puts neighbours in one half space: q and -q are one rotation, but not to an interpolation.
@@ -91,11 +90,11 @@ struct KeyframeMotion::Data {
   }
 };
 
-KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations,
-                               std::vector<Quaternion> rotations, Interpolation interpolation) {
+KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations, std::vector<Quaternion> rotations,
+                               Interpolation interpolation) {
   SplineKnots knots(std::move(times), interpolation);
-  require(!translations.empty() || !rotations.empty(), "translations",
-          "must be given where there are no rotations", "neither");
+  require(!translations.empty() || !rotations.empty(), "translations", "must be given where there are no rotations",
+          "neither");
   check_translations(translations, knots.times().size());
   rotations = continuous(std::move(rotations), knots.times().size());
   std::vector<Vec3> translation_curvature = curvatures(knots, translations, 3);

@@ -11,10 +11,10 @@ namespace echopath {
 
 // A joint moves as a node does (see `moved`): skin_from_joint(t) = skin_from_parent(t) * moved(placement, motion, t).
 struct Joint {
-  std::string name;                               // unique within its skin
-  int parent = -1;                                // index of an earlier joint, -1: moves in the frame of the skin
-  Transform placement = Transform::Identity();    // at rest, relative to the parent
-  std::shared_ptr<const Motion> motion;           // may be null
+  std::string name;                             // unique within its skin
+  int parent = -1;                              // index of an earlier joint, -1: moves in the frame of the skin
+  Transform placement = Transform::Identity();  // at rest, relative to the parent
+  std::shared_ptr<const Motion> motion;         // may be null
   // Takes the frame of the skin to that of the joint, as the vertices were bound to it. None means the joints' placements at
   // rest.
   std::optional<Transform> inverse_bind;
@@ -40,8 +40,8 @@ class Skin : public Deformation {
   int64_t num_vertices() const override;
   std::vector<Vec3> at(double time) const override;
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
-  std::vector<double> breakpoints() const override;  // of all joints
-  TimeSpan span() const override;                    // common to all joints; begin > end where there is none
+  std::vector<double> breakpoints() const override;         // of all joints
+  TimeSpan span() const override;                           // common to all joints; begin > end where there is none
   double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, with the joints above it added
 
   const std::vector<Vec3>& vertices() const;

@@ -44,8 +44,8 @@ class SplineKnots {
 
   std::vector<double> times_;
   Interpolation interpolation_;
-  std::vector<double> step_;                        // [T-1] s
-  std::vector<double> lower_, inverse_, upper_;     // [T] rows 1..T-2 of the factored tridiagonal matrix
+  std::vector<double> step_;                     // [T-1] s
+  std::vector<double> lower_, inverse_, upper_;  // [T] rows 1..T-2 of the factored tridiagonal matrix
 };
 
 // Holds the indices of the knots between which a span of time lies, as far as there are knots.
@@ -63,9 +63,9 @@ class TurningPoints {
 
  private:
   struct Axis {
-    double extreme = 0.0, time = 0.0;     // the farthest point in the direction of travel, m, s
+    double extreme = 0.0, time = 0.0;  // the farthest point in the direction of travel, m, s
     int direction = 0;
-    double last_turn = 0.0;               // s
+    double last_turn = 0.0;  // s
     bool has_turned = false;
   };
   void add(double time, double value, Axis& axis);

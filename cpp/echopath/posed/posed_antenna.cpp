@@ -2,7 +2,8 @@
 
 namespace echopath {
 
-std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin) {
+std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,
+                                         const Vec3& origin) {
   std::vector<PosedAntenna> out;
   for (const Antenna& antenna : antennas) {
     const Mat3 world_from_antenna = world_from_radar.linear() * antenna.orientation.toRotationMatrix();

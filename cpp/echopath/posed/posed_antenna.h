@@ -7,9 +7,9 @@
 namespace echopath {
 
 struct PosedAntenna {
-  Vec3 position;                     // m, relative to the origin of the scene that it was posed with
-  Vec3 boresight;                    // unit
-  Vec3 polarization;                 // unit
+  Vec3 position;      // m, relative to the origin of the scene that it was posed with
+  Vec3 boresight;     // unit
+  Vec3 polarization;  // unit
   const AntennaPattern* pattern = nullptr;
   Mat3 antenna_from_world = Mat3::Identity();
 
@@ -21,6 +21,7 @@ struct PosedAntenna {
 };
 
 // Poses antennas, which must outlive the result; positions count from `origin` (m, world).
-std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin);
+std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,
+                                         const Vec3& origin);
 
 }  // namespace echopath

@@ -71,7 +71,8 @@ std::vector<Vec3> PosedScene::world_normals(uint32_t mesh_id) const {
 std::array<Vec3, 3> PosedScene::world_triangle(uint32_t mesh_id, uint32_t triangle_id) const {
   const std::vector<Vec3>& vertices = local_vertices(mesh_id);
   const Triangle& triangle = scene_->node_of(mesh_id).mesh->triangles()[triangle_id];
-  return {in_world(mesh_id, vertices[triangle[0]]), in_world(mesh_id, vertices[triangle[1]]), in_world(mesh_id, vertices[triangle[2]])};
+  return {in_world(mesh_id, vertices[triangle[0]]), in_world(mesh_id, vertices[triangle[1]]),
+          in_world(mesh_id, vertices[triangle[2]])};
 }
 
 }  // namespace echopath

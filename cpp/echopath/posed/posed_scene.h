@@ -17,7 +17,8 @@ class PosedScene {
   PosedScene(const Scene& scene, double time);
   // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is relative
   // counts from `origin` (m, world). Raises invalid_argument when a motion is not defined at `time` (s).
-  PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin, double time);
+  PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
+             double time);
 
   std::vector<PosedAntenna> transmitters, receivers;  // relative to the origin
   const std::vector<PosedAntenna>& antennas(bool of_receivers) const { return of_receivers ? receivers : transmitters; }

@@ -30,7 +30,8 @@ int diffuse_hit(uint64_t diffuse, int k) {
 
 // Returns whether two paths share a random phase: they run over the same diffuse hits, in the same or the reversed order.
 bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
-  const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)], of_second = paths.diffuse[static_cast<size_t>(second)];
+  const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)],
+                 of_second = paths.diffuse[static_cast<size_t>(second)];
   const int count = std::popcount(of_first);
   if (count != std::popcount(of_second)) return false;
   const Hit *a = paths.hits_of(first), *b = paths.hits_of(second);
@@ -160,7 +161,8 @@ class Sums {
 };
 
 // Looks which cells lie at a rim, of the kinds where that matters. edge_power: [P] W, of each coherent path.
-void find_rims(const Paths& paths, const Sorting& sorting, std::span<const float> edge_power, std::vector<GroupSums>& groups) {
+void find_rims(const Paths& paths, const Sorting& sorting, std::span<const float> edge_power,
+               std::vector<GroupSums>& groups) {
   std::vector<CoherentKind*> kinds;
   std::vector<std::unordered_map<uint64_t, uint32_t>> index_of_kind(groups.size());  // by group and id, into kinds
   for (size_t group = 0; group < groups.size(); ++group) {
@@ -211,7 +213,8 @@ class Block {
 
   void note_edges(std::vector<float>& edge_power) const {
     const std::complex<double>* edges = coherent_fields_.data() + kEdges * coherent_.size();
-    for (size_t i = 0; i < coherent_.size(); ++i) edge_power[static_cast<size_t>(coherent_[i])] = static_cast<float>(std::norm(edges[i]));
+    for (size_t i = 0; i < coherent_.size(); ++i)
+      edge_power[static_cast<size_t>(coherent_[i])] = static_cast<float>(std::norm(edges[i]));
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {

@@ -11,12 +11,12 @@ namespace echopath {
 
 struct GroupSums {
   // [batches + 1] each; the last entry belongs to the paths that are in no batch.
-  std::vector<std::complex<double>> field;                 // sqrt(W), coherent paths as they arrive
-  std::vector<double> power;                               // W, of diffuse hits
-  std::vector<CoherentKind> kinds;                         // in the order in which they occur
-  double steady_power = 0.0, steady_squares = 0.0;         // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
-  double lattice_squares = 0.0, drawn_squares = 0.0;       // W^2, of the powers of diffuse hits (PowerEvidence)
-  double strongest_hit = 0.0;                              // W, of a diffuse hit
+  std::vector<std::complex<double>> field;            // sqrt(W), coherent paths as they arrive
+  std::vector<double> power;                          // W, of diffuse hits
+  std::vector<CoherentKind> kinds;                    // in the order in which they occur
+  double steady_power = 0.0, steady_squares = 0.0;    // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
+  double lattice_squares = 0.0, drawn_squares = 0.0;  // W^2, of the powers of diffuse hits (PowerEvidence)
+  double strongest_hit = 0.0;                         // W, of a diffuse hit
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
 };
 

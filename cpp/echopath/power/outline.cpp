@@ -14,11 +14,12 @@
 namespace echopath {
 namespace {
 
-constexpr double kAround = 1.35;   // cells: the six neighbours in a lattice are .95 to 1.16 away (trace/launch/launch_lattice.h)
-constexpr double kSameCell = 0.1;  // cells: of one ray
+constexpr double kAround =
+    1.35;  // cells: the six neighbours in a lattice are .95 to 1.16 away (trace/launch/launch_lattice.h)
+constexpr double kSameCell = 0.1;                   // cells: of one ray
 constexpr double kWidestGap = 100.0 * kPi / 180.0;  // rad, between neighbours: 66 degrees in a lattice, over 130 at its rim
-constexpr double kStep = 0.3;      // of the way between two hits, out of the surface, for both normals together
-constexpr double kPlane = 1e-4;    // likewise, of hits on flat facets
+constexpr double kStep = 0.3;    // of the way between two hits, out of the surface, for both normals together
+constexpr double kPlane = 1e-4;  // likewise, of hits on flat facets
 
 // A surface at a hit.
 struct Place {
@@ -30,7 +31,8 @@ struct Place {
 bool goes_on(const Place& a, const Place& b) {
   const Vec3 way = b.position - a.position;
   const double length = way.norm();
-  if (a.is_smooth && b.is_smooth) return std::abs((a.normal + b.normal).dot(way)) <= kStep * length && a.normal.dot(b.normal) > 0.0;
+  if (a.is_smooth && b.is_smooth)
+    return std::abs((a.normal + b.normal).dot(way)) <= kStep * length && a.normal.dot(b.normal) > 0.0;
   return a.normal.dot(b.normal) >= 1.0 - kPlane * kPlane && std::abs(a.normal.dot(way)) <= kPlane * length;
 }
 
@@ -85,8 +87,10 @@ class Kinship {
   explicit Kinship(const Paths& paths) : paths_(paths) {}
   int compare(int64_t a, int64_t b) const {
     const auto p = static_cast<size_t>(a), q = static_cast<size_t>(b);
-    const std::array<uint32_t, 4> first = {paths_.stratum[p], paths_.batch[p], paths_.num_bounces[p], paths_.flags[p] & kReversedPath};
-    const std::array<uint32_t, 4> second = {paths_.stratum[q], paths_.batch[q], paths_.num_bounces[q], paths_.flags[q] & kReversedPath};
+    const std::array<uint32_t, 4> first = {paths_.stratum[p], paths_.batch[p], paths_.num_bounces[p],
+                                           paths_.flags[p] & kReversedPath};
+    const std::array<uint32_t, 4> second = {paths_.stratum[q], paths_.batch[q], paths_.num_bounces[q],
+                                            paths_.flags[q] & kReversedPath};
     if (first != second) return first < second ? -1 : 1;
     for (int k = 0; k < paths_.num_bounces[p]; ++k) {
       const uint32_t x = paths_.hits_of(a)[k].mesh_id, y = paths_.hits_of(b)[k].mesh_id;
@@ -145,7 +149,8 @@ class Cells {
     for (int k = 0; k < count; ++k) places_[cells_[i].first_place + static_cast<size_t>(k)] = surfaces.at(hits[k]);
     const bool is_reversed = (paths_.flags[p] & kReversedPath) != 0;
     const Vec3& start = is_reversed ? paths_.frame.receiver : paths_.frame.transmitter;
-    cells_[i].direction = (places_[cells_[i].first_place + static_cast<size_t>(is_reversed ? count - 1 : 0)].facet - start).normalized();
+    cells_[i].direction =
+        (places_[cells_[i].first_place + static_cast<size_t>(is_reversed ? count - 1 : 0)].facet - start).normalized();
   }
 
   // Of cells that may surround each other: in rows along the axis of the longest extent, as high as a cell reaches.
@@ -168,7 +173,8 @@ class Cells {
         others.clear();
         for (const double beside : {row - 1.0, row, row + 1.0}) {
           const auto end = std::lower_bound(kin.begin(), kin.end(), std::pair(beside, here + reach), stands_before);
-          others.insert(others.end(), std::lower_bound(kin.begin(), end, std::pair(beside, here - reach), stands_before), end);
+          others.insert(others.end(), std::lower_bound(kin.begin(), end, std::pair(beside, here - reach), stands_before),
+                        end);
         }
         found[kin[at]] = !is_surrounded(kin[at], others, cell);
       }

@@ -130,7 +130,7 @@ double student_t95(int degrees_of_freedom) {
   // This is Cornish and Fisher's expansion, off by 1e-3 at most.
   const double z = kNormal, per = 1.0 / degrees_of_freedom, z2 = z * z;
   return z * (1.0 + per * ((z2 + 1.0) / 4.0 + per * ((5.0 * z2 * z2 + 16.0 * z2 + 3.0) / 96.0 +
-                                                      per * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0)));
+                                                     per * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0)));
 }
 
 PowerInterval power_interval(const PowerEvidence& evidence) {

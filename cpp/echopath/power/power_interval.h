@@ -33,15 +33,15 @@ struct CoherentKind {
 
 // Holds what the record tells of the power of a set of paths, with all rays.
 struct PowerEvidence {
-  double coherent = 0.0, diffuse = 0.0;       // W, the estimates
+  double coherent = 0.0, diffuse = 0.0;  // W, the estimates
   std::vector<CoherentKind> kinds;
   // Sums over the coherent paths that hardly change at half the density, such as those of flat surfaces up to their edges:
   // of |a|^2, W, and of its squares, W^2.
   double steady_power = 0.0, steady_squares = 0.0;
-  double lattice_squares = 0.0;               // W^2, sum of squares of the powers of diffuse hits that the launch lattice found
-  double drawn_squares = 0.0;                 // W^2, of those that were found by directions drawn at random
+  double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that the launch lattice found
+  double drawn_squares = 0.0;    // W^2, of those that were found by directions drawn at random
   int num_batches = 1;
-  double standard_error = 0.0;                // W, of coherent + diffuse by the batches; not used for one
+  double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
 };
 
 struct PowerInterval {

@@ -24,14 +24,14 @@ struct ReceivedPower {
   // W: sum over the diffuse hits of |field of all paths over this hit|^2. They share its random phase, so that both
   // orders of a path over a mirror, and of a chain of several diffuse hits, add as fields; different hits add as powers.
   double diffuse = 0.0;
-  double diffuse_error = 0.0;   // W
+  double diffuse_error = 0.0;  // W
   int num_batches = 1;
 
   // The 95 % interval of the power, of bias and chance together (power_interval.h), W. It is [0, 0] where no path arrives,
   // which tells nothing about what no ray has met.
   double low = 0.0, high = 0.0;
-  double bias = 0.0;            // W, that finer launch cells may add to the coherent power
-  double chance = 0.0;          // W, standard error; for one batch estimated from the record
+  double bias = 0.0;    // W, that finer launch cells may add to the coherent power
+  double chance = 0.0;  // W, standard error; for one batch estimated from the record
 
   // The estimates rest on these: the field of the coherent paths (sqrt(W), all batches), as it is and through the footprint
   // filter of cells of half the density of rays, and the sum of |a|^2 of the coherent paths without the filter, W.

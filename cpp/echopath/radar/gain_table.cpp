@@ -10,10 +10,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kMaxEfficiency = 1.02;      // larger means no power gain; smaller excess is noise of tables
-constexpr double kAngleTolerance = 1e-6;     // rad, degrees with five written digits
-constexpr double kNothing = 1e-12;           // of the peak: what rounding leaves of a zero
-constexpr double kSeamTolerance = 1e-3;      // of the peak: samples one turn apart are the same direction
+constexpr double kMaxEfficiency = 1.02;   // larger means no power gain; smaller excess is noise of tables
+constexpr double kAngleTolerance = 1e-6;  // rad, degrees with five written digits
+constexpr double kNothing = 1e-12;        // of the peak: what rounding leaves of a zero
+constexpr double kSeamTolerance = 1e-3;   // of the peak: samples one turn apart are the same direction
 
 void require_axis(const std::vector<double>& values, const std::string& name) {
   require(values.size() >= 2, name, "must have at least 2 values", values.size());
@@ -33,7 +33,7 @@ void require_samples(const std::vector<double>& values, size_t count, const std:
 // (no sample before or behind) the cubic becomes the parabola through the other three.
 void set_weights(const double at[4], bool has_before, bool has_behind, double x, double weight[4]) {
   const double step = at[2] - at[1], t = (x - at[1]) / step;
-  const double secant[4] = {0.0, -1.0, 1.0, 0.0};  // times 1 / step
+  const double secant[4] = {0.0, -1.0, 1.0, 0.0};          // times 1 / step
   double first[4] = {0, 0, 0, 0}, last[4] = {0, 0, 0, 0};  // slopes at both ends, times step
   if (has_before) {
     const double before = at[1] - at[0], sum = before + step;
@@ -195,8 +195,8 @@ double GainTable::integrate() const {
 
 bool GainTable::has_gain(int row, int column) const {
   const int next = period_ ? (column + 1) % period_ : column + 1;
-  return field_[sample(row, column)] != 0.0 || field_[sample(row, next)] != 0.0 ||
-         field_[sample(row + 1, column)] != 0.0 || field_[sample(row + 1, next)] != 0.0;
+  return field_[sample(row, column)] != 0.0 || field_[sample(row, next)] != 0.0 || field_[sample(row + 1, column)] != 0.0 ||
+         field_[sample(row + 1, next)] != 0.0;
 }
 
 bool GainTable::all_cells_in_front() const {

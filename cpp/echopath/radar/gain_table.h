@@ -34,9 +34,9 @@ class GainTable {
 
   // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
-  double peak_gain() const;                              // of the samples
-  double efficiency() const { return efficiency_; }      // integral of the gain over the sphere / 4 pi
-  bool is_dark_behind() const { return dark_behind_; }   // no gain where x < 0
+  double peak_gain() const;                             // of the samples
+  double efficiency() const { return efficiency_; }     // integral of the gain over the sphere / 4 pi
+  bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 
  private:
   // Holds four samples along one axis and their weights for a point between the middle ones.

@@ -25,8 +25,8 @@ void validate_antenna(const Antenna& antenna, const std::string& name) {
   require(std::abs(quaternion_norm - 1.0) <= kUnitTolerance, name + ".orientation", "must have norm 1 within 1e-6",
           quaternion_norm);
   const double polarization_norm = antenna.polarization.norm();
-  require(std::abs(polarization_norm - 1.0) <= kUnitTolerance, name + ".polarization",
-          "must have norm 1 within 1e-6", polarization_norm);
+  require(std::abs(polarization_norm - 1.0) <= kUnitTolerance, name + ".polarization", "must have norm 1 within 1e-6",
+          polarization_norm);
   require_positive(antenna.pattern.peak_gain, name + ".pattern.peak_gain");
   require((antenna.pattern.kind == AntennaPattern::Kind::kTable) == (antenna.pattern.table != nullptr),
           name + ".pattern.table", "must be given for the kind table and for no other", antenna.pattern.table != nullptr);
@@ -131,8 +131,8 @@ void Radar::validate() const {
   validate_antennas(transmitters, "transmitters");
   validate_antennas(receivers, "receivers");
   require_positive(transmit_power, "transmit_power");
-  require(std::isfinite(noise_figure_db) && noise_figure_db >= 0.0, "noise_figure_db",
-          "must be finite and not negative", noise_figure_db);
+  require(std::isfinite(noise_figure_db) && noise_figure_db >= 0.0, "noise_figure_db", "must be finite and not negative",
+          noise_figure_db);
 }
 
 Transform Radar::world_from_radar(double time) const { return motion ? motion->at(time) : Transform::Identity(); }

@@ -12,24 +12,24 @@ namespace echopath {
 
 // Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep.
 struct ChirpSequence {
-  double start_frequency = 77e9;    // Hz, at the first sample
-  double bandwidth = 1e9;           // Hz, sampled
-  int num_samples = 512;            // per chirp
-  double sampling_rate = 20e6;      // Hz
-  int num_chirps = 128;             // per transmitter
-  double chirp_interval = 60e-6;    // s, between neighbouring slots
-  bool real = false;                // real IF samples instead of complex
+  double start_frequency = 77e9;  // Hz, at the first sample
+  double bandwidth = 1e9;         // Hz, sampled
+  int num_samples = 512;          // per chirp
+  double sampling_rate = 20e6;    // Hz
+  int num_chirps = 128;           // per transmitter
+  double chirp_interval = 60e-6;  // s, between neighbouring slots
+  bool real = false;              // real IF samples instead of complex
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
-  double slope() const { return bandwidth * sampling_rate / num_samples; }               // Hz/s
-  double chirp_duration() const { return num_samples / sampling_rate; }                  // s, sampled
-  double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }       // s after the first sample
-  double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }          // Hz
-  double wavelength() const;                                                             // m, at the centre frequency
-  double range_resolution() const;                                                       // m, c / 2B
-  double max_range() const;                                                              // m, c fs / (2 slope), half if real
-  double velocity_resolution(int num_slots) const;                                       // m/s
-  double max_velocity(int num_slots) const;                                              // m/s, unambiguous within +-
+  double slope() const { return bandwidth * sampling_rate / num_samples; }          // Hz/s
+  double chirp_duration() const { return num_samples / sampling_rate; }             // s, sampled
+  double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }  // s after the first sample
+  double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }     // Hz
+  double wavelength() const;                                                        // m, at the centre frequency
+  double range_resolution() const;                                                  // m, c / 2B
+  double max_range() const;                                                         // m, c fs / (2 slope), half if real
+  double velocity_resolution(int num_slots) const;                                  // m/s
+  double max_velocity(int num_slots) const;                                         // m/s, unambiguous within +-
 };
 
 // Holds the gain and phase of an antenna toward a direction.
@@ -42,8 +42,8 @@ struct AntennaGain {
 struct AntennaPattern {
   enum class Kind { kIsotropic, kCosinePower, kTable };
   Kind kind = Kind::kIsotropic;
-  double peak_gain = 1.0;  // linear
-  double exponent = 0.0;   // gain = peak_gain cos^exponent(theta) in front, 0 behind (kCosinePower)
+  double peak_gain = 1.0;                  // linear
+  double exponent = 0.0;                   // gain = peak_gain cos^exponent(theta) in front, 0 behind (kCosinePower)
   std::shared_ptr<const GainTable> table;  // kTable
 
   static AntennaPattern isotropic(double gain = 1.0);
@@ -53,15 +53,15 @@ struct AntennaPattern {
   // Returns the linear power gain of a pattern that is symmetric about the boresight; raises invalid_argument for a table.
   double gain(double cos_boresight) const;
   AntennaGain toward(const Vec3& direction) const;  // a unit vector in the antenna's frame
-  double efficiency() const;      // integral of the gain over the sphere / 4 pi
-  bool is_dark_behind() const;    // no gain where x < 0
+  double efficiency() const;                        // integral of the gain over the sphere / 4 pi
+  bool is_dark_behind() const;                      // no gain where x < 0
 };
 
 struct Antenna {
-  Vec3 position = Vec3::Zero();                        // m, in the radar's frame
-  Quaternion orientation = Quaternion::Identity();     // radar_from_antenna
+  Vec3 position = Vec3::Zero();                     // m, in the radar's frame
+  Quaternion orientation = Quaternion::Identity();  // radar_from_antenna
   AntennaPattern pattern;
-  Vec3 polarization = Vec3::UnitZ();                   // in the antenna's frame, unit
+  Vec3 polarization = Vec3::UnitZ();  // in the antenna's frame, unit
 };
 
 // Returns the mean position of at least one antenna in the world, m.
@@ -72,7 +72,7 @@ enum class Multiplexing { kTdm };  // one transmitter per slot
 struct Radar {
   ChirpSequence waveform;
   std::vector<Antenna> transmitters, receivers;
-  double transmit_power = 0.01;    // W per transmitter
+  double transmit_power = 0.01;  // W per transmitter
   double noise_figure_db = 12.0;
   Multiplexing multiplexing = Multiplexing::kTdm;
   std::shared_ptr<const Motion> motion;  // world_from_radar(t); null: the radar's frame is the world

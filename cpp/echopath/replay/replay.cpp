@@ -18,8 +18,8 @@ constexpr size_t kPlannedTogether = 2000;
 
 // Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
 // the next order to try.
-constexpr double kFirstPhase = 100.0;     // rad
-constexpr double kFirstAmplitude = 1.0;   // relative to the largest
+constexpr double kFirstPhase = 100.0;    // rad
+constexpr double kFirstAmplitude = 1.0;  // relative to the largest
 
 // Returns the order at which a tail found at `order` would be within its tolerance.
 double order_for(double tolerance, double tail, double first, int order) {
@@ -64,7 +64,7 @@ struct Replayer::Target {
   const PosedNodes& posed;
   size_t first_channel;  // of those that are posed
   std::vector<ChannelNodes> nodes;
-  uint8_t* turned = nullptr;  // [P], or null: SharedLegEvaluation::mark_turned
+  uint8_t* turned = nullptr;    // [P], or null: SharedLegEvaluation::mark_turned
   bool with_amplitudes = true;  // else only lengths are evaluated
   CellView cells = {};
 
@@ -145,9 +145,7 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
   memory_->give(std::move(evaluator));
 }
 
-std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
-  return at_nodes(indices, posed_.at_trace());
-}
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.at_trace()); }
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
   return at_nodes(indices, samples);
@@ -209,7 +207,8 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
     if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
   };
   for (size_t p = 0; p < needed.size(); ++p) {
-    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase, needed[p].order_for_length);
+    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
+          needed[p].order_for_length);
     raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }
 }

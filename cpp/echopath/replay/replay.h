@@ -30,7 +30,8 @@ class Replayer {
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
   // order, where the last two coefficients of their length or of their amplitude exceed the tolerance.
-  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
+  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial,
+                                   std::vector<UnfollowedPath>& unfollowed) const;
   // Poses the scene at all nodes of a grid of chirps or samples, which both functions below take.
   PosedGrid pose(const TimeGrid& grid) const { return posed_.pose(grid); }
   // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, which has several nodes in each of its

@@ -17,21 +17,21 @@ namespace echopath {
 using MaterialPtr = std::shared_ptr<const Material>;
 
 struct Node {
-  std::string name;                                 // full path, "street/pedestrian/arm_left"
-  int parent = -1;                                  // index of the parent, -1: child of the root
-  Transform placement = Transform::Identity();      // at rest, relative to the parent
-  std::shared_ptr<const Motion> motion;             // may be null
-  MeshPtr mesh;                                     // may be null
-  std::shared_ptr<const Deformation> deformation;   // may be null; its vertices replace the mesh's
-  MaterialPtr material;                             // null where there is no mesh
-  std::string material_name;                        // as the user gave it, may be empty
-  bool smooth = false;                              // the mesh stands for a curved surface (scene/smooth.h)
+  std::string name;                                // full path, "street/pedestrian/arm_left"
+  int parent = -1;                                 // index of the parent, -1: child of the root
+  Transform placement = Transform::Identity();     // at rest, relative to the parent
+  std::shared_ptr<const Motion> motion;            // may be null
+  MeshPtr mesh;                                    // may be null
+  std::shared_ptr<const Deformation> deformation;  // may be null; its vertices replace the mesh's
+  MaterialPtr material;                            // null where there is no mesh
+  std::string material_name;                       // as the user gave it, may be empty
+  bool smooth = false;                             // the mesh stands for a curved surface (scene/smooth.h)
 };
 
 // Tells where a mesh ID stands in the tree.
 struct SceneMesh {
-  int node = 0;      // index into Scene::nodes()
-  int object = 0;    // index of the child of the root above it (or itself)
+  int node = 0;    // index into Scene::nodes()
+  int object = 0;  // index of the child of the root above it (or itself)
 };
 
 class Scene {
@@ -43,11 +43,11 @@ class Scene {
   int add(Node node);
 
   const std::vector<Node>& nodes() const { return nodes_; }
-  const std::vector<SceneMesh>& meshes() const { return meshes_; }   // by mesh ID
+  const std::vector<SceneMesh>& meshes() const { return meshes_; }  // by mesh ID
   const Node& node_of(uint32_t mesh_id) const { return nodes_[static_cast<size_t>(meshes_[mesh_id].node)]; }
   int64_t num_triangles() const;
-  std::vector<std::string> mesh_names() const;                       // by mesh ID
-  std::optional<int> find(std::string_view full_name) const;         // node index
+  std::vector<std::string> mesh_names() const;                // by mesh ID
+  std::optional<int> find(std::string_view full_name) const;  // node index
 
   // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
   bool is_moving(uint32_t mesh_id) const;

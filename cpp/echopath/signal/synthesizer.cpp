@@ -23,9 +23,9 @@ namespace {
 constexpr int64_t kRecurrenceLimit = 40;  // echoes below which the recurrence beats the FFT of a NUFFT row
 // Tasks of chirps own whole groups of this many, whose echoes are read once.
 constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
-constexpr int kGroupsPerTask = 8;         // at most; fewer where that would leave threads without work
-constexpr int64_t kStillParts = 16;       // at most, of echoes at rest; their number must not depend on the threads
-constexpr int64_t kEchoesOfPart = 2048;   // at least, for each group: adding up the parts must cost little
+constexpr int kGroupsPerTask = 8;        // at most; fewer where that would leave threads without work
+constexpr int64_t kStillParts = 16;      // at most, of echoes at rest; their number must not depend on the threads
+constexpr int64_t kEchoesOfPart = 2048;  // at least, for each group: adding up the parts must cost little
 
 Method choose_method(Method asked, int64_t expected_echoes) {
   if (asked != Method::kAuto) return asked;
@@ -64,7 +64,8 @@ void validate_sampling(const TimeSampling& sampling, int num_chirps) {
   require_finite(sampling.slope.data(), weights, "sampling.slope");
   for (const std::vector<double>* rows : {&sampling.second_derivative, &sampling.third_derivative}) {
     const char* name = rows == &sampling.second_derivative ? "sampling.second_derivative" : "sampling.third_derivative";
-    require(rows->size() == sampling.second_derivative.size(), name, "must be empty only where the other is, values", rows->size());
+    require(rows->size() == sampling.second_derivative.size(), name, "must be empty only where the other is, values",
+            rows->size());
     require(rows->empty() || rows->size() == weights, name, "must be empty or have shape [chirps, order]", rows->size());
     require_finite(rows->data(), rows->size(), name);
   }
@@ -100,16 +101,13 @@ size_t run_of_one_sampling(std::span<const Echoes> blocks) {
 
 Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
                          const SynthesisOptions& options)
-    : waveform_(waveform),
-      num_groups_(num_groups),
-      method_(choose_method(options.method, expected_echoes)),
+    : waveform_(waveform), num_groups_(num_groups), method_(choose_method(options.method, expected_echoes)),
       memory_(SynthesisMemory::take()) {
   waveform.validate();
   require(num_channels >= 1, "num_channels", "must be at least 1", num_channels);
   require(num_groups >= 1, "num_groups", "must be at least 1", num_groups);
   require(expected_echoes >= 0, "expected_echoes", "must not be negative", expected_echoes);
-  require(options.tolerance >= 1e-13 && options.tolerance <= 0.1, "tolerance", "must be in [1e-13, 0.1]",
-          options.tolerance);
+  require(options.tolerance >= 1e-13 && options.tolerance <= 0.1, "tolerance", "must be in [1e-13, 0.1]", options.tolerance);
   if (method_ == Method::kNufft) {
     const auto nufft = make_nufft(waveform.num_samples, options.tolerance);
     spread_ = options.per_sample ? nullptr : nufft.get();
@@ -143,8 +141,7 @@ void Synthesizer::validate(const Echoes& block) const {
   const size_t echoes = static_cast<size_t>(block.num_echoes);
   const size_t values = echoes * block.sampling.num_rows;
   require(block.delay.size() == values, "delay", "must have shape [num_rows, num_echoes]", block.delay.size());
-  require(block.amplitude.size() == values, "amplitude", "must have shape [num_rows, num_echoes]",
-          block.amplitude.size());
+  require(block.amplitude.size() == values, "amplitude", "must have shape [num_rows, num_echoes]", block.amplitude.size());
   require(block.group.empty() || block.group.size() == echoes, "group", "must be empty or have one entry per echo",
           block.group.size());
   for (const uint32_t group : block.group) {
@@ -274,8 +271,14 @@ void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const Ro
     for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
       const auto weights = static_cast<size_t>(chirp * sampling.order);
       const int count = static_cast<int>(std::min<int64_t>(kChirpGroup, chirps.end - chirp));
-      const TileAtChirps at{memory_->tiles.nodes(tile), tile.count, sampling.num_rows, sampling.order, count,
-                            &sampling.first_row[static_cast<size_t>(chirp)], &sampling.value[weights], &sampling.slope[weights]};
+      const TileAtChirps at{memory_->tiles.nodes(tile),
+                            tile.count,
+                            sampling.num_rows,
+                            sampling.order,
+                            count,
+                            &sampling.first_row[static_cast<size_t>(chirp)],
+                            &sampling.value[weights],
+                            &sampling.slope[weights]};
       signal_kernels().add_tile(*model_, spreading, at, rows[tile.group] + chirp * stride, stride);
     }
   }

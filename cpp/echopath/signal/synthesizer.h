@@ -59,7 +59,7 @@ class Synthesizer {
 
  private:
   struct ChannelRows {
-    std::vector<RowMemory> moving;           // [group], each [chirp, re/im, row length]; none until a moving echo of it comes
+    std::vector<RowMemory> moving;  // [group], each [chirp, re/im, row length]; none until a moving echo of it comes
     std::vector<std::vector<double>> still;  // [group], each [re/im, row length], of every chirp; empty if nothing rests
   };
   using RowsOfGroups = std::vector<double*>;  // [group], null for a group without rows
@@ -81,9 +81,9 @@ class Synthesizer {
   ChirpSequence waveform_;
   int num_groups_;
   Method method_;
-  std::shared_ptr<const ToneMethod> tones_;         // of all echoes, or of those at rest
-  const SpreadMethod* spread_ = nullptr;            // tones_ where moving echoes go through tiles
-  std::shared_ptr<const ToneMethod> sample_rows_;   // form of the rows of moving echoes, where there is a per_sample_
+  std::shared_ptr<const ToneMethod> tones_;        // of all echoes, or of those at rest
+  const SpreadMethod* spread_ = nullptr;           // tones_ where moving echoes go through tiles
+  std::shared_ptr<const ToneMethod> sample_rows_;  // form of the rows of moving echoes, where there is a per_sample_
   std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
   std::unique_ptr<SynthesisMemory> memory_;

@@ -123,7 +123,7 @@ Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings,
 // `scale` is in m^2 per W at the antenna port for 1 W transmitted.
 RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, Job* job) {
   const ReceivedPower power = received_power(paths, job, {0, receiver});
-  return {scale * power.power,   scale * power.standard_error, scale * power.coherent,     scale * power.coherent_error,
+  return {scale * power.power,   scale * power.standard_error, scale * power.coherent, scale * power.coherent_error,
           scale * power.diffuse, scale * power.diffuse_error,  paths.frame.error_db};
 }
 

@@ -26,8 +26,8 @@ struct Taper {
 };
 
 // Transforms [rows, samples] to [rows, range].
-std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows,
-                                                  const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
+std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
+                                                  int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
   const int64_t num_samples = static_cast<int64_t>(taper.weight.size());
   std::vector<std::complex<double>> profiles(num_rows * num_ranges);
@@ -103,11 +103,12 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   require(zero_pad >= 1 && zero_pad <= kMaxZeroPad, "zero_pad", "must be in [1, 64]", zero_pad);
   const ChirpSequence& waveform = radar.waveform;
   const int64_t longest = int64_t{zero_pad} * std::max(waveform.num_samples, waveform.num_chirps);
-  require(longest <= std::numeric_limits<int>::max(), "zero_pad", "times num_samples and num_chirps must be below 2^31", longest);
+  require(longest <= std::numeric_limits<int>::max(), "zero_pad", "times num_samples and num_chirps must be below 2^31",
+          longest);
   const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
   const int64_t num_rows = num_maps * waveform.num_chirps;
-  require(size == num_rows * waveform.num_samples, "cube",
-          "must have transmitters x receivers x chirps x samples values", size);
+  require(size == num_rows * waveform.num_samples, "cube", "must have transmitters x receivers x chirps x samples values",
+          size);
 
   RangeDoppler map;
   map.window = window;

@@ -17,7 +17,7 @@ struct RangeDoppler {
   std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |peak|^2 is received power
   Window window;                             // on both axes
   int zero_pad = 1;
-  bool is_tdm_compensated = false;           // whether the phase between TDM slots has been taken out
+  bool is_tdm_compensated = false;  // whether the phase between TDM slots has been taken out
 };
 
 // Returns the range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for
@@ -31,8 +31,8 @@ std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, 
 // zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies only).
 // The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the threads.
 // Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar,
-                           const Window& window = {}, int zero_pad = 1, Job* job = nullptr);
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window = {},
+                           int zero_pad = 1, Job* job = nullptr);
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 

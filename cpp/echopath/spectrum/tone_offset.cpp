@@ -32,8 +32,8 @@ double cubic(const double* x, const double (&y)[4], double at) {
 ToneOffset::ToneOffset(const std::vector<double>& samples, int zero_pad)
     : samples_(samples), step_(1.0 / zero_pad),
       // A response one cell away turns by the window's middle, (n - 1) / 2.
-      phasor_(std::polar(1.0, kPi * step_ * (static_cast<double>(samples.size()) - 1.0) /
-                                  static_cast<double>(samples.size()))) {
+      phasor_(
+          std::polar(1.0, kPi * step_ * (static_cast<double>(samples.size()) - 1.0) / static_cast<double>(samples.size()))) {
   for (int i = 0; i < kNodes; ++i) difference_.push_back(difference(node(i)));
 }
 

@@ -21,9 +21,9 @@ class ToneOffset {
   double difference(double offset) const;
 
   std::vector<double> samples_;
-  double step_;                       // of a cell, in bins
+  double step_;  // of a cell, in bins
   std::complex<double> phasor_;
-  std::vector<double> difference_;    // of the two ratios, at kNodes offsets
+  std::vector<double> difference_;  // of the two ratios, at kNodes offsets
 };
 
 }  // namespace echopath

@@ -10,16 +10,16 @@ class KeptGeometry;  // trace/geometry/kept_geometry.h
 
 struct TraceSettings {
   int64_t num_rays = 1000000;
-  int max_bounces = 4;          // 1 to 64; hits on mirrors count
+  int max_bounces = 4;  // 1 to 64; hits on mirrors count
   uint64_t seed = 1;
-  double start_time = 0.0;      // s, first sample of the frame
+  double start_time = 0.0;  // s, first sample of the frame
   PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
   // 1 to 64: independent lattices that share the rays; errors follow from their differences. Each is as fine as its share of
   // the rays.
   int batches = 1;
   Sampler sampler = Sampler::kLattice;  // of the launch directions
-  LaunchGuide guide;  // by default the rule of launch.h
+  LaunchGuide guide;                    // by default the rule of launch.h
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

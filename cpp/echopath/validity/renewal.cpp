@@ -36,8 +36,8 @@ class Renewer {
  public:
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
       : paths_(paths), radar_(carried_radar(paths, radar)), preparer_(paths, whole_patches(*paths.scene)),
-        walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber), pose_(*paths.scene, time),
-        origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
+        walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber),
+        pose_(*paths.scene, time), origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
         loan_(kept, *paths.scene, pose_, origin_, job), geometry_(*loan_),
         scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
 

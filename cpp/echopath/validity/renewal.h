@@ -7,10 +7,10 @@
 namespace echopath {
 
 struct Renewal {
-  Paths paths;               // those that are still there, in their order; frame and radar are those of the trace
-  int64_t num_blocked = 0;   // paths left out: something stands in the way of a leg, or an image has left its mirror
-  int64_t num_lost = 0;      // paths left out: a point of reflection has left its surface
-  int64_t num_moved = 0;     // paths whose points of reflection were found anew
+  Paths paths;              // those that are still there, in their order; frame and radar are those of the trace
+  int64_t num_blocked = 0;  // paths left out: something stands in the way of a leg, or an image has left its mirror
+  int64_t num_lost = 0;     // paths left out: a point of reflection has left its surface
+  int64_t num_moved = 0;    // paths whose points of reflection were found anew
 };
 
 // Returns the paths of a record as they are at `time` (s) for the trace's own antennas, carried along by the motion of

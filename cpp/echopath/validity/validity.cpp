@@ -18,11 +18,11 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kPathsPerBlock = 2048;
-constexpr int64_t kBlocksInFlight = 64;      // fixed: sums must not depend on the number of threads
+constexpr int64_t kBlocksInFlight = 64;  // fixed: sums must not depend on the number of threads
 constexpr size_t kTimesAtOnce = kBaseCheckTimes;
-constexpr int64_t kSearchRays = 1 << 17;       // for new surface, over all times and antennas
-constexpr int64_t kMinSearchRays = 1 << 12;  // of one look
-constexpr uint64_t kSearchSeed = 0x6c6f6f6b;   // combined with the trace's seed, so that the lattice differs from the trace's
+constexpr int64_t kSearchRays = 1 << 17;      // for new surface, over all times and antennas
+constexpr int64_t kMinSearchRays = 1 << 12;   // of one look
+constexpr uint64_t kSearchSeed = 0x6c6f6f6b;  // combined with the trace's seed, so that the lattice differs from the trace's
 
 // Holds sums of power over paths, W.
 struct Sums {
@@ -131,8 +131,8 @@ class ValidityCheck {
  private:
   // Holds what is kept of a path between the times.
   struct Finding : PathFinding {
-    int num_times = 0;          // times that it needs
-    size_t object = 0;          // node index
+    int num_times = 0;  // times that it needs
+    size_t object = 0;  // node index
     bool is_field = false;
     Echo at_trace;
   };
@@ -167,7 +167,8 @@ class ValidityCheck {
       std::vector<ObjectsAtTimes> parts(static_cast<size_t>(std::min(kBlocksInFlight, num_blocks - begin)));
       const auto check = [&](int64_t i) {
         const int64_t from = (begin + i) * kPathsPerBlock;
-        const std::span<const size_t> some(members.data() + from, static_cast<size_t>(std::min(kPathsPerBlock, size - from)));
+        const std::span<const size_t> some(members.data() + from,
+                                           static_cast<size_t>(std::min(kPathsPerBlock, size - from)));
         check_block(some, first, parts[static_cast<size_t>(i)]);
       };
       parallel_for(static_cast<int64_t>(parts.size()), check, job_);
@@ -182,7 +183,8 @@ class ValidityCheck {
     FrameCheck::Scratch scratch(local.longest);
     std::vector<Echo> traced;
     if (first == 0) traced = check_.at_trace(indices);
-    else for (const size_t member : members) traced.push_back(findings_[member].at_trace);
+    else
+      for (const size_t member : members) traced.push_back(findings_[member].at_trace);
     std::vector<Echo> posed = check_.at_posed_times(indices, local, traced);
     for (size_t i = 0; i < members.size(); ++i) {
       Finding& found = findings_[members[i]];
@@ -202,7 +204,8 @@ class ValidityCheck {
   }
 
   // Adds the echoes at the base times only, at which surface is looked for, too.
-  void add_echoes(const Finding& found, double weight, size_t first, std::span<const Echo> echoes, ObjectsAtTimes& sums) const {
+  void add_echoes(const Finding& found, double weight, size_t first, std::span<const Echo> echoes,
+                  ObjectsAtTimes& sums) const {
     if (first >= num_base()) return;
     std::vector<ObjectAtTime>& times = sums[found.object];
     times.resize(num_base());
@@ -242,8 +245,8 @@ class ValidityCheck {
     ValidityArrays& arrays = report_.arrays;
     const auto size = static_cast<size_t>(paths_.num_paths());
     const auto resize = [size](auto&... columns) { (columns.resize(size), ...); };
-    resize(arrays.power, arrays.phase_error, arrays.stepped_phase_error, arrays.left, arrays.blocked, arrays.receiver_blocked,
-           arrays.turned, arrays.cosine_change);
+    resize(arrays.power, arrays.phase_error, arrays.stepped_phase_error, arrays.left, arrays.blocked,
+           arrays.receiver_blocked, arrays.turned, arrays.cosine_change);
   }
 
   void keep(size_t path, const PathFinding& found) {
@@ -263,7 +266,8 @@ class ValidityCheck {
     if (!check_.anything_moves() && !check_.has_array()) return;
     const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
     SurfaceSearchSettings look;
-    look.num_rays = std::max(kMinSearchRays, kSearchRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
+    look.num_rays =
+        std::max(kMinSearchRays, kSearchRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
     look.seed = paths_.frame.seed ^ kSearchSeed;
     KeptGeometry then, now;
     for (size_t time = 0; time < num_times; ++time) {
@@ -334,7 +338,8 @@ class ValidityCheck {
     }
     const double floor = std::max(strongest * std::pow(10.0, -0.1 * kDynamicRangeDb), report_.cell_noise);
     for (ObjectValidity& object : report_.objects) object.is_in_range = std::max(object.power, object.seen_power) >= floor;
-    std::stable_sort(report_.objects.begin(), report_.objects.end(), [](const auto& a, const auto& b) { return a.power > b.power; });
+    std::stable_sort(report_.objects.begin(), report_.objects.end(),
+                     [](const auto& a, const auto& b) { return a.power > b.power; });
   }
 
   size_t object_of(size_t mesh_id) const { return static_cast<size_t>(paths_.scene->meshes()[mesh_id].object); }
@@ -376,10 +381,10 @@ class ValidityCheck {
   BandSum::Band band_;
   bool keeps_arrays_;
   Job* job_;
-  std::vector<Finding> findings_;                                              // of the sample
-  std::vector<KindSums> of_object_{paths_.scene->nodes().size()};              // by node index
-  ObjectsAtTimes at_times_;                                                    // at the base times, for the first antennas
-  std::map<size_t, SeenSums> seen_;                                            // by node index
+  std::vector<Finding> findings_;                                  // of the sample
+  std::vector<KindSums> of_object_{paths_.scene->nodes().size()};  // by node index
+  ObjectsAtTimes at_times_;                                        // at the base times, for the first antennas
+  std::map<size_t, SeenSums> seen_;                                // by node index
   Validity report_;
 };
 

@@ -11,8 +11,8 @@
 namespace echopath {
 
 struct ValiditySettings {
-  std::vector<double> times;  // s, at which paths are checked; empty: those of check_times.h
-  bool arrays = false;        // keep what is found of each path
+  std::vector<double> times;                            // s, at which paths are checked; empty: those of check_times.h
+  bool arrays = false;                                  // keep what is found of each path
   SpecularPoints specular = SpecularPoints::kMaterial;  // of the replay that is to be certified
 };
 
@@ -35,7 +35,7 @@ inline constexpr double kObjectLimit = 0.05;     // the same for the power of an
 inline constexpr double kObjectErrorDb = 0.5;    // dB, the same for the error of an object's power over the frame
 inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
 inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
-inline constexpr int kMaxKeyframes = 1000000;   // most that are advised; no frame has as many chirps
+inline constexpr int kMaxKeyframes = 1000000;    // most that are advised; no frame has as many chirps
 inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
 
 // Holds what was found of each path, [P] each, with hits in the order of the record; empty unless asked for.
@@ -53,14 +53,14 @@ struct ValidityArrays {
 // Describes the paths whose last hit that is no image lies on the object, and all of the object that is seen.
 struct ObjectValidity : ValidityShares {
   std::string name;
-  double disappears = 0.0;    // share of its power that is blocked or lost, mean over the times of the check
-  double error_db = 0.0;      // dB, power over the frame: replayed over true, with new surface; 0: not known
-  double seen_power = 0.0;    // W, largest power with which the times of the check see it
-  double turn = 0.0;          // rad, how far it turns within the frame at most
+  double disappears = 0.0;  // share of its power that is blocked or lost, mean over the times of the check
+  double error_db = 0.0;    // dB, power over the frame: replayed over true, with new surface; 0: not known
+  double seen_power = 0.0;  // W, largest power with which the times of the check see it
+  double turn = 0.0;        // rad, how far it turns within the frame at most
   bool has_paths = false;
-  bool is_in_range = false;   // less than kDynamicRangeDb below the strongest, and above the noise of a range-Doppler cell
-  bool is_too_fast = false;   // turns so often that the times of the check may miss something
-  bool is_asked = true;       // the record is whole or has paths of it; what a selection leaves out is not missed
+  bool is_in_range = false;  // less than kDynamicRangeDb below the strongest, and above the noise of a range-Doppler cell
+  bool is_too_fast = false;  // turns so often that the times of the check may miss something
+  bool is_asked = true;      // the record is whole or has paths of it; what a selection leaves out is not missed
 
   // Returns whether it needs no mending: its paths serve the frame, or it is out of the dynamic range.
   bool ok() const;
@@ -68,8 +68,8 @@ struct ObjectValidity : ValidityShares {
 
 struct Validity {
   int64_t num_paths = 0;
-  std::vector<double> times;          // s, of the check
-  bool has_array = false;             // some antenna stands elsewhere than those of the trace
+  std::vector<double> times;  // s, of the check
+  bool has_array = false;     // some antenna stands elsewhere than those of the trace
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
   // rad: weighted by power; the largest over the paths that carry any; the largest by motion alone (for the trace's own

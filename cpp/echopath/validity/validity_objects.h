@@ -21,8 +21,8 @@ class BandSum {
   double power() const;  // W, mean over the band
 
  private:
-  double power_ = 0.0;                                       // W
-  std::array<std::complex<double>, kFrequencies> field_{};   // sqrt(W)
+  double power_ = 0.0;                                      // W
+  std::array<std::complex<double>, kFrequencies> field_{};  // sqrt(W)
 };
 
 struct ObjectAtTime {

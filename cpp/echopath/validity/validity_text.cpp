@@ -52,11 +52,14 @@ std::string most_of(const Validity& report, double ValidityShares::* share) {
 
 std::string slide_warning(const Validity& report) {
   const std::string found = percent(report.shares.slid) + " of the power is off by more than " + radians(kPhaseLimit) +
-                            " of phase (at most " + radians(report.largest_phase_error) + "): its points of reflection slide. ";
-  const bool helps = report.specular == SpecularPoints::kMaterial && report.stepped_phase_error < 0.5 * report.largest_phase_error;
+                            " of phase (at most " + radians(report.largest_phase_error) +
+                            "): its points of reflection slide. ";
+  const bool helps =
+      report.specular == SpecularPoints::kMaterial && report.stepped_phase_error < 0.5 * report.largest_phase_error;
   const std::string step = "replay=\"fermat\" leaves at most " + radians(report.stepped_phase_error) + "; or trace ";
   const std::string advice = found + (helps ? step : "Trace ");
-  if (report.motion_phase_error <= kPhaseLimit) return advice + "parts of the array by themselves: it is too wide for one trace.";
+  if (report.motion_phase_error <= kPhaseLimit)
+    return advice + "parts of the array by themselves: it is too wide for one trace.";
   return advice + "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
 }
 
@@ -76,7 +79,8 @@ std::string fast_warning(const ObjectValidity& object, const Validity& report) {
   std::ostringstream turns;
   turns.precision(3);
   turns << object.turn / kTwoPi;
-  return "'" + object.name + "' turns up to " + turns.str() + " times within the frame: " + std::to_string(report.times.size()) +
+  return "'" + object.name + "' turns up to " + turns.str() +
+         " times within the frame: " + std::to_string(report.times.size()) +
          " times of the check may miss what becomes of it. Trace shorter frames.";
 }
 
@@ -103,7 +107,8 @@ std::string object_warning(const ObjectValidity& object, const Validity& report)
     std::ostringstream error;
     error.precision(2);
     error << std::showpos << object.error_db;
-    concerns += (concerns.empty() ? "" : "; ") + std::string("its power over the frame is off by about ") + error.str() + " dB";
+    concerns +=
+        (concerns.empty() ? "" : "; ") + std::string("its power over the frame is off by about ") + error.str() + " dB";
   }
   return concerns.empty() ? concerns : "Of '" + object.name + "' " + concerns + ". " + advice(report);
 }
@@ -144,7 +149,8 @@ std::string object_lines(const Validity& report) {
 
 int Validity::keyframes() const {
   double most = std::max(1.0, std::sqrt(motion_phase_error / kPhaseLimit));
-  if (std::max({shares.blocked, shares.left, shares.new_surface}) > kValidityLimit) most = std::max<double>(most, kOcclusionKeyframes);
+  if (std::max({shares.blocked, shares.left, shares.new_surface}) > kValidityLimit)
+    most = std::max<double>(most, kOcclusionKeyframes);
   for (const ObjectValidity& object : objects) {
     const bool changes = std::max({object.blocked, object.new_surface, object.disappears}) > kObjectLimit;
     if (object.ok() || !(changes || !object.has_paths)) continue;
@@ -170,7 +176,7 @@ std::vector<std::string> Validity::warnings() const {
   }
   if (shares.turned > kValidityLimit) {
     out.push_back(percent(shares.turned) + " of the power comes from surfaces that turn to or away from the rays within "
-                  "the frame. Trace shorter frames.");
+                                           "the frame. Trace shorter frames.");
   }
   if (shares.new_surface > kValidityLimit) {
     out.push_back(percent(shares.new_surface) + " of what is seen " + where(*this) +
@@ -190,7 +196,8 @@ std::string Validity::text() const {
   if (has_array) text += " and this array";
   for (const std::string& warning : found) text += "\n* " + warning;
   const std::string sizes = radians(rms_phase_error) + " rms, " + radians(largest_phase_error) + " at most";
-  text += line(specular == SpecularPoints::kMaterial ? "reflection slides" : "slides, one Newton step", sizes + ", more than " + radians(kPhaseLimit) + " for " + percent(shares.slid) + " of the power");
+  text += line(specular == SpecularPoints::kMaterial ? "reflection slides" : "slides, one Newton step",
+               sizes + ", more than " + radians(kPhaseLimit) + " for " + percent(shares.slid) + " of the power");
   text += line("reflection leaves its surface", percent(shares.left));
   text += line("something comes in the way", percent(shares.blocked));
   text += line("surfaces turn", percent(shares.turned));

@@ -39,9 +39,7 @@ TEST(NearestNames, WhatTheWordBeginsComesFirst) {
   EXPECT_EQ(nearest_names("ped", {"bed", "pedestrian", "red"}, 2), (Names{"pedestrian", "bed"}));
 }
 
-TEST(NearestNames, KeepsTheGivenOrderAmongEquals) {
-  EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"}));
-}
+TEST(NearestNames, KeepsTheGivenOrderAmongEquals) { EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"})); }
 
 TEST(NearestNames, GivesAtMostTheCountAskedFor) {
   EXPECT_EQ(nearest_names("a", {"a", "b", "c"}, 2).size(), 2u);

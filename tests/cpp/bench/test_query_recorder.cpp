@@ -28,7 +28,9 @@ auto numbers_of(const QueryLog::Ray& ray) {
 }
 
 void expect_same(const QueryLog& a, const QueryLog& b) {
-  const auto same_call = [](const QueryLog::Call& x, const QueryLog::Call& y) { return x.kind == y.kind && x.num_rays == y.num_rays; };
+  const auto same_call = [](const QueryLog::Call& x, const QueryLog::Call& y) {
+    return x.kind == y.kind && x.num_rays == y.num_rays;
+  };
   EXPECT_TRUE(std::equal(a.calls.begin(), a.calls.end(), b.calls.begin(), b.calls.end(), same_call));
   const auto same_ray = [](const QueryLog::Ray& x, const QueryLog::Ray& y) { return numbers_of(x) == numbers_of(y); };
   EXPECT_TRUE(std::equal(a.rays.begin(), a.rays.end(), b.rays.begin(), b.rays.end(), same_ray));

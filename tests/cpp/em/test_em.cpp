@@ -13,17 +13,17 @@ using Complex = std::complex<double>;
 const Complex kEpsilon(4.0, -0.2);
 constexpr double kTableTolerance = 6e-6;  // the published table has five digits
 constexpr double kRounding = 1e-15;
-constexpr double kThreeDigits = 5e-4;       // of figures printed with three decimals
+constexpr double kThreeDigits = 5e-4;  // of figures printed with three decimals
 // Of the first order in the cosine, 1e-9: 2 / sqrt(eps - 1) times that for TE, eps times more for TM.
 constexpr double kGrazingTe = 1e-8, kGrazing = 1e-7;
-constexpr double kConductor = 1e-5;         // of the first order in 1 / sqrt(eps), 1e-6
+constexpr double kConductor = 1e-5;  // of the first order in 1 / sqrt(eps), 1e-6
 
 double cos_deg(double angle_deg) { return std::cos(angle_deg * kPi / 180.0); }
 
 // |Gamma| of eps = 4 - 0.2j, computed independently for the physics notes of the project.
 TEST(Fresnel, MagnitudesMatchTheReferenceTable) {
-  const double table[][3] = {{0, .33384, .33384}, {45, .45196, .20426}, {60, .56625, .05290}, {80, .81886, .42958},
-                             {89, .98008, .92252}};
+  const double table[][3] = {
+      {0, .33384, .33384}, {45, .45196, .20426}, {60, .56625, .05290}, {80, .81886, .42958}, {89, .98008, .92252}};
   for (const auto& [angle_deg, te, tm] : table) {
     EXPECT_NEAR(std::abs(fresnel_te(kEpsilon, cos_deg(angle_deg))), te, kTableTolerance) << angle_deg;
     EXPECT_NEAR(std::abs(fresnel_tm(kEpsilon, cos_deg(angle_deg))), tm, kTableTolerance) << angle_deg;

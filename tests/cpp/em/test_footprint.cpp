@@ -10,16 +10,16 @@
 namespace echopath {
 namespace {
 
-constexpr double kSum = 1e-12;             // of a sum of 1.6e5 terms, which is exact to rounding
-constexpr double kThreeSums = 1e-11;       // of three of them, whose weights add up to 7
+constexpr double kSum = 1e-12;        // of a sum of 1.6e5 terms, which is exact to rounding
+constexpr double kThreeSums = 1e-11;  // of three of them, whose weights add up to 7
 constexpr double kRounding = 1e-15;
-constexpr double kAnyRounding = 1e-8;      // relative, of phases of g^2 / h where 1 / h has lost digits
-constexpr double kStep = 0.05;             // of 1, between curvatures that differ by 2 %
-constexpr double kFlat = 1e-3;             // what cells that turn by a tenth of a cycle may lose
-constexpr double kFlatTop = 1e-4;          // likewise, at half a radian
-constexpr double kFaded = 1e-6;            // of cells that turn by two cycles
-constexpr double kSmallCell = 1e-5;        // of the first order in phases of 1e-5
-constexpr double kSmallCellSquared = 1e-9; // of their second order
+constexpr double kAnyRounding = 1e-8;       // relative, of phases of g^2 / h where 1 / h has lost digits
+constexpr double kStep = 0.05;              // of 1, between curvatures that differ by 2 %
+constexpr double kFlat = 1e-3;              // what cells that turn by a tenth of a cycle may lose
+constexpr double kFlatTop = 1e-4;           // likewise, at half a radian
+constexpr double kFaded = 1e-6;             // of cells that turn by two cycles
+constexpr double kSmallCell = 1e-5;         // of the first order in phases of 1e-5
+constexpr double kSmallCellSquared = 1e-9;  // of their second order
 
 // Trapezoidal sum over +-9 standard deviations: exact to rounding for a Gaussian times a resolved phase.
 std::complex<double> gaussian_mean(const FootprintPhase& phase, double spread) {
@@ -69,7 +69,8 @@ TEST(Footprint, SecondOrderIsTheProductOfBothAxesForCellsOfAnySize) {
         const std::complex<double> width(1.0, kVariance * h);
         expected *= std::exp(-0.5 * kVariance * g * g / width) / std::sqrt(width);
       }
-      EXPECT_LT(std::abs(second_order_footprint(phase, kSpread) - expected), kAnyRounding * std::abs(expected)) << h1 << " " << h2;
+      EXPECT_LT(std::abs(second_order_footprint(phase, kSpread) - expected), kAnyRounding * std::abs(expected))
+          << h1 << " " << h2;
     }
   }
 }

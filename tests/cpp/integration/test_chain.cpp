@@ -18,7 +18,7 @@ namespace {
 using namespace testing;
 
 constexpr double kAdditivity = 1e-12;  // relative to the largest sample
-constexpr double kCell = 0.15;           // m and m/s: of the nearest cell
+constexpr double kCell = 0.15;         // m and m/s: of the nearest cell
 
 // A box of two groups, "front" facing -x and "back", around the origin.
 const char* const kTwoPlates = R"(

@@ -96,7 +96,8 @@ RayNeed need_of(const std::string& stratum, double rays, double weight) {
 
 TEST(ShareOut, ScarceRaysServeModestNeedsTwiceAndGoToTheOthersByWeight) {
   const RayNeeds needs{{need_of("large ghost", 25000.0, 0.5), need_of("small", 10.0, 1.0), need_of("large", 1e5, 1.0),
-                        need_of("medium", 500.0, 1.0)}, 0.0};
+                        need_of("medium", 500.0, 1.0)},
+                       0.0};
   const RayShares shares = share_out(needs, 3020.0);
   EXPECT_NEAR(shares.at("small"), 20.0, 20.0 * kShares);
   EXPECT_NEAR(shares.at("medium"), 1000.0, 1000.0 * kShares);

@@ -137,10 +137,14 @@ struct HandMadeGlob {
   std::vector<uint32_t> meshes;
 };
 const std::vector<HandMadeGlob> kGlobs{
-    {"street", {kWallLeft, kWallRight, kFloor}},    {"street/wall*", {kWallLeft, kWallRight}},
-    {"street/floor", {kFloor}},                     {"pedestrian/*", {kTorso, kArmLeft, kArmRight}},
-    {"pedestrian/arms", {kArmLeft, kArmRight}},     {"*left", {kWallLeft, kArmLeft}},
-    {"pedestrian/arms/righ?", {kArmRight}},         {"*", {0, 1, 2, 3, 4, 5}},
+    {"street", {kWallLeft, kWallRight, kFloor}},
+    {"street/wall*", {kWallLeft, kWallRight}},
+    {"street/floor", {kFloor}},
+    {"pedestrian/*", {kTorso, kArmLeft, kArmRight}},
+    {"pedestrian/arms", {kArmLeft, kArmRight}},
+    {"*left", {kWallLeft, kArmLeft}},
+    {"pedestrian/arms/righ?", {kArmRight}},
+    {"*", {0, 1, 2, 3, 4, 5}},
 };
 
 class TwinGenerator {
@@ -175,8 +179,8 @@ class TwinGenerator {
     const TwinText base = depth > 0 && below(3) == 0 ? group(depth - 1) : hit();
     const uint32_t count = below(3);
     const std::string low = std::to_string(count), high = std::to_string(count + below(3));
-    const std::vector<std::string> operators{"", "", "", "*", "+", "?", join({"{", low, "}"}), join({"{", low, ",}"}),
-                                             join({"{", low, ",", high, "}"})};
+    const std::vector<std::string> operators{
+        "", "", "", "*", "+", "?", join({"{", low, "}"}), join({"{", low, ",}"}), join({"{", low, ",", high, "}"})};
     const std::string& chosen = operators[below(static_cast<uint32_t>(operators.size()))];
     return {join({base.expression, space(), chosen}), join({"(?:", base.regex, ")", chosen})};
   }

@@ -22,9 +22,9 @@ constexpr double kRounding = 1e-12;
 
 // What one part is made of in each cell.
 struct Truth {
-  Complex field;        // coherent, sqrt(W)
-  double noise = 0.0;   // sqrt(W), deviation of the field that one batch finds
-  double diffuse = 0.0; // W
+  Complex field;         // coherent, sqrt(W)
+  double noise = 0.0;    // sqrt(W), deviation of the field that one batch finds
+  double diffuse = 0.0;  // W
 };
 
 // Sums of batches [B, draws] as they are defined, one channel.

@@ -17,9 +17,7 @@ namespace {
 using namespace testing;
 
 // The walker is the object, the walls and the floor stand apart.
-SurfaceMap walker_first() {
-  return map_surfaces(*make_street(), {{"walker", {"pedestrian"}}, {"floor", {"street/floor"}}});
-}
+SurfaceMap walker_first() { return map_surfaces(*make_street(), {{"walker", {"pedestrian"}}, {"floor", {"street/floor"}}}); }
 
 HandMadePath path_over(const std::vector<uint32_t>& meshes) {
   HandMadePath path;
@@ -53,7 +51,7 @@ const std::vector<Known> kKnown{
     {{kWallLeft, kTorso, kWallLeft, kWallRight}, {"walker", 2, 4, {"street/wall_left", "street/wall_right"}}, 100},
     {{kFloor}, {"floor", 0, 1, {}}, 111},
     {{kFloor, kTorso}, {"walker", 1, 2, {"floor"}}, 112},
-    {{kFloor, kFloor, kTorso}, {"walker", 1, 2, {"floor"}}, 112},           // within another object
+    {{kFloor, kFloor, kTorso}, {"walker", 1, 2, {"floor"}}, 112},                   // within another object
     {{kWallLeft, kWallLeft, kTorso}, {"walker", 1, 3, {"street/wall_left"}}, 100},  // two bounces, two images
     {{kWallLeft, kFloor}, {"floor", 1, 2, {"street/wall_left"}}, 112},
     {{kWallLeft, kWallRight}, {}, 0},
@@ -73,13 +71,19 @@ TEST(Families, AreSortedWithTheBackgroundLast) {
   std::reverse(paths.begin(), paths.end());
   std::vector<std::string> names;
   for (const Family& family : find_families(make_paths(paths), walker_first()).families) names.push_back(family.name());
-  const std::vector<std::string> expected{
-      "walker", "walker: type 1, order 2 via floor", "walker: type 1, order 2 via street/wall_left",
-      "walker: type 2, order 2 via street/wall_left", "walker: type 2, order 2 via street/wall_right",
-      "walker: type 1, order 3 via street/wall_left", "walker: type 1, order 3 via street/wall_right, street/wall_left",
-      "walker: type 2, order 3 via street/wall_left", "walker: type 2, order 3 via street/wall_left, street/wall_right",
-      "walker: type 2, order 4 via street/wall_left, street/wall_right", "floor",
-      "floor: type 1, order 2 via street/wall_left", "background"};
+  const std::vector<std::string> expected{"walker",
+                                          "walker: type 1, order 2 via floor",
+                                          "walker: type 1, order 2 via street/wall_left",
+                                          "walker: type 2, order 2 via street/wall_left",
+                                          "walker: type 2, order 2 via street/wall_right",
+                                          "walker: type 1, order 3 via street/wall_left",
+                                          "walker: type 1, order 3 via street/wall_right, street/wall_left",
+                                          "walker: type 2, order 3 via street/wall_left",
+                                          "walker: type 2, order 3 via street/wall_left, street/wall_right",
+                                          "walker: type 2, order 4 via street/wall_left, street/wall_right",
+                                          "floor",
+                                          "floor: type 1, order 2 via street/wall_left",
+                                          "background"};
   EXPECT_EQ(names, expected);
 }
 

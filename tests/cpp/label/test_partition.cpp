@@ -13,18 +13,15 @@ namespace {
 
 using namespace testing;
 
-const std::vector<NamedSelection> kRoute{{"direct", "T 'pedestrian' R"}, {"wall", "T .* 'street/wall*' .* R"},
-                                         {"floor", "T .* 'street/floor' .* R"}};
+const std::vector<NamedSelection> kRoute{
+    {"direct", "T 'pedestrian' R"}, {"wall", "T .* 'street/wall*' .* R"}, {"floor", "T .* 'street/floor' .* R"}};
 const std::vector<NamedSelection> kBody{{"arms", Selection::touches("pedestrian/arms")}};
 
 Paths some_paths() { return make_paths(random_paths(5000, 0, 4, 9)); }
 
 TEST(Partition, FirstMatchWinsAndTheRestIsOther) {
-  const Paths paths = make_paths({{{kTorso, false}},
-                                  {{kFloor, false}, {kWallLeft, false}},
-                                  {{kFloor, false}},
-                                  {{kTorso, true}, {kTorso, true}},
-                                  {}});
+  const Paths paths = make_paths(
+      {{{kTorso, false}}, {{kFloor, false}, {kWallLeft, false}}, {{kFloor, false}}, {{kTorso, true}, {kTorso, true}}, {}});
   const Partition partition = make_partition(paths, kRoute);
   EXPECT_EQ(partition.names, (std::vector<std::string>{"direct", "wall", "floor", "other"}));
   EXPECT_EQ(partition.group, (std::vector<uint32_t>{0, 1, 2, 3, 3}));
@@ -49,11 +46,14 @@ TEST(Partition, IsDisjointAndComplete) {
 // Many parts look at the bits of meshes first.
 TEST(Partition, ManyPartsTakeWhatEachWouldAlone) {
   const Paths paths = some_paths();
-  const std::vector<NamedSelection> parts{{"one on a wall", "T 'street/wall*' R"}, {"both walls", "T .* 'street/wall_left' .* 'street/wall_right' .* R"},
-                                          {"a wall or an arm", "T ['street/wall_left' 'pedestrian/arms'] S'street/floor'* R"},
-                                          {"no floor", "T [^ 'street/floor']{2} R"}, {"rough", "T D .* R"},
-                                          {"neither", ~Selection::touches("pedestrian") & Selection::num_bounces(2, 3)},
-                                          {"torso or long", Selection::touches("pedestrian/torso") | Selection::num_bounces(4)}};
+  const std::vector<NamedSelection> parts{
+      {"one on a wall", "T 'street/wall*' R"},
+      {"both walls", "T .* 'street/wall_left' .* 'street/wall_right' .* R"},
+      {"a wall or an arm", "T ['street/wall_left' 'pedestrian/arms'] S'street/floor'* R"},
+      {"no floor", "T [^ 'street/floor']{2} R"},
+      {"rough", "T D .* R"},
+      {"neither", ~Selection::touches("pedestrian") & Selection::num_bounces(2, 3)},
+      {"torso or long", Selection::touches("pedestrian/torso") | Selection::num_bounces(4)}};
   const Partition partition = make_partition(paths, parts);
   std::vector<uint32_t> first(paths.offsets.size(), static_cast<uint32_t>(parts.size()));
   for (auto part = static_cast<uint32_t>(parts.size()); part-- > 0;) {

@@ -23,8 +23,8 @@ TEST(LinearMotion, FollowsTheRotationFormulaOfRodrigues) {
   const Vec3 rate(0.3, -1.2, 0.7), point(2, -1, 0.5);
   const double time = 1.7, angle = rate.norm() * time;
   const Vec3 axis = rate / rate.norm();
-  const Vec3 expected = point * std::cos(angle) + axis.cross(point) * std::sin(angle) +
-                        axis * axis.dot(point) * (1.0 - std::cos(angle));
+  const Vec3 expected =
+      point * std::cos(angle) + axis.cross(point) * std::sin(angle) + axis * axis.dot(point) * (1.0 - std::cos(angle));
   EXPECT_LT((LinearMotion(Vec3::Zero(), rate).at(time) * point - expected).norm(), kRounding);
 }
 

@@ -13,7 +13,7 @@ namespace {
 using test::expect_error;
 using Invalid = std::invalid_argument;
 
-constexpr double kRounding = 1e-14;  // of a few operations on numbers of order 1
+constexpr double kRounding = 1e-14;                       // of a few operations on numbers of order 1
 constexpr double kShoulderRate = 1.3, kElbowRate = -2.1;  // rad/s
 
 Transform at_position(const Vec3& position) {

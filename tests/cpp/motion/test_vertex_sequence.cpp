@@ -52,7 +52,7 @@ TEST(VertexSequence, CubicErrorOfARotatingPointFallsWithTheFourthPowerOfTheStep)
 }
 
 TEST(VertexSequence, LinearErrorOfARotatingPointIsTheSagOfTheChord) {
-  const double half_step = 0.5 * kAngularRate / 40.0;  // rad
+  const double half_step = 0.5 * kAngularRate / 40.0;                                     // rad
   EXPECT_NEAR(worst_error(41, Interpolation::kLinear), 1.0 - std::cos(half_step), 1e-6);  // sampled in time
 }
 

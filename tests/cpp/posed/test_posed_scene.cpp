@@ -13,8 +13,7 @@ constexpr double kRounding = 1e-13;  // of products of a few transforms with ent
 MaterialPtr metal() { return std::make_shared<const Material>(Material::metal()); }
 
 MeshPtr triangle() {
-  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                                      std::vector<Triangle>{{0, 1, 2}});
+  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
 }
 
 // 4x4 matrices written out, to share nothing with the transforms of the program.
@@ -46,8 +45,7 @@ Transform transform(const Matrix4& matrix) {
   return result;
 }
 
-Node node(const std::string& name, int parent, const Matrix4& placement,
-          std::shared_ptr<const Motion> motion = nullptr) {
+Node node(const std::string& name, int parent, const Matrix4& placement, std::shared_ptr<const Motion> motion = nullptr) {
   Node made;
   made.name = name;
   made.parent = parent;
@@ -59,10 +57,10 @@ Node node(const std::string& name, int parent, const Matrix4& placement,
 // A car that drives and turns, on it a turret that rotates, on that a radar dish at rest, tilted.
 Scene driving_scene() {
   Scene scene;
-  scene.add(node("car", -1, shift(10, 2, 0) * turn_z(0.5),
-                 std::make_shared<const LinearMotion>(Vec3(3, 1, 0), Vec3(0, 0, 0.2))));
-  scene.add(node("turret", 0, shift(0, 0, 1.5) * turn_x(0.1),
-                 std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, 2))));
+  scene.add(
+      node("car", -1, shift(10, 2, 0) * turn_z(0.5), std::make_shared<const LinearMotion>(Vec3(3, 1, 0), Vec3(0, 0, 0.2))));
+  scene.add(
+      node("turret", 0, shift(0, 0, 1.5) * turn_x(0.1), std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, 2))));
   Node dish = node("dish", 1, shift(0.4, 0, 0.2) * turn_x(-0.7));
   dish.mesh = triangle(), dish.material = metal();
   scene.add(dish);
@@ -114,8 +112,8 @@ TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
   flag.mesh = triangle(), flag.material = metal();
   std::vector<Vec3> raised = triangle()->vertices();
   raised[1].z() = 2.0;
-  flag.deformation = std::make_shared<const VertexSequence>(
-      std::vector<double>{0, 2}, std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
+  flag.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 2},
+                                                            std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
   scene.add(flag);
   const Vec3 expected = (shift(1, 0, 0) * shift(0, 0, 4) * turn_z(kPi / 2) * Eigen::Vector4d(1, 0, 1, 1)).head<3>();
   EXPECT_LT((PosedScene(scene, 1.0).world_vertices(0)[1] - expected).norm(), kRounding);

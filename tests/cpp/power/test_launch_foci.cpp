@@ -16,11 +16,11 @@ namespace {
 using namespace testing;
 
 constexpr double kRounding = 1e-12;
-constexpr double kDiffuse = 5e-3;   // relative, of the power of 20 000 hits of a lattice
-constexpr double kWeakest = 1e-3;   // of the whole, of ways that are compared
-constexpr double kOfAWay = 0.05;    // relative, of ways over two diffuse hits, which are drawn at random
-constexpr double kFlank = 1e-3;     // relative, of the rim of a focus
-constexpr double kSphereDb = 0.1;   // of a metal sphere of 1280 facets against geometrical optics, with foci or without
+constexpr double kDiffuse = 5e-3;  // relative, of the power of 20 000 hits of a lattice
+constexpr double kWeakest = 1e-3;  // of the whole, of ways that are compared
+constexpr double kOfAWay = 0.05;   // relative, of ways over two diffuse hits, which are drawn at random
+constexpr double kFlank = 1e-3;    // relative, of the rim of a focus
+constexpr double kSphereDb = 0.1;  // of a metal sphere of 1280 facets against geometrical optics, with foci or without
 
 Stratum cone(const Vec3& axis, double versine, double density, int focus_of = -1) {
   Stratum made;
@@ -34,7 +34,8 @@ Stratum cone(const Vec3& axis, double versine, double density, int focus_of = -1
 
 TEST(LaunchFoci, PartsOfADirectionAddUpToOne) {
   const Vec3 first = Vec3::UnitX(), second = Vec3(1, 0.01, 0).normalized();
-  const std::vector<Stratum> strata = {cone(first, 0.01, 1e3), cone(first, 2e-4, 5e3, 0), cone(second, 1e-4, 2e4, 0), cone(first, 1.0, 7.0)};
+  const std::vector<Stratum> strata = {cone(first, 0.01, 1e3), cone(first, 2e-4, 5e3, 0), cone(second, 1e-4, 2e4, 0),
+                                       cone(first, 1.0, 7.0)};
   const LaunchFoci foci(strata);
   EXPECT_EQ(foci.owner(2), 0);
   EXPECT_EQ(foci.rays_of_owner(3, first), 1.0);
@@ -56,7 +57,9 @@ TEST(LaunchFoci, PartsOfADirectionAddUpToOne) {
 
 TEST(LaunchFoci, WeightIsOneInTheCoreAndFadesWithLevelEnds) {
   const Stratum focus = cone(Vec3::UnitX(), 5e-5, 1.0);  // 10 mrad
-  const auto weight = [&](double radius) { return focus_weight(focus, Vec3(std::cos(0.01 * radius), std::sin(0.01 * radius), 0)); };
+  const auto weight = [&](double radius) {
+    return focus_weight(focus, Vec3(std::cos(0.01 * radius), std::sin(0.01 * radius), 0));
+  };
   EXPECT_EQ(weight(0.59), 1.0);
   EXPECT_EQ(weight(1.01), 0.0);
   EXPECT_NEAR(weight(0.8), 0.5, kFlank);
@@ -123,7 +126,8 @@ TEST(LaunchFoci, LeaveDiffusePowerAsItIs) {
 TEST(LaunchFoci, LeaveTheEchoOfASphereAsItIs) {
   const Scene scene = two_balls(false);
   // Geometrical optics: the wave front that meets the sphere at the distance r spreads as if it came from r a/(a + 2 r) behind it.
-  const double wavelength = kSpeedOfLight / radar().waveform.start_frequency, radius = 0.1, range = std::sqrt(101.0) - radius;
+  const double wavelength = kSpeedOfLight / radar().waveform.start_frequency, radius = 0.1,
+               range = std::sqrt(101.0) - radius;
   const double field = wavelength / (4.0 * kPi * range) * radius / (2.0 * (radius + range)), expected = field * field;
   for (const int batches : {1, 4}) {
     const double power = received_power(of_left(shot(scene, guide(), batches))).power;

@@ -17,7 +17,8 @@ using namespace testing;
 
 constexpr double kAtRim = 0.3, kInside = 1.6;  // cells from a line that cuts the surface: surely at it, surely not
 constexpr double kDistance = 10.0;             // m
-constexpr double kOfRidge = 8e-4;  // of the unfiltered power, that a limb's cells may hold; 1.8e-3 if all along its ridge counted
+constexpr double kOfRidge =
+    8e-4;  // of the unfiltered power, that a limb's cells may hold; 1.8e-3 if all along its ridge counted
 
 Paths shot(const Scene& scene, int64_t num_rays = 6000, int batches = 1, const Vec3& receiver = Vec3::Zero()) {
   TraceSettings settings;
@@ -77,7 +78,13 @@ TEST(Outline, OfAPlateIsItsRimInEachBatch) {
 TEST(Outline, HasTheCreasesWithinAMesh) {
   Scene scene;
   const double back = kDistance + 0.4;
-  add_mesh(scene, "roof", {{back, -0.5, -0.5}, {kDistance, 0, -0.5}, {back, 0.5, -0.5}, {back, -0.5, 0.5}, {kDistance, 0, 0.5}, {back, 0.5, 0.5}},
+  add_mesh(scene, "roof",
+           {{back, -0.5, -0.5},
+            {kDistance, 0, -0.5},
+            {back, 0.5, -0.5},
+            {back, -0.5, 0.5},
+            {kDistance, 0, 0.5},
+            {back, 0.5, 0.5}},
            {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}, share(Material::metal()));
   expect_rim(shot(scene), [](const Vec3& point) {
     const double scale = kDistance / point.x();  // as seen from the radar
@@ -89,8 +96,15 @@ TEST(Outline, HasTheCreasesWithinAMesh) {
 TEST(Outline, HasTheStepsWithinAMesh) {
   Scene scene;
   const double back = kDistance + 0.3;
-  add_mesh(scene, "steps", {{kDistance, -0.5, -0.5}, {kDistance, 0, -0.5}, {kDistance, 0, 0.5}, {kDistance, -0.5, 0.5},
-                            {back, -0.5, -0.5}, {back, 0.5, -0.5}, {back, 0.5, 0.5}, {back, -0.5, 0.5}},
+  add_mesh(scene, "steps",
+           {{kDistance, -0.5, -0.5},
+            {kDistance, 0, -0.5},
+            {kDistance, 0, 0.5},
+            {kDistance, -0.5, 0.5},
+            {back, -0.5, -0.5},
+            {back, 0.5, -0.5},
+            {back, 0.5, 0.5},
+            {back, -0.5, 0.5}},
            {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
   expect_rim(shot(scene), [](const Vec3& point) {
     const double scale = kDistance / point.x();

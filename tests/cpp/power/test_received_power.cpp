@@ -18,11 +18,11 @@ constexpr int kSeeds = 1000;
 // relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
 constexpr double kErrorOfErrors = 0.15;
 constexpr double kFourSigma = 4.0;
-constexpr double kPlateDb = 0.1;         // the promise for a plate
-constexpr double kGhostDb = 0.05;        // of families of ghosts
-constexpr double kImage = 1e-6;          // relative: single precision of weights
+constexpr double kPlateDb = 0.1;   // the promise for a plate
+constexpr double kGhostDb = 0.05;  // of families of ghosts
+constexpr double kImage = 1e-6;    // relative: single precision of weights
 constexpr double kRounding = 1e-12;
-constexpr double kErrorsShow = 1e-4;     // relative: a filter that is at work
+constexpr double kErrorsShow = 1e-4;  // relative: a filter that is at work
 // relative: two thousand echoes of a sphere, of which a few stand, summed in another order
 constexpr double kCancelled = 1e-11;
 constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
@@ -69,8 +69,7 @@ struct Spread {
   double mean_power = 0.0, spread = 0.0, rms_error = 0.0;
 };
 
-Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays,
-                 Footprint footprint = Footprint::kSecondOrder) {
+Spread spread_of(const Scene& scene, const Radar& radar, int64_t num_rays, Footprint footprint = Footprint::kSecondOrder) {
   std::vector<double> powers;
   Spread out;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -222,7 +221,8 @@ TEST(ReceivedPower, OfGroupsIsThatOfSelectionsToTheLastBit) {
   for (const int batches : {1, 4}) {
     const Paths paths = shot(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), 4000, 1, batches);
     std::vector<uint32_t> group(static_cast<size_t>(paths.num_paths()));
-    for (size_t p = 0; p < group.size(); ++p) group[p] = (paths.hits_of(static_cast<int64_t>(p))->mesh_id + paths.num_bounces[p]) % 3;
+    for (size_t p = 0; p < group.size(); ++p)
+      group[p] = (paths.hits_of(static_cast<int64_t>(p))->mesh_id + paths.num_bounces[p]) % 3;
     const std::vector<uint32_t> together(group.size());
     const Sorting sortings[] = {{together, 1}, {group, 4}};
     const std::vector<ReceivedPower> powers = received_powers(paths, sortings).back();
@@ -257,7 +257,8 @@ TEST(ReceivedPower, IntervalHoldsWhatTheFilterTakesAway) {
 // Two-sided 95 % quantiles as any table of Student's t has them.
 TEST(PowerInterval, QuantilesOfStudent) {
   constexpr double kThreeDigits = 1e-3;
-  const std::pair<int, double> table[] = {{1, 12.706}, {3, 3.182}, {4, 2.776}, {5, 2.571}, {7, 2.365}, {10, 2.228}, {63, 1.998}};
+  const std::pair<int, double> table[] = {{1, 12.706}, {3, 3.182},  {4, 2.776}, {5, 2.571},
+                                          {7, 2.365},  {10, 2.228}, {63, 1.998}};
   for (const auto& [degrees, quantile] : table) EXPECT_NEAR(student_t95(degrees) / quantile, 1.0, kThreeDigits) << degrees;
 }
 

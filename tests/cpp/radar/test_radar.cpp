@@ -9,13 +9,18 @@
 namespace echopath {
 namespace {
 
-constexpr double kRounding = 1e-12;  // relative, a handful of double operations
-constexpr double kLastDigit = 1e-3;     // of figures printed with five digits
-constexpr double kTimeRounding = 1e-18; // s, of some milliseconds
+constexpr double kRounding = 1e-12;      // relative, a handful of double operations
+constexpr double kLastDigit = 1e-3;      // of figures printed with five digits
+constexpr double kTimeRounding = 1e-18;  // s, of some milliseconds
 
 ChirpSequence reference() {
-  return {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = 512, .sampling_rate = 20e6, .num_chirps = 128,
-          .chirp_interval = 30e-6, .real = false};
+  return {.start_frequency = 77e9,
+          .bandwidth = 1e9,
+          .num_samples = 512,
+          .sampling_rate = 20e6,
+          .num_chirps = 128,
+          .chirp_interval = 30e-6,
+          .real = false};
 }
 
 Radar one_by_one() {
@@ -111,9 +116,9 @@ TEST(Radar, EachBadFieldIsNamed) {
       {"transmitters[0].position", [](Radar& r) { r.transmitters[0].position.x() = std::nan(""); }},
       {"receivers[1].polarization",
        [](Radar& r) {
-         r.receivers.resize(2);
-         r.receivers[1].polarization = Vec3(0, 0, 2);
-       }},
+    r.receivers.resize(2);
+    r.receivers[1].polarization = Vec3(0, 0, 2);
+  }},
       {"receivers[0].orientation", [](Radar& r) { r.receivers[0].orientation.coeffs() *= 1.01; }},
   };
   EXPECT_NO_THROW(one_by_one().validate());

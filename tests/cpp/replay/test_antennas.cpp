@@ -10,8 +10,8 @@ namespace {
 
 using namespace testing;
 
-constexpr double kInterpolation = 2e-3;  // relative: tables in steps of 2 degrees, amplitudes of gains that fall to 0
-constexpr double kPhaseTolerance = 1e-3; // rad, the same for phases of up to 1.6 rad
+constexpr double kInterpolation = 2e-3;   // relative: tables in steps of 2 degrees, amplitudes of gains that fall to 0
+constexpr double kPhaseTolerance = 1e-3;  // rad, the same for phases of up to 1.6 rad
 constexpr double kWavenumber = kTwoPi * 77e9 / kSpeedOfLight;
 constexpr double kRounding = 1e-12;
 

@@ -12,9 +12,9 @@ namespace {
 
 using namespace testing;
 
-constexpr double kSizeTolerance = 0.02;     // dB: both traces sample the same plate with footprints below a wavelength
-constexpr double kDistance = 400.0;         // m: plates lie within 0.04 rad of a plane wave
-constexpr double kSide = 0.1;               // m
+constexpr double kSizeTolerance = 0.02;  // dB: both traces sample the same plate with footprints below a wavelength
+constexpr double kDistance = 400.0;      // m: plates lie within 0.04 rad of a plane wave
+constexpr double kSide = 0.1;            // m
 
 // A flat sheet of n x n squares with corner vertices at the origin and (0, 1, 1).
 Surface grid(uint32_t n) {
@@ -193,9 +193,9 @@ TEST(Deforming, APlateThatTurnsBelowAnUnevenPlacementStretches) {
   plate.name = "plate";
   plate.parent = 0;
   const double half = 5e-4;
-  plate.mesh = std::make_shared<Mesh>(
-      std::vector<Vec3>{{0, -half, -half}, {0, -half, half}, {0, half, half}, {0, half, -half}},
-      std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+  plate.mesh =
+      std::make_shared<Mesh>(std::vector<Vec3>{{0, -half, -half}, {0, -half, half}, {0, half, half}, {0, half, -half}},
+                             std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
   plate.material = lambert(0.5);
   plate.motion = std::make_shared<const LinearMotion>(Vec3::Zero(), Vec3(0, 0, kRate));
   scene.add(plate);

@@ -117,8 +117,8 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   int num_turned = 0, num_facing = 0;
   for (const int64_t path : indices) {
     const double first = facing(paths, preparer, radar, path, start), last = facing(paths, preparer, radar, path, end);
-    const auto one = std::find_if(failed.begin(), failed.end(),
-                                  [path](const UnfollowedPath& other) { return other.path == path; });
+    const auto one =
+        std::find_if(failed.begin(), failed.end(), [path](const UnfollowedPath& other) { return other.path == path; });
     if ((first > 0) != (last > 0)) {
       ++num_turned;
       ASSERT_NE(one, failed.end());

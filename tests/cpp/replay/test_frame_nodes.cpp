@@ -13,7 +13,7 @@ using namespace testing;
 
 constexpr double kPolynomialTolerance = 1e-13;  // relative: rounding of about ten terms
 constexpr double kStart = 0.25;                 // s
-constexpr double kDerivatives = 1e-9;            // of derivatives that are made of differences of ten values
+constexpr double kDerivatives = 1e-9;           // of derivatives that are made of differences of ten values
 
 Radar two_transmitters(int num_chirps) {
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
@@ -62,8 +62,8 @@ TEST(ChebyshevNodes, KinksAtBreakpointsDoNoHarm) {
   const double kink = 0.4 * radar.frame_duration();
   const auto f = [&](double t) { return t < kink ? t / kink : 1.0 - 2.0 * (t - kink) / kink; };
   const auto derivative = [&](double t) { return t < kink ? 1.0 / kink : -2.0 / kink; };
-  const auto [value, slope] = errors(chebyshev_nodes(radar, kStart, {kStart - 1.0, kStart + kink, kStart + 9.0}, 6), radar,
-                                     f, derivative);
+  const auto [value, slope] =
+      errors(chebyshev_nodes(radar, kStart, {kStart - 1.0, kStart + kink, kStart + 9.0}, 6), radar, f, derivative);
   EXPECT_LT(value, kPolynomialTolerance);
   EXPECT_LT(slope * kink, 100 * kPolynomialTolerance);
   const auto [without, ignored] = errors(chebyshev_nodes(radar, kStart, {}, 6), radar, f, derivative);
@@ -79,8 +79,8 @@ TEST(ChebyshevNodes, TailShowsWhatThePolynomialLacks) {
     const double x = 2.0 * nodes.times[k] / frame - 1.0;
     const double fourth = 8 * std::pow(x, 4) - 8 * x * x + 1, fifth = 16 * std::pow(x, 5) - 20 * x * x * x + 5 * x;
     const double value = 7.0 + 0.5 * fourth + 0.25 * fifth;
-    before_last += nodes.tail[k] * value;   // T_4
-    last += nodes.tail[6 + k] * value;      // T_5
+    before_last += nodes.tail[k] * value;  // T_4
+    last += nodes.tail[6 + k] * value;     // T_5
   }
   EXPECT_NEAR(before_last, 0.5, kPolynomialTolerance);
   EXPECT_NEAR(last, 0.25, kPolynomialTolerance);

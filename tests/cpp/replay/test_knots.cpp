@@ -35,7 +35,8 @@ Radar long_frame() {
   return radar;
 }
 
-void add_body(Scene& scene, const std::string& name, Surface surface, const Vec3& place, std::shared_ptr<const Motion> motion) {
+void add_body(Scene& scene, const std::string& name, Surface surface, const Vec3& place,
+              std::shared_ptr<const Motion> motion) {
   Node node;
   node.name = name;
   node.placement = Eigen::Translation3d(place) * Transform::Identity();

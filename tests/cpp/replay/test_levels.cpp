@@ -8,13 +8,13 @@ namespace {
 
 using namespace testing;
 
-constexpr double kFarRange = 2000.0;         // m: far field of targets up to 0.2 m
-constexpr double kPlateTolerance = 0.1;      // dB, the promise for a plate at broadside
-constexpr double kMainLobeTolerance = 0.3;   // dB
+constexpr double kFarRange = 2000.0;                                    // m: far field of targets up to 0.2 m
+constexpr double kPlateTolerance = 0.1;                                 // dB, the promise for a plate at broadside
+constexpr double kMainLobeTolerance = 0.3;                              // dB
 constexpr double kDihedralTolerance = 0.15, kTrihedralTolerance = 0.2;  // dB
-constexpr double kMirrorTolerance = 1e-6;    // relative: single precision of the weight
+constexpr double kMirrorTolerance = 1e-6;                               // relative: single precision of the weight
 constexpr double kSphereTolerance = 0.1, kCoarseSphereTolerance = 0.3;  // dB, by the edges of the mesh
-constexpr double kLengthRounding = 1e-9;          // m
+constexpr double kLengthRounding = 1e-9;                                // m
 const Vec3 kCentre(kFarRange, 0, 0);
 
 double rcs_dbsm(const Paths& paths) { return decibel(rcs_of(std::norm(coherent_sum(paths)), kFarRange, 77e9)); }
@@ -92,9 +92,9 @@ double smooth_sphere_error_db(double radius, int subdivisions, int64_t num_rays)
 }
 
 TEST(SmoothSphere, FewRaysGiveTheCrossSection) {
-  EXPECT_LT(smooth_sphere_error_db(0.1, 5, 1 << 13), kSphereTolerance);   // ka = 161
-  EXPECT_LT(smooth_sphere_error_db(2.0, 6, 1 << 13), kSphereTolerance);   // ka = 3228, edges of 0.4 sqrt(a lambda)
-  EXPECT_LT(smooth_sphere_error_db(0.1, 3, 1 << 13), kCoarseSphereTolerance);   // edges of 0.76 sqrt(a lambda)
+  EXPECT_LT(smooth_sphere_error_db(0.1, 5, 1 << 13), kSphereTolerance);        // ka = 161
+  EXPECT_LT(smooth_sphere_error_db(2.0, 6, 1 << 13), kSphereTolerance);        // ka = 3228, edges of 0.4 sqrt(a lambda)
+  EXPECT_LT(smooth_sphere_error_db(0.1, 3, 1 << 13), kCoarseSphereTolerance);  // edges of 0.76 sqrt(a lambda)
 }
 
 // Two squares of 0.1 m at right angles, the bisector toward the radar: 8 pi a^2 b^2 / lambda^2.

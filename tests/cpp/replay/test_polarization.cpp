@@ -8,10 +8,10 @@ namespace {
 
 using namespace testing;
 
-constexpr double kRange = 2000.0;            // m
-constexpr double kCornerTolerance = 0.15;    // dB
-constexpr double kModesTolerance = 0.1;      // dB
-constexpr double kNull = -30.0;              // dB below full
+constexpr double kRange = 2000.0;          // m
+constexpr double kCornerTolerance = 0.15;  // dB
+constexpr double kModesTolerance = 0.1;    // dB
+constexpr double kNull = -30.0;            // dB below full
 
 struct Levels {
   double co, cross;  // dBsm

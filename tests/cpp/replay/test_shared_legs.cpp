@@ -3,8 +3,8 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/replay/evaluate/shared_leg_plan.h"
-#include "echopath/replay/evaluate/single_bounces.h"
 #include "echopath/replay/evaluate/shared_legs.h"
+#include "echopath/replay/evaluate/single_bounces.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "support/path_by_path.h"
 #include "support/scenes.h"
@@ -56,8 +56,8 @@ Scene scene_of_all_kinds(bool has_mirrors = true) {
   add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
   add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
   add_body(scene, "far", {9, -1, 0.3}, Transform(Eigen::Scaling(1.0, 2.0, 0.5)), turns);
-  add_body(scene, "plate", {7, -2, 0.2}, Transform(Eigen::AngleAxisd(0.7, Vec3(0.1, 0.2, 1).normalized()) * Eigen::Scaling(1.0, 3.0, 1e-6)),
-           nullptr);
+  add_body(scene, "plate", {7, -2, 0.2},
+           Transform(Eigen::AngleAxisd(0.7, Vec3(0.1, 0.2, 1).normalized()) * Eigen::Scaling(1.0, 3.0, 1e-6)), nullptr);
   return scene;
 }
 
@@ -92,7 +92,8 @@ struct Differences {
 };
 
 // Amplitudes are held against what they are where polarisations agree, since these may cross.
-Differences differences(const Paths& paths, const Radar& radar, double time, SpecularPoints specular = SpecularPoints::kMaterial) {
+Differences differences(const Paths& paths, const Radar& radar, double time,
+                        SpecularPoints specular = SpecularPoints::kMaterial) {
   const std::vector<int64_t> indices = all_of(paths);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
@@ -164,7 +165,8 @@ TEST(SharedLegs, PathsAtManyNodesAreThoseEvaluatedOneByOne) {
         const PathValue& value = values[num_receivers + rx];
         const size_t at = node * indices.size() + p;
         ASSERT_NEAR(echoes[rx].delay[at] * kSpeedOfLight / value.length, 1.0, kRounding);
-        ASSERT_LT(std::abs(echoes[rx].amplitude[at] - value.amplitude), kFilterRounding * std::max(value.largest, kFaintest));
+        ASSERT_LT(std::abs(echoes[rx].amplitude[at] - value.amplitude),
+                  kFilterRounding * std::max(value.largest, kFaintest));
       }
     }
   }
@@ -309,7 +311,8 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   EXPECT_TRUE(any_chain([&](const SharedLegPlan::Chain& chain) {
     return chain.inner != SharedLegPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
   }));
-  EXPECT_TRUE(any_chain([&](const SharedLegPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
+  EXPECT_TRUE(
+      any_chain([&](const SharedLegPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
   EXPECT_GT(plan.inner.size(), 10u);
 }
 

@@ -12,8 +12,8 @@ using namespace testing;
 
 constexpr double kLaw = 1e-9;  // of unit vectors, after Newton's method has ended
 constexpr double kRounding = 1e-15;
-constexpr double kFalls = 0.05;         // of the error before: a step of Newton squares it
-constexpr double kSecondOrder = 0.01;   // relative: the next order of the slide
+constexpr double kFalls = 0.05;        // of the error before: a step of Newton squares it
+constexpr double kSecondOrder = 0.01;  // relative: the next order of the slide
 
 // Spheres (radius > 0: convex towards the path), planes (radius 0) and images, in order; the last hit is a material point.
 struct Chain {

@@ -30,9 +30,9 @@ Scene street() {
   body.name = "body";
   const int parent = scene.add(body);
   const Vec3 foot(10.0, 0.5, 0.0);
-  const std::vector<std::pair<Vec3, Vec3>> parts = {
-      {{0, 0, 1.15}, {.12, .2, .32}},   {{0, 0, 1.66}, {.10, .08, .12}},  {{0, .10, .45}, {.08, .08, .45}},
-      {{0, -.10, .45}, {.08, .08, .45}}, {{0, .27, 1.15}, {.05, .05, .33}}, {{0, -.27, 1.15}, {.05, .05, .33}}};
+  const std::vector<std::pair<Vec3, Vec3>> parts = {{{0, 0, 1.15}, {.12, .2, .32}},    {{0, 0, 1.66}, {.10, .08, .12}},
+                                                    {{0, .10, .45}, {.08, .08, .45}},  {{0, -.10, .45}, {.08, .08, .45}},
+                                                    {{0, .27, 1.15}, {.05, .05, .33}}, {{0, -.27, 1.15}, {.05, .05, .33}}};
   for (size_t i = 0; i < parts.size(); ++i) {
     Surface surface = ellipsoid(foot + parts[i].first, parts[i].second, 4);
     Node node;

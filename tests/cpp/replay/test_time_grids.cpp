@@ -36,7 +36,8 @@ TEST(TimeGrids, ChirpsHaveOneNodeInTheMiddleOfTheWindowsOfTheirTransmitter) {
   const double middle = 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate;
   ASSERT_EQ(nodes.times.size(), 16u);
   for (int chirp = 0; chirp < 16; ++chirp) {
-    EXPECT_NEAR(nodes.times[static_cast<size_t>(chirp)], 0.5 + (2 * chirp + 1) * waveform.chirp_interval + middle, kRounding);
+    EXPECT_NEAR(nodes.times[static_cast<size_t>(chirp)], 0.5 + (2 * chirp + 1) * waveform.chirp_interval + middle,
+                kRounding);
   }
   EXPECT_EQ(transmitter_of(ChirpGrid{1}), 1);
 }

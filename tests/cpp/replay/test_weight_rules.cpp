@@ -15,10 +15,10 @@ namespace {
 
 using namespace testing;
 
-constexpr double kSphereTolerance = 0.005;   // relative
-constexpr double kDihedralTolerance = 0.2;   // dB, of the mean of 32 seeds
+constexpr double kSphereTolerance = 0.005;  // relative
+constexpr double kDihedralTolerance = 0.2;  // dB, of the mean of 32 seeds
 constexpr int kSeeds = 32;
-constexpr double kHemisphereTolerance = 0.01;  // relative: three standard errors and 0.2 % of facets
+constexpr double kHemisphereTolerance = 0.01;   // relative: three standard errors and 0.2 % of facets
 constexpr double kEnhancementTolerance = 0.05;  // three standard deviations over seeds, by interference of different legs
 
 // Integrating sphere of radius 3 m with Lambert walls: lambda^2 rho / (4 pi^2 R^2 (1 - rho)) of the transmitted power
@@ -37,8 +37,8 @@ TEST(WeightRules, IntegratingSphere) {
     EXPECT_NEAR(power.power / truth, 1.0, kSphereTolerance) << reflectivity;
     EXPECT_LT(power.standard_error / truth, kSphereTolerance) << reflectivity;
     // Reversals aside, one path a bounce: three, and as many as the roulette lets happen.
-    const auto num_bounces = std::count_if(paths.flags.begin(), paths.flags.end(),
-                                           [](uint32_t flags) { return (flags & kReversedPath) == 0; });
+    const auto num_bounces =
+        std::count_if(paths.flags.begin(), paths.flags.end(), [](uint32_t flags) { return (flags & kReversedPath) == 0; });
     EXPECT_LT(num_bounces, static_cast<int64_t>(100000 * (3.2 + 1.0 / (1.0 - reflectivity)))) << reflectivity;
   }
 }

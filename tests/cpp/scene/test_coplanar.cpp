@@ -17,10 +17,10 @@ namespace {
 using test::expect_error;
 using Invalid = std::invalid_argument;
 
-constexpr double kAreaShare = 1e-7;     // of 1 m^2: corners at UTM coordinates are known to 9e-10 m
-constexpr double kDistance = 4e-9;      // m, likewise
-constexpr double kRounding = 1e-12;      // m^2
-constexpr double kMovedNormal = 1e-9;    // m and m^2: seen along the normal of the one or of the other
+constexpr double kAreaShare = 1e-7;    // of 1 m^2: corners at UTM coordinates are known to 9e-10 m
+constexpr double kDistance = 4e-9;     // m, likewise
+constexpr double kRounding = 1e-12;    // m^2
+constexpr double kMovedNormal = 1e-9;  // m and m^2: seen along the normal of the one or of the other
 const Vec3 kUtm(450'000.0, 5'400'000.0, 120.0);
 
 struct Soup {
@@ -112,10 +112,10 @@ TEST(Coplanar, TwentyMicrometresApartIsNoOverlapAndFiveAreOne) {
 TEST(Coplanar, WhatMerelyTouchesDoesNotOverlap) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     const Transform place = random_place(seed, kUtm);
-    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 0, 1, 1), place), 0.0);          // along an edge
-    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 0.3, 1, 1), place), 0.0);        // edges that are shifted
-    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 1, 1, 1), place), 0.0);          // at a corner
-    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1 - 5e-6, 0, 1, 1), place), 0.0);   // by less than the distance
+    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 0, 1, 1), place), 0.0);         // along an edge
+    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 0.3, 1, 1), place), 0.0);       // edges that are shifted
+    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1, 1, 1, 1), place), 0.0);         // at a corner
+    EXPECT_EQ(area_between(rectangle(0, 0, 1, 1), rectangle(1 - 5e-6, 0, 1, 1), place), 0.0);  // by less than the distance
     EXPECT_NEAR(area_between(rectangle(0, 0, 1, 1), rectangle(1 - 1e-3, 0, 1, 1), place), 1e-3, 1e-5 * 1e-3 + kAreaShare);
   }
 }

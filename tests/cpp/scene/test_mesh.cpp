@@ -15,8 +15,7 @@ namespace {
 using test::expect_error;
 using Invalid = std::invalid_argument;
 
-const std::vector<Vec3> kCube = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+const std::vector<Vec3> kCube = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 const std::vector<Triangle> kCubeFaces = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                                           {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
 
@@ -37,8 +36,7 @@ void expect_manifold(const Mesh& mesh) {
   std::map<uint32_t, std::vector<std::pair<uint32_t, uint32_t>>> opposite_sides;  // of each vertex
   for (const Triangle& t : mesh.triangles()) {
     for (size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(++sides[std::make_pair(t[k], t[(k + 1) % 3])], 1)
-          << "two faces run through an edge in the same direction";
+      EXPECT_EQ(++sides[std::make_pair(t[k], t[(k + 1) % 3])], 1) << "two faces run through an edge in the same direction";
       opposite_sides[t[k]].push_back({t[(k + 1) % 3], t[(k + 2) % 3]});
     }
   }

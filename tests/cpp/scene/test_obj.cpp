@@ -91,14 +91,11 @@ TEST(Obj, KeepsCoordinatesInDouble) {
   EXPECT_NEAR(read_back.y(), -0.1, 1e-16);
 }
 
-TEST(Obj, ScalesByTheUnit) {
-  EXPECT_EQ(read("v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n", 1e-3)[0].mesh->area(), 0.5);
-}
+TEST(Obj, ScalesByTheUnit) { EXPECT_EQ(read("v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n", 1e-3)[0].mesh->area(), 0.5); }
 
 TEST(Obj, PassesOverWhatItDoesNotNeed) {
-  const auto meshes = read(
-      "# comment\r\nmtllib none.mtl\r\n  v 0 0 0 # origin\r\nvn 0 0 1\r\nvt 0 0\r\nv 1 0 \\\r\n 0\r\n"
-      "usemtl steel\r\ns off\r\nv 0 1 0 1.0\r\nl 1 2\r\n\r\nf 1/1/1 2/1/1 3/1/1 # face\r\n");
+  const auto meshes = read("# comment\r\nmtllib none.mtl\r\n  v 0 0 0 # origin\r\nvn 0 0 1\r\nvt 0 0\r\nv 1 0 \\\r\n 0\r\n"
+                           "usemtl steel\r\ns off\r\nv 0 1 0 1.0\r\nl 1 2\r\n\r\nf 1/1/1 2/1/1 3/1/1 # face\r\n");
   EXPECT_EQ(meshes[0].mesh->vertices(), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 

@@ -20,10 +20,8 @@ enum class Format { kAscii, kLittle, kBig };
 constexpr Format kFormats[] = {Format::kAscii, Format::kLittle, Format::kBig};
 
 // Coordinates that float cannot hold.
-const std::vector<Vec3> kVertices = {{5.4e6 + 0.123456789, -5.4e6, 0.1},
-                                     {5.4e6 + 1.0 / 3.0, 1e-300, 0.2},
-                                     {5.4e6, 3.0, -0.0},
-                                     {5.4e6 - 1, 2.0, 7e11 / 3.0}};
+const std::vector<Vec3> kVertices = {
+    {5.4e6 + 0.123456789, -5.4e6, 0.1}, {5.4e6 + 1.0 / 3.0, 1e-300, 0.2}, {5.4e6, 3.0, -0.0}, {5.4e6 - 1, 2.0, 7e11 / 3.0}};
 
 // Writes the values behind a header in one of the formats.
 class Body {
@@ -33,8 +31,7 @@ class Body {
   Body& put(Value value) {
     char text[64];
     if (format_ == Format::kAscii) {
-      std::snprintf(text, sizeof text, std::is_floating_point_v<Value> ? "%.17g\n" : "%.0f ",
-                    static_cast<double>(value));
+      std::snprintf(text, sizeof text, std::is_floating_point_v<Value> ? "%.17g\n" : "%.0f ", static_cast<double>(value));
       content_ += text;
       return *this;
     }
@@ -160,8 +157,7 @@ TEST(Ply, RefusesContentThatDoesNotFitItsHeader) {
   expect_refused(replaced(good, "3 0 1 2", "-3 0 1 2"), {"length"});
   expect_refused(replaced(good, "3 0 1 2", "3 0 1x 2"), {"line 23", "1x"});
   expect_refused(replaced(good, "element face 2", "element face 3"), {"ends too early"});
-  expect_refused(replaced(good, "element vertex 4", "element vertex 9000000000000000000"),
-                 {"line 23", "ends too early"});
+  expect_refused(replaced(good, "element vertex 4", "element vertex 9000000000000000000"), {"line 23", "ends too early"});
   expect_refused(replaced(two_triangles(Format::kLittle), "element vertex 4", "element vertex 9000000000000000000"),
                  {"ends too early"});
   expect_refused(replaced(good, "element face 2", "element none 2"), {"no faces"});

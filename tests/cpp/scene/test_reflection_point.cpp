@@ -36,7 +36,8 @@ TEST(ReflectionPoint, OfAPlaneLiesOnTheLineToTheImage) {
 TEST(ReflectionPoint, IsFoundAtAnyAngleAnywhereInTheTriangle) {
   for (const double height : {0.05, 0.3, 1.0, 5.0}) {
     for (const double across : {-1.9, -1.0, 0.0, 1.0, 1.9}) {
-      const std::array<Vec3, 3> corners = {Vec3(0, across - 2.0, 0), Vec3(2.165, across + 2.0, 0), Vec3(-2.165, across + 2.0, 0)};
+      const std::array<Vec3, 3> corners = {Vec3(0, across - 2.0, 0), Vec3(2.165, across + 2.0, 0),
+                                           Vec3(-2.165, across + 2.0, 0)};
       const auto found = find_reflection(reflecting_triangle(corners, {Vec3::UnitZ(), Vec3::UnitZ(), Vec3::UnitZ()}),
                                          Vec3(-10, 0, height), Vec3(10, 0, height));
       ASSERT_TRUE(found) << height << " " << across;
@@ -51,7 +52,9 @@ TEST(ReflectionPoint, IsNotBesideTheTriangleNorBetweenItsSides) {
 }
 
 TEST(ReflectionPoint, OfASphereIsTheNearestPoint) {
-  const auto at = [](double a, double b) -> Vec3 { return {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)}; };
+  const auto at = [](double a, double b) -> Vec3 {
+    return {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)};
+  };
   const std::array<Vec3, 3> corners = {at(0, 0), at(0.1, 0.02), at(-0.01, 0.1)};
   const ReflectingTriangle triangle = reflecting_triangle(corners, corners);
   const double distance = 4.0;
@@ -65,7 +68,8 @@ TEST(ReflectionPoint, OfASphereIsTheNearestPoint) {
 
 TEST(ReflectionPoint, OfACreaseIsThatOfItsFacet) {
   const std::array<Vec3, 3> corners = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
-  const ReflectingTriangle triangle = reflecting_triangle(corners, {Vec3(1, 0, 1).normalized(), Vec3::UnitZ(), Vec3::UnitZ()});
+  const ReflectingTriangle triangle =
+      reflecting_triangle(corners, {Vec3(1, 0, 1).normalized(), Vec3::UnitZ(), Vec3::UnitZ()});
   EXPECT_TRUE(triangle.is_flat());
 }
 

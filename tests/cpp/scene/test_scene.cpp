@@ -14,8 +14,7 @@ using test::expect_error;
 using Invalid = std::invalid_argument;
 
 MeshPtr triangle() {
-  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                                      std::vector<Triangle>{{0, 1, 2}});
+  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
 }
 
 Node named(const std::string& name, int parent = -1) {
@@ -76,8 +75,7 @@ std::vector<std::string> words(const std::string& letters) {
 
 TEST(Glob, AgreesWithItsDefinitionOnAllShortWords) {
   for (const std::string& glob : words("a*?")) {
-    for (const std::string& name : words("ab"))
-      EXPECT_EQ(glob_takes(glob, name), by_definition(glob, name)) << glob << name;
+    for (const std::string& name : words("ab")) EXPECT_EQ(glob_takes(glob, name), by_definition(glob, name)) << glob << name;
   }
 }
 
@@ -104,8 +102,7 @@ TEST(Scene, RefusesBadNodesByNameAndStaysAsItWas) {
   for (const std::string name : {"a/b", "a*", "a?", "it's", "\"a\"", "a\x1e", "\x1fz"}) {
     expect_error<Invalid>([&] { scene.add(named(name)); }, {"name", "free of", name});
   }
-  for (const std::string name : {" a", "a\t", "\n"})
-    expect_error<Invalid>([&] { scene.add(named(name)); }, {"white space"});
+  for (const std::string name : {" a", "a\t", "\n"}) expect_error<Invalid>([&] { scene.add(named(name)); }, {"white space"});
   expect_error<Invalid>([&] { scene.add(named("")); }, {"name", "empty"});
   expect_error<Invalid>([&] { scene.add(named("wall")); }, {"name", "unique", "wall"});
   expect_error<Invalid>([&] { scene.add(named("x", 7)); }, {"parent", "got 7"});
@@ -132,8 +129,8 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
   std::vector<Vec3> moved = vertices;
   for (Vec3& vertex : moved) vertex += Vec3(0, 0, 2);
   Node node = with_mesh("tie", -1, mesh);
-  node.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 1},
-                                                         std::vector<std::vector<Vec3>>{vertices, moved});
+  node.deformation =
+      std::make_shared<const VertexSequence>(std::vector<double>{0, 1}, std::vector<std::vector<Vec3>>{vertices, moved});
   Scene scene;
   scene.add(node);
   const std::vector<Vec3> half_way = world_vertices(scene, 0, 0.5);

@@ -55,10 +55,17 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
     for (int i = 0; i < 2; ++i) {
       rows[i].resize(4 * 2 * 1064);
       for (const EchoTiles::Tile& tile : tiles.tiles()) {
-        const TileAtChirps at{tiles.nodes(tile), tile.count, echoes.sampling.num_rows, echoes.sampling.order, 4,
-                              echoes.sampling.first_row.data(), echoes.sampling.value.data(), echoes.sampling.slope.data()};
+        const TileAtChirps at{tiles.nodes(tile),
+                              tile.count,
+                              echoes.sampling.num_rows,
+                              echoes.sampling.order,
+                              4,
+                              echoes.sampling.first_row.data(),
+                              echoes.sampling.value.data(),
+                              echoes.sampling.slope.data()};
         spoil_stack();
-        (i == 0 ? kernels_for<SignalKernels, InstructionSet::kBaseline>() : signal_kernels()).add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
+        (i == 0 ? kernels_for<SignalKernels, InstructionSet::kBaseline>() : signal_kernels())
+            .add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
       }
     }
     double largest = 0.0;

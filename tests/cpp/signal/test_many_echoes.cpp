@@ -71,7 +71,10 @@ double error_against_direct(const ChirpSequence& w, const Echoes& echoes, double
 
 TEST(ManyEchoes, NufftHoldsItsToleranceHoweverCrowdedAndMixedTheCellsAre) {
   const ChirpSequence w = few_chirps();
-  struct Case { int count; double from, cells, drift; };
+  struct Case {
+    int count;
+    double from, cells, drift;
+  };
   const double middle = 500 * cell_delay(w);
   for (const Case& c : {Case{1, middle, 1, 0}, Case{9, middle, 1, 0}, Case{300, middle, 0.5, 0}, Case{1500, middle, 5, 0},
                         Case{1500, middle, 5, 3}, Case{700, 1e-9, 1000, 5}, Case{600, middle, 150, 0.3}}) {

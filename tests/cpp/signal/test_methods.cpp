@@ -81,9 +81,7 @@ TEST(Methods, LongRecurrenceDoesNotDrift) {
 
 // A product of frequency and sample, rounded before its whole turns are removed, would leave 1e-11 rad without fused
 // operations.
-TEST(Methods, LongDirectSumKeepsItsPhase) {
-  EXPECT_LT(tone_error(*make_direct(65536), 65536).largest, kToneRounding);
-}
+TEST(Methods, LongDirectSumKeepsItsPhase) { EXPECT_LT(tone_error(*make_direct(65536), 65536).largest, kToneRounding); }
 
 TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
   for (const int num_samples : {1, 2, 4, 6, 16, 64, 99, 100, 255, 512}) {
@@ -106,8 +104,7 @@ double error_against_slow_sum(const ChirpSequence& w, int num_points, const Synt
   for (const int chirp : {0, w.num_chirps / 2, w.num_chirps - 1}) {
     const auto delay = echoes.delay.begin() + int64_t{chirp} * num_points;
     const auto amplitude = echoes.amplitude.begin() + int64_t{chirp} * num_points;
-    const auto expected =
-        testing::slow_chirp(w, {delay, delay + num_points}, taudot, {amplitude, amplitude + num_points});
+    const auto expected = testing::slow_chirp(w, {delay, delay + num_points}, taudot, {amplitude, amplitude + num_points});
     const auto samples = cube.begin() + int64_t{chirp} * w.num_samples;
     largest = std::max(largest, testing::largest_difference({samples, samples + w.num_samples}, expected));
   }

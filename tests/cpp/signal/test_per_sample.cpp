@@ -11,10 +11,10 @@ namespace {
 using testing::Complex;
 
 constexpr double kC = 299792458.0;
-constexpr double kRounding = 1e-9;        // rad: 1e4 turns in double
-constexpr double kLeftOutTerm = 5e-7;     // rad: tau'''' x^4 / 24 of the rotor below
-constexpr double kRate = 800.0;           // rad/s
-constexpr double kBlade = 0.3;            // m
+constexpr double kRounding = 1e-9;     // rad: 1e4 turns in double
+constexpr double kLeftOutTerm = 5e-7;  // rad: tau'''' x^4 / 24 of the rotor below
+constexpr double kRate = 800.0;        // rad/s
+constexpr double kBlade = 0.3;         // m
 
 // Derivative `order` of the delay of a blade's tip 20 m away.
 double rotor_delay(double t, int order) {
@@ -29,7 +29,8 @@ Echoes echo_of(const ChirpSequence& w, const std::function<double(double, int)>&
   TimeSampling& sampling = echoes.sampling;
   sampling.order = 4;
   sampling.num_rows = 4 * w.num_chirps;
-  std::vector<double>* const rows[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
+  std::vector<double>* const rows[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative,
+                                        &sampling.third_derivative};
   for (int j = 0; j < w.num_chirps; ++j) {
     sampling.first_row.push_back(4 * j);
     for (int d = 0; d < 4; ++d) {

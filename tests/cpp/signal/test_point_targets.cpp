@@ -12,15 +12,15 @@ using testing::Complex;
 
 constexpr double kC = 299792458.0;
 constexpr double kPowerRef = 0.01, kGainRef = 10.0;  // W, linear
-constexpr double kLastDigitDb = 5e-4;      // of levels printed with three decimals
-constexpr double kLastDigit = 5e-17;        // s and sqrt(W), of numbers printed with ten digits
-constexpr double kPrintedPhase = 1e-6;      // rad: printed with nine decimals; 1600 turns
-constexpr double kPrintedDb = 0.01;         // of an amplitude printed with ten digits
-constexpr double kBin = 1e-3;               // of bins printed with four decimals or more, read off an interpolated peak
-constexpr double kMovingBin = 0.01;         // likewise, of tones that change on the way, whose peaks are skewed
-constexpr double kSlotPhase = 1e-3;         // rad: of a tone beside the middle of its cell
+constexpr double kLastDigitDb = 5e-4;                // of levels printed with three decimals
+constexpr double kLastDigit = 5e-17;                 // s and sqrt(W), of numbers printed with ten digits
+constexpr double kPrintedPhase = 1e-6;               // rad: printed with nine decimals; 1600 turns
+constexpr double kPrintedDb = 0.01;                  // of an amplitude printed with ten digits
+constexpr double kBin = 1e-3;        // of bins printed with four decimals or more, read off an interpolated peak
+constexpr double kMovingBin = 0.01;  // likewise, of tones that change on the way, whose peaks are skewed
+constexpr double kSlotPhase = 1e-3;  // rad: of a tone beside the middle of its cell
 constexpr double kRounding = 1e-15;
-constexpr double kSlopeRounding = 1e-12;   // of differences over hundredths of a second
+constexpr double kSlopeRounding = 1e-12;  // of differences over hundredths of a second
 
 double round_trip(double range) { return 2.0 * range / kC; }
 
@@ -105,8 +105,7 @@ TEST_P(EveryMethod, StaticPointAtTwentyMetres) {
 TEST_P(EveryMethod, RangeBins) {
   const ChirpSequence w = testing::reference_waveform();
   for (const auto& [range, bin] : {std::pair{10.0, 66.7128}, {37.5, 250.1731}, {60.0, 400.2769}}) {
-    const auto cube =
-        testing::synthesize(w, testing::static_echoes(w.num_chirps, {round_trip(range)}, {1.0}), options());
+    const auto cube = testing::synthesize(w, testing::static_echoes(w.num_chirps, {round_trip(range)}, {1.0}), options());
     EXPECT_NEAR(peak_bin(row(cube, w.num_samples, 0), std::round(bin)), bin, kBin);
   }
 }
@@ -115,8 +114,8 @@ TEST_P(EveryMethod, MovingPoints) {
   struct Row {
     double range, speed, doppler_bin, range_bin, estimate;
   };
-  const Row rows[] = {{20, 10, 19.8521, 133.6859, 9.9994}, {20, -10, -19.8522, 133.1654, -9.9994},
-                      {50, 30, 59.5504, 334.3449, 29.9953}};
+  const Row rows[] = {
+      {20, 10, 19.8521, 133.6859, 9.9994}, {20, -10, -19.8522, 133.1654, -9.9994}, {50, 30, 59.5504, 334.3449, 29.9953}};
   const ChirpSequence w = testing::reference_waveform();
   for (const Row& expected : rows) {
     testing::MovingPoints point(1, 1, 1.0, 2.0);

@@ -51,8 +51,8 @@ TEST(Synthesizer, SameBitsForAnyNumberOfThreads) {
 TEST(Synthesizer, ChirpsOfAStaticSceneAreBitIdentical) {
   const ChirpSequence w = short_frame();
   for (const Method method : kMethods) {
-    const auto cube = testing::synthesize(w, testing::static_echoes(w.num_chirps, {1e-7, 2e-7}, {1.0, {0.5, 0.1}}),
-                                          {.method = method});
+    const auto cube =
+        testing::synthesize(w, testing::static_echoes(w.num_chirps, {1e-7, 2e-7}, {1.0, {0.5, 0.1}}), {.method = method});
     const std::vector<Complex> first(cube.begin(), cube.begin() + w.num_samples);
     EXPECT_GT(std::abs(first[0]), 0.0);
     for (int j = 1; j < w.num_chirps; ++j) {
@@ -67,8 +67,8 @@ TEST(Synthesizer, StaticEchoesEqualMovingOnesAtRest) {
   std::fill(points.speed.begin(), points.speed.end(), 0.0);
   Echoes moving = testing::exact_echoes(w, points);
   for (size_t i = 0; i < moving.amplitude.size(); ++i) moving.amplitude[i] = points.amplitude[i % 50];
-  const Echoes still = testing::static_echoes(w.num_chirps, {moving.delay.begin(), moving.delay.begin() + 50},
-                                              points.amplitude);
+  const Echoes still =
+      testing::static_echoes(w.num_chirps, {moving.delay.begin(), moving.delay.begin() + 50}, points.amplitude);
   for (const Method method : kMethods) {
     const auto difference = testing::largest_difference(testing::synthesize(w, moving, {.method = method}),
                                                         testing::synthesize(w, still, {.method = method}));

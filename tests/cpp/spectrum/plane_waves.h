@@ -18,8 +18,13 @@ inline constexpr double kDegree = kPi / 180.0;
 inline Radar radar_with(const std::vector<Vec3>& transmitters, const std::vector<Vec3>& receivers, int num_chirps = 8,
                         int num_samples = 4) {
   Radar radar;
-  radar.waveform = {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = num_samples, .sampling_rate = 20e6,
-                    .num_chirps = num_chirps, .chirp_interval = 30e-6, .real = false};
+  radar.waveform = {.start_frequency = 77e9,
+                    .bandwidth = 1e9,
+                    .num_samples = num_samples,
+                    .sampling_rate = 20e6,
+                    .num_chirps = num_chirps,
+                    .chirp_interval = 30e-6,
+                    .real = false};
   for (const Vec3& position : transmitters) radar.transmitters.emplace_back().position = position;
   for (const Vec3& position : receivers) radar.receivers.emplace_back().position = position;
   return radar;

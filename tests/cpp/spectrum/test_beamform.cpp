@@ -13,7 +13,7 @@ namespace {
 using testing::Complex;
 using testing::kDegree;
 constexpr double kRounding = 1e-12;  // of unit waves
-constexpr double kSolved = 1e-9;       // relative: covariances are inverted
+constexpr double kSolved = 1e-9;     // relative: covariances are inverted
 const double kHalf = 0.5 * testing::wavelength();
 
 std::vector<double> steps(double first, double last, int count) {

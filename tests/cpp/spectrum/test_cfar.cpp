@@ -19,8 +19,8 @@ namespace {
 
 using testing::Complex;
 
-constexpr double kRounding = 1e-9;    // of a probability, from factors solved to 1e-13
-constexpr double kExact = 1e-3;       // phases of the windows' centres: Hamming's end sample is not 0
+constexpr double kRounding = 1e-9;  // of a probability, from factors solved to 1e-13
+constexpr double kExact = 1e-3;     // phases of the windows' centres: Hamming's end sample is not 0
 
 CfarDesign design_of(WindowKind kind, int zero_pad, CfarWindow cells, double rate, int num_channels = 1) {
   CfarDesign design;
@@ -128,17 +128,17 @@ double exact_rate(const CfarDesign& design, int range, double factor) {
   Eigen::MatrixXcd covariance(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      covariance(i, j) =
-          correlation(velocity, noise.num_chirps * noise.zero_pad, all[i].velocity - all[j].velocity) *
-          correlation(distance, noise.num_samples * noise.zero_pad, all[i].range - all[j].range);
+      covariance(i, j) = correlation(velocity, noise.num_chirps * noise.zero_pad, all[i].velocity - all[j].velocity) *
+                         correlation(distance, noise.num_samples * noise.zero_pad, all[i].range - all[j].range);
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(covariance);
   const Eigen::MatrixXcd root = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   Eigen::VectorXd form = Eigen::VectorXd::Constant(n, -factor / static_cast<double>(cells.size()));
   form[0] = 1.0;
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(
-      root.adjoint() * form.asDiagonal() * root, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(root.adjoint() * form.asDiagonal() * root, Eigen::EigenvaluesOnly)
+          .eigenvalues();
   double probability = 1.0;
   for (Eigen::Index i = 0; i + 1 < n; ++i) probability /= 1.0 + std::abs(values[i]) / values[n - 1];
   return probability;
@@ -150,8 +150,10 @@ TEST(Cfar, CellAveragingIsExactForWindowedAndPaddedNoise) {
     int zero_pad;
     CfarWindow cells;
   };
-  const Case cases[] = {{WindowKind::kHann, 1, {2, 2, 2, 3}}, {WindowKind::kChebyshev, 1, {4, 4, 1, 3}},
-                        {WindowKind::kRect, 2, {2, 2, 3, 4}}, {WindowKind::kHamming, 2, {4, 4, 1, 5}},
+  const Case cases[] = {{WindowKind::kHann, 1, {2, 2, 2, 3}},
+                        {WindowKind::kChebyshev, 1, {4, 4, 1, 3}},
+                        {WindowKind::kRect, 2, {2, 2, 3, 4}},
+                        {WindowKind::kHamming, 2, {4, 4, 1, 5}},
                         {WindowKind::kBlackmanHarris, 1, {0, 4, 0, 8}}};
   for (const Case& c : cases) {
     for (const double rate : {1e-3, 1e-6}) {
@@ -364,10 +366,10 @@ TEST(Cfar, BadInputNamesTheArgument) {
   }
   test::expect_error<std::invalid_argument>([&] { cfar(map, radar_of(2), {}); }, {"spectrum"});
   map.window = {WindowKind::kHann};
-  test::expect_error<std::invalid_argument>(
-      [&] { cfar(map, radar, small_options(CfarMethod::kCellAveraging)); }, {"guard_velocity"});
-  test::expect_error<std::invalid_argument>(
-      [&] { cfar_factors(design_of(WindowKind::kHann, 1, {2, 2, 20, 30}, 1e-3)); }, {"training_range", "2000", "2925"});
+  test::expect_error<std::invalid_argument>([&] { cfar(map, radar, small_options(CfarMethod::kCellAveraging)); },
+                                            {"guard_velocity"});
+  test::expect_error<std::invalid_argument>([&] { cfar_factors(design_of(WindowKind::kHann, 1, {2, 2, 20, 30}, 1e-3)); },
+                                            {"training_range", "2000", "2925"});
   Job job;
   job.cancel();
   EXPECT_THROW(cfar(map, radar, {}, &job), Cancelled);

@@ -15,9 +15,9 @@ namespace {
 
 using testing::Complex;
 
-constexpr double kOffsetError = 1e-6;   // cells, of the table that turns ratios of neighbours into offsets
+constexpr double kOffsetError = 1e-6;    // cells, of the table that turns ratios of neighbours into offsets
 constexpr double kVelocityError = 1e-5;  // m/s: likewise, in cells of some m/s
-constexpr double kPowerError = 1e-5;    // relative: a parabola of the main lobe at that error, and rounding
+constexpr double kPowerError = 1e-5;     // relative: a parabola of the main lobe at that error, and rounding
 
 constexpr int kChirps = 32, kSamples = 64;
 
@@ -58,8 +58,8 @@ TEST(Peaks, ATonesPlaceAndPowerAreExactForEveryWindowAndPadding) {
   const Radar radar = radar_of();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> offset(-0.499, 0.499);
-  for (const WindowKind kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
-                                WindowKind::kChebyshev}) {
+  for (const WindowKind kind :
+       {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris, WindowKind::kChebyshev}) {
     for (const int zero_pad : {1, 2}) {
       const double up = offset(random), away = offset(random);
       const double power = 1e-12;

@@ -13,7 +13,7 @@ namespace {
 using testing::Complex;
 constexpr double kRounding = 1e-12;  // of unit waves
 constexpr int kChirps = 16, kSamples = 40;
-constexpr double kPower = 1e-10;      // of powers of up to 10, of sums of some hundred unit waves
+constexpr double kPower = 1e-10;  // of powers of up to 10, of sums of some hundred unit waves
 
 // A cube of tones: range bin r and velocity bin v, from azimuth `left`, of half-wavelength receivers.
 void add_tone(std::vector<Complex>& cube, const Radar& radar, double r, double v, double left, double amplitude) {

@@ -10,13 +10,18 @@ namespace echopath {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kRounding = 1e-13;  // relative to a tone of unit power
+constexpr double kRounding = 1e-13;      // relative to a tone of unit power
 constexpr double kAxisRounding = 1e-12;  // m and m/s
 
 Radar small_radar(int num_tx = 1, int num_rx = 1) {
   Radar radar;
-  radar.waveform = {.start_frequency = 77e9, .bandwidth = 1e9, .num_samples = 32, .sampling_rate = 20e6,
-                    .num_chirps = 16, .chirp_interval = 30e-6, .real = false};
+  radar.waveform = {.start_frequency = 77e9,
+                    .bandwidth = 1e9,
+                    .num_samples = 32,
+                    .sampling_rate = 20e6,
+                    .num_chirps = 16,
+                    .chirp_interval = 30e-6,
+                    .real = false};
   radar.transmitters.resize(num_tx);
   radar.receivers.resize(num_rx);
   return radar;

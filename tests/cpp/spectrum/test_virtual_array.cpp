@@ -10,11 +10,11 @@ namespace {
 
 using testing::line;
 using testing::radar_with;
-constexpr double kRounding = 1e-15;  // m, of sums of positions of centimetres
+constexpr double kRounding = 1e-15;   // m, of sums of positions of centimetres
 constexpr double kTurned = 1e-12;     // of unit vectors and grids that were turned
 constexpr double kAlong = 0.99;       // cosine: of one of several axes, not of another
 constexpr double kMeanStep = 1.2e-7;  // m: of 85 steps, both of whose ends are rounded by 5 um
-constexpr double kRounded = 5.1e-6;    // m: half of 10 um, and a little of the mean step
+constexpr double kRounded = 5.1e-6;   // m: half of 10 um, and a little of the mean step
 const double kHalf = 0.5 * testing::wavelength();
 
 std::vector<int> columns_of(const VirtualArray& array) {
@@ -49,8 +49,7 @@ TEST(VirtualArray, ThreeTimesFourIsALineOfTwelve) {
 }
 
 TEST(VirtualArray, ColumnsCountToTheLeftAndRowsUpWhateverTheOrderOfTheAntennas) {
-  const VirtualArray array =
-      virtual_array(radar_with({{0, 0, 0}, {0, 0, -kHalf}}, line(3, Vec3(0, -kHalf, 0))));
+  const VirtualArray array = virtual_array(radar_with({{0, 0, 0}, {0, 0, -kHalf}}, line(3, Vec3(0, -kHalf, 0))));
   ASSERT_TRUE(array.grid);
   EXPECT_EQ(array.grid->num_rows, 2);
   EXPECT_EQ(array.grid->num_columns, 3);
@@ -75,8 +74,8 @@ TEST(VirtualArray, OverlapsAreOneElementOfSeveralChannels) {
 
 TEST(VirtualArray, GapsAreThePointsOfTheGridWithoutAnElement) {
   // The minimum redundancy array of four: 0, 1, 4, 6.
-  const VirtualArray array = virtual_array(radar_with(
-      {Vec3::Zero()}, {{0, 0, 0}, {0, kHalf, 0}, {0, 4 * kHalf, 0}, {0, 6 * kHalf, 0}}));
+  const VirtualArray array =
+      virtual_array(radar_with({Vec3::Zero()}, {{0, 0, 0}, {0, kHalf, 0}, {0, 4 * kHalf, 0}, {0, 6 * kHalf, 0}}));
   ASSERT_TRUE(array.grid);
   EXPECT_EQ(columns_of(array), (std::vector<int>{0, 1, 4, 6}));
   EXPECT_EQ(array.gaps(), (std::vector<std::pair<int, int>>{{0, 2}, {0, 3}, {0, 5}}));
@@ -103,10 +102,9 @@ TEST(VirtualArray, TurnedGridsKeepTheirShape) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) plane.emplace_back(0.0, column * kHalf, 1.3 * row * kHalf);
   }
-  const Quaternion turns[] = {
-      Quaternion(Eigen::AngleAxisd(0.5, Vec3::UnitX())),                                          // rolled
-      Quaternion(Eigen::AngleAxisd(-0.2, Vec3::UnitY())),                                         // looking up
-      Quaternion(Eigen::AngleAxisd(1.1, Vec3::UnitZ()) * Eigen::AngleAxisd(0.3, Vec3::UnitX()))};
+  const Quaternion turns[] = {Quaternion(Eigen::AngleAxisd(0.5, Vec3::UnitX())),   // rolled
+                              Quaternion(Eigen::AngleAxisd(-0.2, Vec3::UnitY())),  // looking up
+                              Quaternion(Eigen::AngleAxisd(1.1, Vec3::UnitZ()) * Eigen::AngleAxisd(0.3, Vec3::UnitX()))};
   for (const Quaternion& turn : turns) {
     std::vector<Vec3> turned;
     for (const Vec3& position : plane) turned.push_back(turn * position);

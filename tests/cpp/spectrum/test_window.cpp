@@ -9,8 +9,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kPrinted = 1e-4;      // of figures printed with four decimals
-constexpr double kPrintedDb = 1e-2;    // likewise, with two
+constexpr double kPrinted = 1e-4;    // of figures printed with four decimals
+constexpr double kPrintedDb = 1e-2;  // likewise, with two
 constexpr double kRounding = 1e-15;
 
 double level_db(const std::vector<double>& w, double bin) {
@@ -68,8 +68,8 @@ TEST(Window, CosineWindowsArePeriodicAndChebyshevIsSymmetric) {
 }
 
 TEST(Window, ShortWindowsHaveAPositiveSum) {
-  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
-                          WindowKind::kChebyshev}) {
+  for (const auto kind :
+       {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris, WindowKind::kChebyshev}) {
     for (const int n : {1, 2, 3}) {
       EXPECT_GT(coherent_gain(window_samples({kind}, n)), 0.0) << static_cast<int>(kind) << " " << n;
     }

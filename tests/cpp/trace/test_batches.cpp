@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "echopath/trace/geometry/embree_scene.h"
-#include "echopath/trace/launch/launch_lattice.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/launch/launch_lattice.h"
 #include "support/scenes.h"
 
 namespace echopath {
@@ -15,8 +15,8 @@ namespace {
 using namespace testing;
 
 constexpr int kBatches = 8;
-constexpr double kMoments = 0.01;   // of 1/2: what the rim of a lattice of an eighth of the points adds
-constexpr double kSphere = 5e-3;    // relative: each batch covers the sphere to some of its points
+constexpr double kMoments = 0.01;  // of 1/2: what the rim of a lattice of an eighth of the points adds
+constexpr double kSphere = 5e-3;   // relative: each batch covers the sphere to some of its points
 
 std::vector<Eigen::Vector2d> some_shifts() {
   std::vector<Eigen::Vector2d> shifts;
@@ -82,7 +82,8 @@ TEST(Batches, EachCoversItsStratum) {
   }
   for (size_t k = 0; k < plan.strata.size(); ++k) {
     for (const double count : rays[k]) {
-      EXPECT_NEAR(count / plan.lattice_density(static_cast<int>(k)) / plan.strata[k].solid_angle(), 1.0, kSphere) << plan.strata[k].name;
+      EXPECT_NEAR(count / plan.lattice_density(static_cast<int>(k)) / plan.strata[k].solid_angle(), 1.0, kSphere)
+          << plan.strata[k].name;
     }
   }
 }

@@ -12,7 +12,8 @@ namespace {
 
 std::vector<Vec3> box(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> corners;
-  for (int k = 0; k < 8; ++k) corners.emplace_back(k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]);
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back(k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]);
   return corners;
 }
 
@@ -37,7 +38,8 @@ TEST(FitStratum, ASphereGetsItsCone) {
   std::vector<Vec3> vertices;
   std::mt19937 random(1);
   std::normal_distribution<double> draw;
-  for (int i = 0; i < 20000; ++i) vertices.push_back(Vec3(10, 2, 1) + Vec3(draw(random), draw(random), draw(random)).normalized());
+  for (int i = 0; i < 20000; ++i)
+    vertices.push_back(Vec3(10, 2, 1) + Vec3(draw(random), draw(random), draw(random)).normalized());
   const Vec3 apex(0.5, 0, 0);
   const auto stratum = fit_stratum(vertices, apex, "ball");
   ASSERT_TRUE(stratum);
@@ -67,7 +69,8 @@ TEST(FitStratum, LongThingsKeepThinStrips) {
   expect_hold(*along, rail, apex);
   EXPECT_LT(along->solid_angle(), 0.35);  // its own silhouette fills .17 sr, the cone around it 2 sr
   std::vector<Vec3> slanted;
-  for (const Vec3& corner : box({-2, -0.02, -0.02}, {2, 0.02, 0.02})) slanted.push_back({20, corner[0] + corner[1], corner[0] + corner[2]});
+  for (const Vec3& corner : box({-2, -0.02, -0.02}, {2, 0.02, 0.02}))
+    slanted.push_back({20, corner[0] + corner[1], corner[0] + corner[2]});
   const auto strip = fit_stratum(slanted, apex, "slanted");
   ASSERT_TRUE(strip);
   expect_hold(*strip, slanted, apex);

@@ -225,7 +225,9 @@ TEST(KeptGeometry, OneLoanAtATime) {
 TEST(KeptGeometry, ACancelledBuildIsForgotten) {
   const Scene scene = street();
   KeptGeometry kept;
-  { const GeometryLoan loan(&kept, scene, PosedScene(scene, 0.0), Vec3::Zero(), nullptr); }
+  {
+    const GeometryLoan loan(&kept, scene, PosedScene(scene, 0.0), Vec3::Zero(), nullptr);
+  }
   Job job;
   job.cancel();
   EXPECT_THROW(GeometryLoan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), &job), Cancelled);

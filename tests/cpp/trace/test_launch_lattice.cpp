@@ -12,8 +12,8 @@ namespace {
 constexpr double kRim = 1e-12;     // points at the rim, but for rounding
 constexpr double kMoments = 3e-4;  // of 1/4: what the rim of a lattice adds
 
-constexpr double kCells = 0.02;    // points along the rim of a long rectangle, of all
-constexpr double kSides = 5e-3;    // of 1/3; a random set of 20 000 errs by 2e-3, four rows across a strip by some more
+constexpr double kCells = 0.02;  // points along the rim of a long rectangle, of all
+constexpr double kSides = 5e-3;  // of 1/3; a random set of 20 000 errs by 2e-3, four rows across a strip by some more
 
 const Eigen::Vector2d kShift(0.37, 0.81);
 
@@ -58,7 +58,8 @@ TEST(LaunchLattice, FillsRectanglesEvenly) {
     const LaunchLattice lattice(rectangle, 20000, kShift);
     EXPECT_NEAR(lattice.cell_area() * 20000.0 / rectangle.area(), 1.0, kCells);
     Eigen::Array2d moment = Eigen::Array2d::Zero();
-    for (int64_t i = 0; i < lattice.size(); ++i) moment += (lattice.point(i).array() / rectangle.half.array()).square() / 20000.0;
+    for (int64_t i = 0; i < lattice.size(); ++i)
+      moment += (lattice.point(i).array() / rectangle.half.array()).square() / 20000.0;
     EXPECT_NEAR(moment[0], 1.0 / 3.0, kSides);  // of uniform points, across each side
     EXPECT_NEAR(moment[1], 1.0 / 3.0, kSides);
   }

@@ -95,7 +95,8 @@ TEST(MirrorFrusta, LightWhatSpecularPointsReach) {
       if (sequence.empty()) continue;
       const double margin = margin_of(antenna, sequence, point, rectangles, mirrors);
       if (std::abs(margin) < kRim) continue;
-      const auto frustum = std::find_if(frusta.begin(), frusta.end(), [&](const MirrorFrustum& b) { return b.mirrors == sequence; });
+      const auto frustum =
+          std::find_if(frusta.begin(), frusta.end(), [&](const MirrorFrustum& b) { return b.mirrors == sequence; });
       EXPECT_EQ(frustum != frusta.end() && frustum->reaches(point, 0.0), margin > 0);
       num_lit[sequence.size()] += margin > 0 ? 1 : 0;
     }

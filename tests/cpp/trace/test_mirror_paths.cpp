@@ -42,7 +42,8 @@ std::vector<MirrorRectangle> city_block(int num_boxes) {
   const int side = static_cast<int>(std::ceil(std::sqrt(num_boxes)));
   for (int i = 0; i < num_boxes; ++i) {
     const double turn = 0.4 * uniform(draw), length = 8.0 + 3.0 * uniform(draw), width = 8.0 + 3.0 * uniform(draw);
-    const double y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw), x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw);
+    const double y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw),
+                 x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw);
     const Vec3 middle(x, y, 0.0);
     const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0);
     const Vec3 across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);
@@ -68,7 +69,8 @@ std::vector<MirrorRectangle> random_mirrors(int count, unsigned seed) {
   return mirrors;
 }
 
-Paths traced(const std::vector<MirrorRectangle>& rectangles, const Vec3& transmitter, const Vec3& receiver, int max_bounces) {
+Paths traced(const std::vector<MirrorRectangle>& rectangles, const Vec3& transmitter, const Vec3& receiver,
+             int max_bounces) {
   TraceSettings settings;
   settings.num_rays = 1;
   settings.max_bounces = max_bounces;
@@ -80,7 +82,12 @@ std::vector<MirrorRectangle> room_with_a_board() {
   const Vec3 x(5.0, 0.0, 0.0), y(0.0, 4.3, 0.0), z(0.0, 0.0, 3.1);
   const Vec3 along(1.1, 0.7, 0.2), towards(-0.3, 0.4, 0.9);
   const Vec3 across = towards - towards.dot(along) / along.squaredNorm() * along;
-  return {{Vec3::Zero(), x, y}, {z, x, y}, {Vec3::Zero(), y, z}, {x, y, z}, {Vec3::Zero(), x, z}, {y, x, z},
+  return {{Vec3::Zero(), x, y},
+          {z, x, y},
+          {Vec3::Zero(), y, z},
+          {x, y, z},
+          {Vec3::Zero(), x, z},
+          {y, x, z},
           {{2.1, 1.9, 0.8}, along, across}};
 }
 
@@ -213,8 +220,9 @@ TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
       for (const HalfSpace& half : region) {
         double farthest = -1e9;
         for (int corner = 0; corner < 8; ++corner) {
-          farthest = std::max(farthest, half.normal.dot(boxes[static_cast<size_t>(k)].corner(
-                                            static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
+          farthest = std::max(
+              farthest,
+              half.normal.dot(boxes[static_cast<size_t>(k)].corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
         }
         is_in = is_in && farthest >= half.offset;
       }

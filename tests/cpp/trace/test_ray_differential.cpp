@@ -10,8 +10,8 @@ namespace echopath {
 namespace {
 
 constexpr double kTubeTolerance = 1e-7;  // relative; a finite-difference ray tracing agrees with the closed form to that
-constexpr double kRounding = 1e-12;       // m^2, of areas of some tens
-constexpr double kLastDigit = 1e-3;       // m, as printed
+constexpr double kRounding = 1e-12;      // m^2, of areas of some tens
+constexpr double kLastDigit = 1e-3;      // m, as printed
 
 // Tube of a point source `distance` before a sphere of signed radius (positive: convex) at `angle`, reflected.
 struct Reflected {

@@ -44,7 +44,8 @@ TEST_P(EverySampler, IsUniformInArea) {
 }
 
 TEST_P(EverySampler, ShiftsMoveThePointsAndMakeBatches) {
-  const auto points = launch_points(GetParam(), LaunchDomain{}, 1000, kShift), same = launch_points(GetParam(), LaunchDomain{}, 1000, kShift);
+  const auto points = launch_points(GetParam(), LaunchDomain{}, 1000, kShift),
+             same = launch_points(GetParam(), LaunchDomain{}, 1000, kShift);
   const auto moved = launch_points(GetParam(), LaunchDomain{}, 1000, kOther);
   EXPECT_EQ((points->point(500) - same->point(500)).norm(), 0.0);
   EXPECT_GT((points->point(500) - moved->point(500)).norm(), 1e-6);

@@ -17,9 +17,9 @@ namespace {
 
 using namespace testing;
 
-constexpr double kSolidAngle = 0.02;  // of a mesh, relative: rays along its outline
-constexpr double kRounding = 1e-12;     // m and unit vectors
-constexpr double kSinglePosition = 1e-4; // m: single precision of a ray over some tens of metres
+constexpr double kSolidAngle = 0.02;      // of a mesh, relative: rays along its outline
+constexpr double kRounding = 1e-12;       // m and unit vectors
+constexpr double kSinglePosition = 1e-4;  // m: single precision of a ray over some tens of metres
 
 Scene mixed_scene(const Vec3& offset) {
   Scene scene;
@@ -257,9 +257,9 @@ TEST(Trace, BadInputIsNamed) {
   EXPECT_NE(message(bent, radar, small()).find("'bent' must be flat"), std::string::npos);
 
   Scene brief;
-  const auto motion = std::make_shared<KeyframeMotion>(std::vector<double>{0.0, 1e-6},
-                                                       std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX()},
-                                                       std::vector<Quaternion>{}, Interpolation::kLinear);
+  const auto motion =
+      std::make_shared<KeyframeMotion>(std::vector<double>{0.0, 1e-6}, std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX()},
+                                       std::vector<Quaternion>{}, Interpolation::kLinear);
   add_rectangle(brief, "brief", {5, 0, 0}, {0, 1, 0}, {0, 0, 1}, lambert(0.5), motion);
   EXPECT_NE(message(brief, radar, small()).find("brief"), std::string::npos);
 }

@@ -16,9 +16,8 @@ constexpr int64_t kMaxParts = std::numeric_limits<int16_t>::max();
 // Calls body(begin, end) for ranges of cells, in parallel.
 template <class Body>
 void for_cells(int64_t num_cells, const Body& body) {
-  parallel_for((num_cells + kCellsPerTask - 1) / kCellsPerTask, [&](int64_t task) {
-    body(task * kCellsPerTask, std::min((task + 1) * kCellsPerTask, num_cells));
-  });
+  parallel_for((num_cells + kCellsPerTask - 1) / kCellsPerTask,
+               [&](int64_t task) { body(task * kCellsPerTask, std::min((task + 1) * kCellsPerTask, num_cells)); });
 }
 
 // Returns the number of cells that `size` values of `count` parts or channels have.

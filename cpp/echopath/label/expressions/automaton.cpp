@@ -40,8 +40,8 @@ ECHOPATH_INLINE void keep_touching(const uint64_t* bits, uint64_t needed, size_t
 // A nondeterministic automaton (Thompson 1968), in which a state either reads one hit or branches without reading.
 struct Nfa {
   struct State {
-    int pattern = -1;        // index into `patterns`; -1: a branch
-    std::vector<int> next;   // one state after a hit, any number for a branch
+    int pattern = -1;       // index into `patterns`; -1: a branch
+    std::vector<int> next;  // one state after a hit, any number for a branch
   };
   std::vector<State> states;  // state 0 takes the path; it has no next
   std::vector<const HitPattern*> patterns;
@@ -60,15 +60,12 @@ class NfaBuilder {
   // Returns the state from which `syntax`, and then what follows `next`, is read.
   int build(const Syntax& syntax, int next) {
     switch (syntax.kind) {
-      case Syntax::Kind::kHit:
-        return add({pattern_index(syntax.hit), {next}});
+      case Syntax::Kind::kHit: return add({pattern_index(syntax.hit), {next}});
       case Syntax::Kind::kSequence:
         for (size_t i = syntax.children.size(); i-- > 0;) next = build(syntax.children[i], next);
         return next;
-      case Syntax::Kind::kChoice:
-        return build_choice(syntax, next);
-      case Syntax::Kind::kRepeat:
-        return build_repeat(syntax, next);
+      case Syntax::Kind::kChoice: return build_choice(syntax, next);
+      case Syntax::Kind::kRepeat: return build_repeat(syntax, next);
     }
     return next;
   }
@@ -140,8 +137,8 @@ std::vector<bool> meshes_of(const HitPattern& pattern, const PathExpression& exp
 }
 
 struct MeshClasses {
-  std::vector<uint32_t> class_of_mesh;         // [M]
-  std::vector<std::vector<bool>> taken_by;     // [class][pattern]
+  std::vector<uint32_t> class_of_mesh;      // [M]
+  std::vector<std::vector<bool>> taken_by;  // [class][pattern]
 };
 
 MeshClasses classify(const Nfa& nfa, const PathExpression& expression, const std::vector<std::string>& mesh_names) {
@@ -189,7 +186,7 @@ class Determiniser {
           const Nfa::State& reader = nfa_.states[static_cast<size_t>(member)];
           const auto pattern = static_cast<size_t>(reader.pattern);
           const bool taken = taken_by[pattern] && takes_event(*nfa_.patterns[pattern], diffuse);
-        if (taken) reached.push_back(reader.next.front());
+          if (taken) reached.push_back(reader.next.front());
         }
         next_.push_back(index_of(reached));
       }

@@ -16,11 +16,11 @@ namespace echopath {
 struct Selection::Term {
   enum class Kind { kExpression, kNumBounces, kPower, kAnd, kOr, kNot };
   Kind kind;
-  PathExpression expression = {};                    // kExpression
-  int min = 0, max = 0;                              // kNumBounces
-  Comparison comparison = Comparison::kAbove;        // kPower
-  double watts = 0.0;                                // kPower
-  std::vector<Selection> children = {};              // kAnd, kOr: two or more, kNot: one
+  PathExpression expression = {};              // kExpression
+  int min = 0, max = 0;                        // kNumBounces
+  Comparison comparison = Comparison::kAbove;  // kPower
+  double watts = 0.0;                          // kPower
+  std::vector<Selection> children = {};        // kAnd, kOr: two or more, kNot: one
 
   static Selection make(Term term) { return Selection(std::make_shared<const Term>(std::move(term))); }
 
@@ -105,20 +105,16 @@ ECHOPATH_INLINE void keep_counts(const uint8_t* counts, uint8_t min, uint8_t ran
 
 void narrow_by_num_bounces(const Paths& paths, int min, int max, Bits& candidates) {
   const int last = max == kNoLimit ? kMaxRepeatCount : max;
-  run_simd<keep_counts>(paths.num_bounces.data(), static_cast<uint8_t>(min), static_cast<uint8_t>(last - min), candidates.size(),
-                        candidates.data());
+  run_simd<keep_counts>(paths.num_bounces.data(), static_cast<uint8_t>(min), static_cast<uint8_t>(last - min),
+                        candidates.size(), candidates.data());
 }
 
 void narrow_by_power(const std::vector<double>& power, Selection::Comparison comparison, double watts, Bits& candidates) {
   switch (comparison) {
-    case Selection::Comparison::kBelow:
-      return narrow_by(power, candidates, [=](double value) { return value < watts; });
-    case Selection::Comparison::kAtMost:
-      return narrow_by(power, candidates, [=](double value) { return value <= watts; });
-    case Selection::Comparison::kAbove:
-      return narrow_by(power, candidates, [=](double value) { return value > watts; });
-    case Selection::Comparison::kAtLeast:
-      return narrow_by(power, candidates, [=](double value) { return value >= watts; });
+    case Selection::Comparison::kBelow: return narrow_by(power, candidates, [=](double value) { return value < watts; });
+    case Selection::Comparison::kAtMost: return narrow_by(power, candidates, [=](double value) { return value <= watts; });
+    case Selection::Comparison::kAbove: return narrow_by(power, candidates, [=](double value) { return value > watts; });
+    case Selection::Comparison::kAtLeast: return narrow_by(power, candidates, [=](double value) { return value >= watts; });
   }
 }
 
@@ -164,14 +160,10 @@ void Selection::narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job*
   const Term& term = *term_;
   if (job) job->throw_if_cancelled();
   switch (term.kind) {
-    case Term::Kind::kExpression:
-      return narrow_by_expression(paths, term.expression, candidates, job);
-    case Term::Kind::kNumBounces:
-      return narrow_by_num_bounces(paths.paths(), term.min, term.max, candidates);
-    case Term::Kind::kPower:
-      return narrow_by_power(paths.power(job), term.comparison, term.watts, candidates);
-    default:
-      return narrow_by_children(paths, candidates, job);
+    case Term::Kind::kExpression: return narrow_by_expression(paths, term.expression, candidates, job);
+    case Term::Kind::kNumBounces: return narrow_by_num_bounces(paths.paths(), term.min, term.max, candidates);
+    case Term::Kind::kPower: return narrow_by_power(paths.power(job), term.comparison, term.watts, candidates);
+    default: return narrow_by_children(paths, candidates, job);
   }
 }
 

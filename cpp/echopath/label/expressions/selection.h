@@ -21,8 +21,8 @@ class PathTraits {
   explicit PathTraits(const Paths& paths, bool for_many = false) : paths_(paths), for_many_(for_many) {}
 
   const Paths& paths() const { return paths_; }
-  const std::vector<double>& power(Job* job);         // [P] W
-  const std::vector<uint64_t>& mesh_bits(Job* job);   // label/automaton.h; empty unless for_many
+  const std::vector<double>& power(Job* job);        // [P] W
+  const std::vector<uint64_t>& mesh_bits(Job* job);  // label/automaton.h; empty unless for_many
 
  private:
   const Paths& paths_;

@@ -18,9 +18,9 @@ struct NamedGlobs {
 // A surface is the highest group above a mesh that holds no object and at most one flagged mirror: as a rule the child of
 // the scene's root, but each wall of a street on its own, because each mirror makes an image of its own.
 struct SurfaceMap {
-  std::vector<std::string> names;    // of the objects, in order, then of the other surfaces by their first mesh
+  std::vector<std::string> names;  // of the objects, in order, then of the other surfaces by their first mesh
   uint32_t num_objects = 0;
-  std::vector<uint32_t> of_mesh;     // [M] index into names
+  std::vector<uint32_t> of_mesh;  // [M] index into names
 
   bool is_object(uint32_t surface) const { return surface < num_objects; }
   std::vector<uint32_t> meshes_of(uint32_t surface) const;

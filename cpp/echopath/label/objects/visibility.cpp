@@ -100,7 +100,8 @@ class ObjectScanner {
   // Returns the cone of directions that holds the object, or all directions where it surrounds the antenna.
   Stratum stratum_from(const Vec3& apex) const {
     std::vector<Vec3> vertices;
-    for (const uint32_t id : mesh_ids_) vertices.insert(vertices.end(), whole_.vertices(id).begin(), whole_.vertices(id).end());
+    for (const uint32_t id : mesh_ids_)
+      vertices.insert(vertices.end(), whole_.vertices(id).begin(), whole_.vertices(id).end());
     return fit_stratum(vertices, apex, surfaces_.names[object_]).value_or(Stratum{});
   }
 

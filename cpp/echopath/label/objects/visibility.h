@@ -17,7 +17,7 @@ struct Sight {
   // The nearest surfaces elsewhere, by name, and their shares of the solid angle, largest first. With visible_share they add
   // to 1.
   std::vector<std::pair<std::string, double>> occluders;
-  double distance = 0.0;       // m, to the nearest point of its triangles
+  double distance = 0.0;  // m, to the nearest point of its triangles
   // Whether an antenna has gain toward a part of it, hidden or not, or toward a vertex of it where no ray found it.
   bool in_view = false;
 };
@@ -28,7 +28,7 @@ struct ObjectVisibility {
 };
 
 struct VisibilitySettings {
-  double time = 0.0;          // s
+  double time = 0.0;  // s
   // The approximate number of directions on each object: a lattice over the cone that holds it, refined (at most
   // kFinestLattice times) where the object fills little of the cone. The error of a share is 4e-4 rms for half hidden plates
   // and 4096 directions, and falls with the power -0.8.

@@ -10,10 +10,10 @@ struct InnerPart {
   double power_factor = 1.0;      // product of f cos_out cos_in / r^2 of the legs between diffuse hits
   Vec3 last_arrival;              // at the last material point, if it is not the first
   int first_diffuse = -1;
-  double cos_in_first = 0.0;      // signed, at the first diffuse hit, if it is not the first material point
-  double cos_out_first = 0.0;     // signed, if it is not the last
-  double cos_in_last = 0.0;       // signed, at the last diffuse hit, if it is not the first one
-  bool lit = true;                // every diffuse hit between is seen from one side
+  double cos_in_first = 0.0;   // signed, at the first diffuse hit, if it is not the first material point
+  double cos_out_first = 0.0;  // signed, if it is not the last
+  double cos_in_last = 0.0;    // signed, at the last diffuse hit, if it is not the first one
+  bool lit = true;             // every diffuse hit between is seen from one side
 };
 
 // Reads only the events and material points of the path, and only points and normals of the hits.

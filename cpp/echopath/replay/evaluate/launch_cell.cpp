@@ -7,8 +7,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatRatio = 1e-3;         // ratio of the principal curvatures below which the lesser direction is flat
-constexpr double kFlatCurvature = 1e-6;     // 1/m: below it a surface is flat
+constexpr double kFlatRatio = 1e-3;      // ratio of the principal curvatures below which the lesser direction is flat
+constexpr double kFlatCurvature = 1e-6;  // 1/m: below it a surface is flat
 
 Flatness flatness_of(const PosedHit& hit) {
   if (!hit.is_smooth) return Flatness::kFlat;

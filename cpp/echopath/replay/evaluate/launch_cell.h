@@ -12,13 +12,13 @@ namespace echopath {
 // Describes a launch cell of the path's own stratum as it falls on the triangle of the physical-optics hit, at the trace
 // time.
 struct LaunchCell {
-  bool is_known = false;            // else the footprint filter is off
-  Eigen::Vector2d tangent[2];       // T_a in units of the triangle's edges, (du, dv) each
+  bool is_known = false;       // else the footprint filter is off
+  Eigen::Vector2d tangent[2];  // T_a in units of the triangle's edges, (du, dv) each
   // Behind a curved specular bounce, `turn` says how the direction of arrival turns across the cell, T_a.U_b in m (11, 12,
   // 22). On flat chains it follows from the length.
   bool is_curved = false;
   double turn[3] = {0.0, 0.0, 0.0};
-  double facet_area = 0.0;          // m^2, PathPreparer::facet_area of its mesh
+  double facet_area = 0.0;  // m^2, PathPreparer::facet_area of its mesh
 };
 
 // Returns the cell behind a curved specular bounce from its record, Paths::curved_cell.

@@ -7,7 +7,8 @@ void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, Spec
   planner_.begin(preparer.paths(), preparer, specular, can_evaluate_single_bounces(radar));
 }
 
-void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
+void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
+                             const Wanted& wanted) {
   chains_(*plan_, *preparer_, nodes, radio, channels);
   direct_(*plan_, *preparer_, nodes, radio, channels, wanted);
   if (wanted.turned) chains_.mark_turned(*plan_, wanted.turned);

@@ -15,7 +15,8 @@ class PathEvaluator {
   void begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular);
   // Plans the paths that are evaluated next; the indices must outlive that evaluation.
   void plan(std::span<const int64_t> indices) { plan_ = &planner_(indices); }
-  void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted = {});
+  void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
+                const Wanted& wanted = {});
   size_t num_bytes() const { return chains_.num_bytes() + direct_.num_bytes(); }  // of its memory, nearly all
 
  private:

@@ -18,7 +18,8 @@ class SegmentIds {
     if (2 * size_ >= entries_.size()) grow();
     const uint64_t hash = hash_of(hits, count, kind);
     size_t slot = hash & (entries_.size() - 1);
-    while (is_taken(entries_[slot]) && !is(entries_[slot], hash, hits, count, kind)) slot = (slot + 1) & (entries_.size() - 1);
+    while (is_taken(entries_[slot]) && !is(entries_[slot], hash, hits, count, kind))
+      slot = (slot + 1) & (entries_.size() - 1);
     Entry& entry = entries_[slot];
     if (!is_taken(entry)) {
       entry = {hits, hash, kind, kNone, static_cast<uint16_t>(count), turn_};

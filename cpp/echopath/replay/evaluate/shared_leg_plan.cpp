@@ -8,7 +8,9 @@ namespace {
 
 constexpr uint64_t pair_key(uint32_t high, uint32_t low) { return uint64_t{high} << 32 | low; }
 // Identifies where in its triangle a hit is.
-constexpr uint64_t place_key(const Hit& hit) { return pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)); }
+constexpr uint64_t place_key(const Hit& hit) {
+  return pair_key(std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v));
+}
 
 }  // namespace
 
@@ -50,7 +52,8 @@ bool SharedLegPlanner::is_same(const Known& known, const Known& run) {
          std::memcmp(known.hits, run.hits, static_cast<size_t>(run.count) * sizeof(Hit)) == 0;
 }
 
-void SharedLegPlanner::begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_single_bounces) {
+void SharedLegPlanner::begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular,
+                             bool with_single_bounces) {
   paths_ = &paths;
   preparer_ = &preparer;
   slides_ = specular != SpecularPoints::kMaterial;
@@ -116,7 +119,8 @@ bool SharedLegPlanner::add_direct(size_t place, int64_t path) {
 
 void SharedLegPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], (paths_->flags[p] & kReversedPath) != 0};
+  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p],
+                        (paths_->flags[p] & kReversedPath) != 0};
   const Ends ends = ends_of(hits);
   const std::complex<double> weight(paths_->weight[p]);
   if (ends.first < 0) {
@@ -207,7 +211,8 @@ uint32_t SharedLegPlanner::add_leg(const SharedLegPlan::Leg& leg) {
 
 // A path with one diffuse hit has an inner part only where its triangle may stretch, because that changes its area.
 uint32_t SharedLegPlanner::inner(const TracedHits& hits, const Ends& ends, bool is_coherent) {
-  if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id))) return SharedLegPlan::kNone;
+  if (ends.first == ends.last && (is_coherent || !preparer_->may_stretch(hits.hit(ends.first).mesh_id)))
+    return SharedLegPlan::kNone;
   const int count = ends.last - ends.first + 1;
   SharedLegPlan::Inner found{plan_.inner_points.size(), plan_.inner_points.size() + static_cast<size_t>(count), 0, 0};
   for (int k = ends.first; k <= ends.last; ++k) found.diffuse |= uint64_t{hits.is_diffuse(k)} << (k - ends.first);

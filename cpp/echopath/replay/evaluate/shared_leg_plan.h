@@ -5,8 +5,8 @@
 #include <span>
 
 #include "echopath/replay/evaluate/dense_ids.h"
-#include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/evaluate/segment_ids.h"
+#include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"
 
 namespace echopath {
@@ -30,13 +30,13 @@ struct SharedLegPlan {
     uint64_t diffuse, image;  // bit per hit
   };
   struct Chain {
-    size_t place;              // of the path in its block
+    size_t place;  // of the path in its block
     int64_t path;
-    uint32_t start, end;       // legs, in the order in which the path was traced
-    uint32_t inner;            // kNone: there is one material point, whose triangle keeps its area
-    uint32_t slide;            // index into `sliding`; kNone: its points of reflection stay where they were recorded
-    bool is_reversed;          // it starts at a receiver
-    bool is_coherent;          // it has a launch cell, at the point of its last leg
+    uint32_t start, end;  // legs, in the order in which the path was traced
+    uint32_t inner;       // kNone: there is one material point, whose triangle keeps its area
+    uint32_t slide;       // index into `sliding`; kNone: its points of reflection stay where they were recorded
+    bool is_reversed;     // it starts at a receiver
+    bool is_coherent;     // it has a launch cell, at the point of its last leg
     std::complex<double> weight;
   };
   // A path over flagged mirrors alone is a straight line from an image of the transmitter to the receiver.
@@ -55,15 +55,15 @@ struct SharedLegPlan {
     size_t place[2];
   };
 
-  std::vector<Direct> direct;         // by place
-  std::vector<Hit> points;            // distinct hits, of the chains
-  std::vector<Hit> mirrors;           // distinct planes: triangles at their first corner, of curved mirrors each hit
+  std::vector<Direct> direct;  // by place
+  std::vector<Hit> points;     // distinct hits, of the chains
+  std::vector<Hit> mirrors;    // distinct planes: triangles at their first corner, of curved mirrors each hit
   std::vector<Image> images;
   std::vector<Leg> legs;
   std::vector<uint32_t> inner_points;
   std::vector<Inner> inner;
-  std::vector<Chain> chains;          // by place
-  std::vector<int64_t> sliding;       // paths whose points of reflection move (SpecularPoints::kFermat)
+  std::vector<Chain> chains;     // by place
+  std::vector<int64_t> sliding;  // paths whose points of reflection move (SpecularPoints::kFermat)
   std::vector<MirrorPath> mirror_paths;
 
   void clear();
@@ -113,7 +113,8 @@ class SharedLegPlanner {
   Known last_start_, last_end_;
   const Hit* last_hit_ = nullptr;  // hit whose point was looked up last, often an end of the next path
   uint32_t last_point_ = 0;
-  std::vector<std::array<uint32_t, 2>> straight_;  // [point] legs from the antennas themselves: of transmitters, of receivers
+  std::vector<std::array<uint32_t, 2>>
+      straight_;                     // [point] legs from the antennas themselves: of transmitters, of receivers
   SegmentIds leg_of_, inner_of_[2];  // legs over mirrors; inner parts: as recorded, reversed
   DenseIds mirror_ids_, image_ids_, point_ids_, leg_ids_;
   std::vector<uint32_t> leg_over_mirrors_;  // by leg_ids_

@@ -30,7 +30,8 @@ void find_mirrors(const SharedLegPlan& plan, const PathPreparer& preparer, const
 void store_axes(const PosedNodes& nodes, bool of_receivers, AntennaImages& images) {
   for (size_t node = 0; node < nodes.size(); ++node) {
     for (size_t antenna = 0; antenna < images.num_antennas; ++antenna) {
-      images.antenna_from_image[antenna * nodes.size() + node] = nodes.at(node).antennas(of_receivers)[antenna].antenna_from_world;
+      images.antenna_from_image[antenna * nodes.size() + node] =
+          nodes.at(node).antennas(of_receivers)[antenna].antenna_from_world;
     }
   }
 }
@@ -41,8 +42,10 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
   for (size_t node = 0; node < num_nodes; ++node) {
     const Vec3 normal = load(planes, mirror, 0, node);
     const Plane plane{planes.row(mirror, 3)[node] * normal, normal};
-    store(plane.image(load(images.rows, from, LegToMeasure::kImagePosition, node)), images.rows, to, LegToMeasure::kImagePosition, node);
-    store(plane.mirrored(load(images.rows, from, LegToMeasure::kBoresight, node)), images.rows, to, LegToMeasure::kBoresight, node);
+    store(plane.image(load(images.rows, from, LegToMeasure::kImagePosition, node)), images.rows, to,
+          LegToMeasure::kImagePosition, node);
+    store(plane.mirrored(load(images.rows, from, LegToMeasure::kBoresight, node)), images.rows, to, LegToMeasure::kBoresight,
+          node);
     if (images.antenna_from_image.empty()) continue;
     const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
     images.antenna_from_image[to * num_nodes + node] = images.antenna_from_image[from * num_nodes + node] * reflection;
@@ -327,25 +330,29 @@ void SharedLegTables::measure_legs(const SharedLegPlan& plan, const PosedNodes& 
     if (chain.slide == SharedLegPlan::kNone) continue;
     for (size_t antenna = 0; antenna < images[chain.is_reversed].num_antennas; ++antenna) {
       const size_t entry = chain.slide * stride + antenna;
-      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), nodes, entry, sliding.legs);
+      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), nodes, entry,
+              sliding.legs);
     }
   }
 }
 
-void SharedLegTables::measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const {
+void SharedLegTables::measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg,
+                              LegTable& to) const {
   const AntennaImages& seen = images[from.of_receivers];
   const size_t entry = seen.entry(from.image, from.antenna);
   seen.measure(entry, point, to.rows.row(leg, 0), to.has_phases ? to.phases.row(leg, 0) : nullptr);
   if (!to.has_components) return;
   const double* own = nodes.polarizations[from.of_receivers].row(from.antenna, 0);
   shared_leg_kernels(axes.stride())
-      .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)}, axes.stride());
+      .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)},
+                       axes.stride());
 }
 
 size_t SharedLegTables::num_bytes() const {
-  size_t bytes = points.rows.num_bytes() + mirrors.num_bytes() + axes.num_bytes() + legs.num_bytes() + inner.rows.num_bytes() +
-                 sliding.points.num_bytes() + sliding.legs.num_bytes() + sliding.inner.num_bytes();
-  for (const AntennaImages& of_end : images) bytes += of_end.rows.num_bytes() + of_end.antenna_from_image.capacity() * sizeof(Mat3);
+  size_t bytes = points.rows.num_bytes() + mirrors.num_bytes() + axes.num_bytes() + legs.num_bytes() +
+                 inner.rows.num_bytes() + sliding.points.num_bytes() + sliding.legs.num_bytes() + sliding.inner.num_bytes();
+  for (const AntennaImages& of_end : images)
+    bytes += of_end.rows.num_bytes() + of_end.antenna_from_image.capacity() * sizeof(Mat3);
   return bytes;
 }
 

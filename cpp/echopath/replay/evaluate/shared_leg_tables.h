@@ -9,16 +9,15 @@
 
 namespace echopath {
 
-
 // Holds the distinct points of a block.
 struct PosedPoints {
   // Describes a point as it was at the trace.
   struct Traced {
-    Vec3 position, normal;        // m, relative to the origin; unit
-    const Mat3* curvature;        // PosedHit::curvature; null where the surface is flat or may stretch
+    Vec3 position, normal;  // m, relative to the origin; unit
+    const Mat3* curvature;  // PosedHit::curvature; null where the surface is flat or may stretch
   };
-  NodeRows rows;                  // PointToPose::Row
-  std::vector<Traced> traced;     // [point]
+  NodeRows rows;               // PointToPose::Row
+  std::vector<Traced> traced;  // [point]
   std::deque<std::array<Vec3, 3>> normals;
   std::deque<Mat3> curvatures;
 

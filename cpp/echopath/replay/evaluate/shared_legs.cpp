@@ -23,8 +23,8 @@ void set_world(size_t num_nodes, NodeRows& world) {
 
 }  // namespace
 
-void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
-                                 const ChannelSpan& channels) {
+void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+                                     const RadioConstants& radio, const ChannelSpan& channels) {
   if (plan.chains.empty() && plan.mirror_paths.empty()) return;
   num_receivers_ = nodes.at(0).receivers.size();
   paths_ = &preparer.paths();
@@ -51,7 +51,8 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
       put(chains, channels.nodes[channel]);
     }
   }
-  for (const SharedLegPlan::MirrorPath& path : plan.mirror_paths) evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
+  for (const SharedLegPlan::MirrorPath& path : plan.mirror_paths)
+    evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
 }
 
 SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::Chain& chain, size_t channel) const {
@@ -94,7 +95,7 @@ const double* SharedLegEvaluation::image_of(const SharedLegPlan& plan, uint32_t 
 }
 
 void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells,
-                                 const PosedNodes& nodes, size_t slot) {
+                                     const PosedNodes& nodes, size_t slot) {
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
   CoherentPath& path = coherent_[slot];
   path.point = tables_.points.rows.row(point, 0);
@@ -108,8 +109,8 @@ void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegP
   }
 }
 
-void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale,
-                                        size_t slot) {
+void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends,
+                                            double scale, size_t slot) {
   CoherentPath& path = coherent_[slot];
   path.path = path_of(chain, ends, scale, slot);
   path.start_image = image_of(plan, chain.start, ends.start);
@@ -144,7 +145,8 @@ void SharedLegEvaluation::turn(int64_t path, const MeasuredLeg& start, const Mea
 }
 
 void SharedLegEvaluation::polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
-  PathToPolarize work{start.table.components.row(start.leg, 0), end.table.components.row(end.leg, 0), {}, {}, values_.row(slot, 0)};
+  PathToPolarize work{
+      start.table.components.row(start.leg, 0), end.table.components.row(end.leg, 0), {}, {}, values_.row(slot, 0)};
   const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(path)];
   for (size_t entry = 0; entry < matrix.size(); ++entry) {
     work.re[entry] = matrix[entry].real();
@@ -164,8 +166,8 @@ void SharedLegEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg
 }
 
 // Each end sees the other over the mirrors: one leg leads from the transmitter's image to the receiver, and one back.
-void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
-                                       double scale) {
+void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes,
+                                           const ChannelSpan& channels, double scale) {
   constexpr size_t kSlot = 0;
   // The components are needed between upright antennas too, because these send nothing straight up or down.
   mirror_legs_.resize(2, nodes.size(), tables_.has_phases, !paths_->jones.empty());
@@ -173,7 +175,8 @@ void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
   for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
     const size_t of_all = channels.first + channel;
-    const SharedLegTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_}, {true, 0, of_all % num_receivers_}};
+    const SharedLegTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_},
+                                                    {true, 0, of_all % num_receivers_}};
     for (const size_t end : {0, 1}) {
       const SharedLegTables::ImageOfAntenna& other = ends[1 - end];
       const AntennaImages& images = tables_.images[other.of_receivers];

@@ -3,8 +3,8 @@
 // factors and, where it is coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
 #include <array>
 
-#include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/evaluate/trace_cells.h"
 
 namespace echopath {
@@ -37,8 +37,8 @@ struct ChannelSpan {
 class SharedLegEvaluation {
  public:
   // Writes the chains and mirror paths of the plan.
-  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
-                  const ChannelSpan& channels);
+  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+                  const RadioConstants& radio, const ChannelSpan& channels);
   // Reads the plan and the nodes of the last call: sets turned[place] to 1 where the surface at an end of the path turns its
   // other side to the first antenna there between the first and the last node, so that the amplitude of the path passes
   // through zero.
@@ -62,8 +62,10 @@ class SharedLegEvaluation {
   MeasuredLeg end_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
   const double* inner_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
   const double* image_of(const SharedLegPlan& plan, uint32_t leg, size_t antenna) const;
-  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
-  void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells,
+                  const PosedNodes& nodes, size_t slot);
+  void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale,
+                         size_t slot);
   void reflect_from_stretching(size_t slot);
   void evaluate_diffuse(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
   template <class Path>
@@ -72,15 +74,16 @@ class SharedLegEvaluation {
   void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
-  void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels, double scale);
+  void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
+                        double scale);
   bool turns(uint32_t leg) const;
 
   SharedLegTables tables_;
-  NodeRows values_;                              // [slot], PathToCombine::Row
-  std::array<CoherentPath, kTogether> coherent_;  // [slot], the part that does not depend on the channel
+  NodeRows values_;                                            // [slot], PathToCombine::Row
+  std::array<CoherentPath, kTogether> coherent_;               // [slot], the part that does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
-  NodeRows world_;                                // a mesh whose frame is the world's, PointToPose::MeshRow
-  LegTable mirror_legs_;                          // of one channel: from the transmitter's image, from the receiver
+  NodeRows world_;                                             // a mesh whose frame is the world's, PointToPose::MeshRow
+  LegTable mirror_legs_;  // of one channel: from the transmitter's image, from the receiver
   size_t num_receivers_ = 0;
   const SharedLegKernels* kernels_ = nullptr;
   const Paths* paths_ = nullptr;

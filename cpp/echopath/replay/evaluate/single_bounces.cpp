@@ -40,7 +40,7 @@ bool can_evaluate_single_bounces(const Radar& radar) {
 }
 
 void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
-                                  const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
+                                        const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
   if (plan.direct.empty()) return;
   sort_by_mesh(plan);
   set_antennas(nodes);
@@ -50,9 +50,21 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
   legs_.resize(num_legs * SingleBouncesToEvaluate::kNumLegRows * kSlots);
   const bool is_polarized = SharedLegTables::needs_polarizations(preparer.paths(), nodes);
   if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
-  work_ = {&slots_, false, {antennas_[0].data(), antennas_[1].data()}, {antennas_[0].size(), antennas_[1].size()},
-           is_monostatic(nodes), channels.first, channels.nodes.size(), num_nodes, nodes.meshes.stride(),
-            radio.filter(), kNoFacets, is_polarized ? axes_.row(0, 0) : nullptr, legs_.data(), out_.data(), turned_};
+  work_ = {&slots_,
+           false,
+           {antennas_[0].data(), antennas_[1].data()},
+           {antennas_[0].size(), antennas_[1].size()},
+           is_monostatic(nodes),
+           channels.first,
+           channels.nodes.size(),
+           num_nodes,
+           nodes.meshes.stride(),
+           radio.filter(),
+           kNoFacets,
+           is_polarized ? axes_.row(0, 0) : nullptr,
+           legs_.data(),
+           out_.data(),
+           turned_};
   const SingleBounceKernels& kernels = single_bounce_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
@@ -107,7 +119,8 @@ bool SingleBounceEvaluation::is_monostatic(const PosedNodes& nodes) const {
   if (antennas_[0].size() != antennas_[1].size()) return false;
   const NodeRows &transmitters = nodes.antennas[0], &receivers = nodes.antennas[1];
   for (size_t i = 0; i < antennas_[0].size(); ++i) {
-    if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak) return false;
+    if (antennas_[0][i].exponent != antennas_[1][i].exponent || antennas_[0][i].root_peak != antennas_[1][i].root_peak)
+      return false;
     const double* rows = transmitters.row(i, 0);
     if (!std::equal(rows, rows + LegToMeasure::kNumImageRows * transmitters.stride(), receivers.row(i, 0))) return false;
     const NodeRows* own = nodes.polarizations;
@@ -171,7 +184,8 @@ void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& prepar
 }
 
 // Polarised paths between upright antennas need only one entry of their matrix.
-void SingleBounceEvaluation::set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio) {
+void SingleBounceEvaluation::set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths,
+                                         const RadioConstants& radio) {
   const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
   for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
     const bool is_there = point.path[kind] != SharedLegPlan::Direct::kNoPath;
@@ -215,10 +229,12 @@ ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
   const double* from = nodes->values;
   double* length = nodes->length;
   double* amplitude = nodes->amplitude;
-  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+  for (size_t node = 0; node < nodes->count;
+       ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
     for (size_t slot = 0; slot < kSlots; ++slot) {
       length[2 * slot] = length[2 * slot + 1] = nodes->scale * from[slot];
-      for (size_t row = 0; row < 4; ++row) amplitude[4 * slot + row] = from[(SingleBouncesToEvaluate::kRe + row) * kSlots + slot];
+      for (size_t row = 0; row < 4; ++row)
+        amplitude[4 * slot + row] = from[(SingleBouncesToEvaluate::kRe + row) * kSlots + slot];
     }
   }
 }
@@ -228,7 +244,8 @@ ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
   const double* from = nodes->values;
   double* length = nodes->length;
   double* amplitude = nodes->amplitude;
-  for (size_t node = 0; node < nodes->count; ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
+  for (size_t node = 0; node < nodes->count;
+       ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
     for (size_t slot = 0; slot < kSlots; ++slot) {
       length[slot] = nodes->scale * from[slot];
       for (size_t part = 0; part < 2; ++part) {
@@ -241,13 +258,15 @@ ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
 
 // Returns whether all points have both paths, and whether their echoes follow each other at these steps: `kinds` from kind
 // to kind, `pairs` from point to point.
-bool are_neighbours(std::span<const SharedLegPlan::Direct* const> points, const ChannelNodes& to, size_t kinds, size_t pairs) {
+bool are_neighbours(std::span<const SharedLegPlan::Direct* const> points, const ChannelNodes& to, size_t kinds,
+                    size_t pairs) {
   if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
   const size_t first = to.echo(points[0]->place[0]);
   for (size_t slot = 0; slot < kSlots; ++slot) {
     const SharedLegPlan::Direct& point = *points[slot];
     if (!has_path(point, 0) || !has_path(point, 1)) return false;
-    if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds) return false;
+    if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds)
+      return false;
   }
   return true;
 }
@@ -273,7 +292,8 @@ void SingleBounceEvaluation::put(Points points, const ChannelNodes& to, const do
   for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
     for (size_t slot = 0; slot < points.size(); ++slot) {
       for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
-        if (has_path(*points[slot], kind)) to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
+        if (has_path(*points[slot], kind))
+          to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
       }
     }
   }

@@ -3,8 +3,8 @@
 // from the mesh.
 #include <vector>
 
-#include "echopath/replay/kernels/single_bounce_kernels.h"
 #include "echopath/replay/evaluate/shared_legs.h"
+#include "echopath/replay/kernels/single_bounce_kernels.h"
 
 namespace echopath {
 
@@ -16,8 +16,8 @@ class SingleBounceEvaluation {
     bool with_amplitudes = true;  // else they are not evaluated
   };
   // Writes the direct paths of the plan, for antennas that can_evaluate_single_bounces.
-  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
-                  const ChannelSpan& channels, const Wanted& wanted);
+  void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+                  const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted);
   size_t num_bytes() const { return (out_.capacity() + legs_.capacity()) * sizeof(double); }  // of its memory, nearly all
 
  private:
@@ -36,7 +36,7 @@ class SingleBounceEvaluation {
 
   std::vector<const SharedLegPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
-  std::vector<SingleBounceAntenna> antennas_[2];        // of transmitters, of receivers
+  std::vector<SingleBounceAntenna> antennas_[2];  // of transmitters, of receivers
   NodeRows seen_[2];                              // [antenna] as seen from the mesh in hand
   NodeRows axes_;                                 // of the world, as seen from the mesh; where polarisations need them
   SingleBounceTrace trace_;

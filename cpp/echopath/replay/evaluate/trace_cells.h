@@ -1,7 +1,7 @@
 #pragma once
 // Finds the launch cells of the coherent paths of a block from what these paths share.
-#include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/evaluate/launch_cell.h"
+#include "echopath/replay/evaluate/shared_leg_tables.h"
 
 namespace echopath {
 
@@ -24,8 +24,8 @@ class TraceCells {
 
  private:
   struct Arrival {
-    double length;    // m, unfolded, from the mean transmitter
-    Vec3 direction;   // of travel, unit
+    double length;   // m, unfolded, from the mean transmitter
+    Vec3 direction;  // of travel, unit
   };
   Arrival arrival_of(const SharedLegPlan::Chain& chain) const;
   CellTangents flat_tangents(const SharedLegPlan::Chain& chain, const PosedHit& hit, double density) const;

@@ -24,7 +24,7 @@ struct CellView {
 
 struct CellFilter {
   double wavenumber = 0.0;  // rad/m
-  double spread = 0.65;    // of the second order's Gaussian, in cells (trace/launch/sampler.h)
+  double spread = 0.65;     // of the second order's Gaussian, in cells (trace/launch/sampler.h)
   Footprint order = Footprint::kSecondOrder;
   CellView view;
 };
@@ -34,23 +34,23 @@ inline constexpr double kNoFacets = 1e150;  // m^2, of a surface whose triangles
 // Describes a cell with tangents T_a on its surface. Pairs stand as 11, 12, 22. The shape does not change while its mesh
 // moves rigidly.
 struct CellShape {
-  bool is_known = false;           // else the filter is off
-  bool is_curved = false;          // behind a curved specular bounce: `turn` is that of the trace
+  bool is_known = false;   // else the filter is off
+  bool is_curved = false;  // behind a curved specular bounce: `turn` is that of the trace
   Flatness flatness = Flatness::kFlat;
-  double product[3] = {0, 0, 0};   // T_a.T_b, m^2
-  double turn[3] = {0, 0, 0};      // T_a.U_b, m
-  double bend[3] = {0, 0, 0};      // II(T_a, T_b) about the normal of the triangle, m
-  double across[2] = {1, 0};       // of kFlatOneWay: unit, in cells, toward the curvature
-  bool is_coarse = false;          // is_coarse_cell
+  double product[3] = {0, 0, 0};  // T_a.T_b, m^2
+  double turn[3] = {0, 0, 0};     // T_a.U_b, m
+  double bend[3] = {0, 0, 0};     // II(T_a, T_b) about the normal of the triangle, m
+  double across[2] = {1, 0};      // of kFlatOneWay: unit, in cells, toward the curvature
+  bool is_coarse = false;         // is_coarse_cell
 };
 
 // Describes the cell as waves meet and leave it.
 template <class Real>
 struct CellWaves {
-  Real cos_in, cos_out;                          // positive
-  Real side;                                     // 1 where the wave arrives from the normal's side, else -1
-  Real inverse_in, inverse_out;                  // 1/m, of the unfolded lengths
-  Real along_arrival[2], along_departure[2];     // of unit directions of travel, T_a.u and T_a.s, m
+  Real cos_in, cos_out;                       // positive
+  Real side;                                  // 1 where the wave arrives from the normal's side, else -1
+  Real inverse_in, inverse_out;               // 1/m, of the unfolded lengths
+  Real along_arrival[2], along_departure[2];  // of unit directions of travel, T_a.u and T_a.s, m
 };
 
 // Returns the gradient g of the phase in rad per cell, and the matrix h in rad per cell^2. Shape is CellShape, or a type
@@ -65,7 +65,8 @@ ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellW
     const int a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
     const Real on_arrival = (cell.product[i] - at.along_arrival[a] * at.along_arrival[b]) * at.inverse_in;
     const Real on_departure = (cell.product[i] - at.along_departure[a] * at.along_departure[b]) * at.inverse_out;
-    *h[i] = per_area * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
+    *h[i] =
+        per_area * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
   }
   phase.g1 = per_side * (at.along_arrival[0] - at.along_departure[0]);
   phase.g2 = per_side * (at.along_arrival[1] - at.along_departure[1]);
@@ -82,7 +83,8 @@ ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
   constexpr double kFlatPhase = 0.05;  // rad: quadratic phase (spread^2 h) below which a flat facet is flat-top
-  const Real largest = Math::larger(Math::larger(Math::magnitude(phase.h11), Math::magnitude(phase.h22)), Math::magnitude(phase.h12));
+  const Real largest =
+      Math::larger(Math::larger(Math::magnitude(phase.h11), Math::magnitude(phase.h22)), Math::magnitude(phase.h12));
   const auto is_bent = largest * (filter.spread * filter.spread) >= kFlatPhase;
   const Real flat = flat_top_of<Math>(phase.g1) * flat_top_of<Math>(phase.g2);
   if (!Math::any(is_bent)) return {flat, flat * 0.0};
@@ -93,7 +95,8 @@ ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& p
 // Along the axis of a cylinder the facets are as long as the cylinder: the filter is flat-top there and of second order
 // across.
 template <class Math, class Real>
-ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase,
+                                                     const CellFilter& filter) {
   const double x = cell.across[0], y = cell.across[1];
   FootprintPhaseOf<Real> across{};
   across.g1 = x * phase.g1 + y * phase.g2;

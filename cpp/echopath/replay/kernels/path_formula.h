@@ -72,8 +72,7 @@ struct PairOfPolarizations {
 // Sets the waves from the signed cosines at the point, of the arrival and of the departure, and from one over the unfolded
 // lengths, in 1/m.
 template <class Math, class Real>
-ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real inverse_out,
-                               CellWaves<Real>& waves) {
+ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real inverse_out, CellWaves<Real>& waves) {
   waves.cos_in = Math::magnitude(cos_in);
   waves.cos_out = Math::magnitude(cos_out);
   waves.side = Math::with_sign_of(Real{} + 1.0, cos_in);
@@ -101,8 +100,7 @@ ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Re
 // Returns the factor of the leg between an antenna and a diffuse hit. `cosine` is signed, at the hit; `inverse` is one over
 // the length, in 1/m.
 template <class Math, class Real>
-ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, Real length,
-                                 Real inverse) {
+ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, Real length, Real inverse) {
   return length < kNearAntenna ? Real{} : Math::with_sign_of(root_gain * root_cosine * inverse, cosine);
 }
 template <class Math, class Real>

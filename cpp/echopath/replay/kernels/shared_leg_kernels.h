@@ -43,8 +43,8 @@ struct InnerRows {
 struct PathToCombine {
   enum Row { kLength, kRe, kIm, kNumRows };  // m, sqrt(W)
   const double *start, *end;
-  const double* inner;            // null: one material point
-  ComplexOf<double> weight;       // with all that does not change
+  const double* inner;       // null: one material point
+  ComplexOf<double> weight;  // with all that does not change
   double* out;
 };
 
@@ -57,17 +57,17 @@ struct DiffusePath {
 struct CoherentPath {
   PathToCombine path;
   const double *start_image, *end_image, *point;
-  const double* mesh;               // in whose frame the tangents are
-  double tangent[2][3];             // T_a, m
+  const double* mesh;    // in whose frame the tangents are
+  double tangent[2][3];  // T_a, m
   CellShape cell;
   CellFilter filter;
-  double root_area;                 // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
+  double root_area;  // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
 };
 
 // Describes the polarisation of an antenna across a leg, as the wave departs: its horizontal and vertical components at the
 // antenna. For a wave that arrives over the same leg the horizontal component changes its sign.
 struct ComponentsToFind {
-  enum AxisRow { kAxes, kNumAxisRows = 9 };          // of the world as they look over the mirrors of the image, one by one; unit
+  enum AxisRow { kAxes, kNumAxisRows = 9 };  // of the world as they look over the mirrors of the image, one by one; unit
   enum PolarizationRow { kNumPolarizationRows = 3 };  // of the antenna, in the world
   enum Row { kHorizontal, kVertical, kNumRows };
   const double *image, *axes, *polarization, *point;
@@ -85,7 +85,7 @@ struct SharedLegKernels {
   void (*pose)(const PointToPose& point, size_t stride);
   void (*measure)(const LegToMeasure& leg, size_t stride);
   void (*combine)(const DiffusePath& path, size_t stride);
-  void (*connect)(const PathToCombine& path, size_t stride);  // over flagged mirrors alone
+  void (*connect)(const PathToCombine& path, size_t stride);                           // over flagged mirrors alone
   void (*reflect)(const CoherentPath& path, size_t begin, size_t end, size_t stride);  // nodes [begin, end)
   void (*find_components)(const ComponentsToFind& leg, size_t stride);
   void (*polarize)(const PathToPolarize& path, size_t stride);

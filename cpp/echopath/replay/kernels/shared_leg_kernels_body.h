@@ -2,8 +2,8 @@
 // The inner loops of replay, compiled once per instruction set (base/lane_math.h).
 #include "echopath/base/lane_math.h"
 #include "echopath/base/vector_of.h"
-#include "echopath/replay/kernels/shared_leg_kernels.h"
 #include "echopath/replay/kernels/path_formula.h"
+#include "echopath/replay/kernels/shared_leg_kernels.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
@@ -21,11 +21,15 @@ struct At {
   using Real = typename Math::Real;
   size_t node, stride;
 
-  ECHOPATH_INLINE Real value(const double* rows, int row) const { return Math::load(rows + static_cast<size_t>(row) * stride + node); }
+  ECHOPATH_INLINE Real value(const double* rows, int row) const {
+    return Math::load(rows + static_cast<size_t>(row) * stride + node);
+  }
   ECHOPATH_INLINE VectorOf<Real> vector(const double* rows, int row) const {
     return {value(rows, row), value(rows, row + 1), value(rows, row + 2)};
   }
-  ECHOPATH_INLINE void set(double* rows, int row, Real x) const { Math::store(rows + static_cast<size_t>(row) * stride + node, x); }
+  ECHOPATH_INLINE void set(double* rows, int row, Real x) const {
+    Math::store(rows + static_cast<size_t>(row) * stride + node, x);
+  }
   ECHOPATH_INLINE void set(double* rows, int row, const VectorOf<Real>& v) const {
     set(rows, row, v.x);
     set(rows, row + 1, v.y);
@@ -75,8 +79,9 @@ template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_size(const DiffusePath& diffuse, const At<Math>& at, Real start, Real end) {
   const double* inner = diffuse.path.inner;
   if (diffuse.begins_specular) {
-    start = specular_leg(at.value(diffuse.path.start, LegToMeasure::kGain), at.value(diffuse.path.start, LegToMeasure::kLength),
-                         at.value(inner, InnerRows::kToFirst), at.value(inner, InnerRows::kRootCosFirst));
+    start =
+        specular_leg(at.value(diffuse.path.start, LegToMeasure::kGain), at.value(diffuse.path.start, LegToMeasure::kLength),
+                     at.value(inner, InnerRows::kToFirst), at.value(inner, InnerRows::kRootCosFirst));
   }
   const Real product = diffuse.is_single ? diffuse_product<Math>(start, end)
                                          : diffuse_product<Math>(start, end, at.value(inner, InnerRows::kFirstSign),
@@ -85,7 +90,8 @@ ECHOPATH_INLINE Real diffuse_size(const DiffusePath& diffuse, const At<Math>& at
 }
 
 template <class Math, class Real>
-ECHOPATH_INLINE void set_path(const PathToCombine& path, const At<Math>& at, const Real& length, const ComplexOf<Real>& amplitude) {
+ECHOPATH_INLINE void set_path(const PathToCombine& path, const At<Math>& at, const Real& length,
+                              const ComplexOf<Real>& amplitude) {
   at.set(path.out, PathToCombine::kLength, length);
   at.set(path.out, PathToCombine::kRe, amplitude.re);
   at.set(path.out, PathToCombine::kIm, amplitude.im);
@@ -125,11 +131,13 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
   for (size_t node = begin; node < end; node += Math::kCount) {
     const At<Math> at{node, stride};
     const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
-    const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition), normal = at.vector(coherent.point, PointToPose::kNormal);
+    const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition),
+                         normal = at.vector(coherent.point, PointToPose::kNormal);
     const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
     const Real inverse_in = 1.0 / in, inverse_out = 1.0 / out;
-    const VectorOf<Real> arrival = path.inner ? at.vector(path.inner, InnerRows::kArrival)
-                                            : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
+    const VectorOf<Real> arrival =
+        path.inner ? at.vector(path.inner, InnerRows::kArrival)
+                   : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
     const VectorOf<Real> departure = inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
     const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
     CellWaves<Real> waves;
@@ -179,7 +187,7 @@ void polarize(const PathToPolarize& path, size_t stride) {
 
 template <class Math>
 constexpr SharedLegKernels kChainKernels = {pose<Math>,    measure<Math>,         combine<Math>, connect<Math>,
-                                        reflect<Math>, find_components<Math>, polarize<Math>};
+                                            reflect<Math>, find_components<Math>, polarize<Math>};
 constexpr ForRows<SharedLegKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
 
 }  // namespace

@@ -41,15 +41,15 @@ struct SingleBounceTrace {
 
 // Describes the motion of an antenna about the mesh, as if the mesh stayed where it was at the trace.
 struct AntennaToSee {
-  const double* mesh;         // PointToPose::MeshRow
-  const double* antenna;      // LegToMeasure::ImageRow, in the world
-  double* out;                // LegToMeasure::ImageRow, about the mesh
+  const double* mesh;     // PointToPose::MeshRow
+  const double* antenna;  // LegToMeasure::ImageRow, in the world
+  double* out;            // LegToMeasure::ImageRow, about the mesh
 };
 
 struct SingleBounceAntenna {
-  const double* rows;         // AntennaToSee::out, rows of `stride` nodes
+  const double* rows;          // AntennaToSee::out, rows of `stride` nodes
   const double* polarization;  // ComponentsToFind::PolarizationRow, rows of `stride` nodes
-  int exponent;               // LegToMeasure::exponent, a whole one
+  int exponent;                // LegToMeasure::exponent, a whole one
   double root_peak;
 };
 
@@ -59,18 +59,18 @@ struct SingleBouncesToEvaluate {
   enum Row { kLength, kRe, kIm = 2, kNumRows = 5 };  // m, sqrt(W); re and im of both kinds, one after the other
 
   const SingleBounceSlots* slots;
-  bool has_coherent;          // whether any slot has a coherent path; else its rows are 0
+  bool has_coherent;  // whether any slot has a coherent path; else its rows are 0
   const SingleBounceAntenna* antennas[2];
   size_t num_antennas[2];
-  bool is_monostatic;         // both ends have the same antennas, hence the same legs
+  bool is_monostatic;                  // both ends have the same antennas, hence the same legs
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
   size_t num_nodes, stride;
   CellFilter filter;
-  double facet_area;          // m^2, of the mesh in hand (PathPreparer::facet_area)
-  const double* axes;         // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
-  double* legs;               // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
-  double* out;                // [channel, node, kNumRows, slot]
-  double* turned;             // [slot] 1 where the point turns its other side to the first antenna of an end on the way
+  double facet_area;   // m^2, of the mesh in hand (PathPreparer::facet_area)
+  const double* axes;  // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
+  double* legs;        // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
+  double* out;         // [channel, node, kNumRows, slot]
+  double* turned;      // [slot] 1 where the point turns its other side to the first antenna of an end on the way
 };
 
 struct SingleBounceKernels {

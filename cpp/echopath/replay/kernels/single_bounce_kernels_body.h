@@ -41,7 +41,9 @@ ECHOPATH_INLINE VectorOf<Vec> orthogonal(const VectorOf<Vec>& v) {
   return choose(is_upright, {Vec{}, -v.z * of_yz, v.y * of_yz}, {-v.y * of_xy, v.x * of_xy, Vec{}});
 }
 
-ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) { return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0); }
+ECHOPATH_INLINE Mask is_finite(const VectorOf<Vec>& v) {
+  return (v.x - v.x == 0.0) & (v.y - v.y == 0.0) & (v.z - v.z == 0.0);
+}
 
 // Finds the point and the launch cell of the path's own stratum on the plane of its triangle (launch_cell.h).
 void prepare(const SingleBounceTrace& trace, SingleBounceSlots& slots) {
@@ -107,13 +109,14 @@ struct PointLanes {
 };
 
 ECHOPATH_INLINE PointLanes points_at(const SingleBounceSlots& slots, size_t slot) {
-  return {vector_at(slots.point, slot), vector_at(slots.normal, slot),
+  return {vector_at(slots.point, slot),
+          vector_at(slots.normal, slot),
           {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
 // Returns the components (ComponentsToFind) of a leg along `line`.
-ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna, size_t node,
-                                                  const VectorOf<Vec>& line) {
+ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna,
+                                                  size_t node, const VectorOf<Vec>& line) {
   const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
   const auto along = [&](int axis) {
     const int row = ComponentsToFind::kAxes + 3 * axis;
@@ -128,8 +131,9 @@ template <bool kIsPolarized>
 ECHOPATH_INLINE void measure_leg(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna, size_t node,
                                  const PointLanes& at, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
-  const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition), at.point.y - value(LegToMeasure::kImagePosition + 1),
-                         at.point.z - value(LegToMeasure::kImagePosition + 2)};
+  const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition),
+                           at.point.y - value(LegToMeasure::kImagePosition + 1),
+                           at.point.z - value(LegToMeasure::kImagePosition + 2)};
   const Roots distance = roots_of(dot(line, line));
   const Vec inverse = distance.inverse, cosine = -inverse * dot(at.normal, line);
   Vec gain = all(antenna.root_peak);
@@ -178,7 +182,8 @@ struct LegLanes {
 };
 
 // Returns the physical-optics factor over the legs in and out, relative to the weight.
-ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot) {
+ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out,
+                                           size_t slot) {
   using D = SingleBouncesToEvaluate;
   const Vec cos_in = in(D::kCosine), cos_out = out(D::kCosine);
   CellWaves<Vec> waves;
@@ -200,7 +205,8 @@ struct WeightLanes<false> {
   const SingleBounceSlots& slots;
   size_t slot;
 
-  ECHOPATH_INLINE WeightLanes(const SingleBounceSlots& from, const LegLanes&, const LegLanes&, size_t first) : slots(from), slot(first) {}
+  ECHOPATH_INLINE WeightLanes(const SingleBounceSlots& from, const LegLanes&, const LegLanes&, size_t first)
+      : slots(from), slot(first) {}
   ECHOPATH_INLINE Vec operator()(int kind, int part) const { return load(slots.weight[kind][part] + slot); }
 };
 template <>
@@ -222,7 +228,8 @@ struct WeightLanes<true> {
 };
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void combine_legs(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot, double* to) {
+ECHOPATH_INLINE void combine_legs(const SingleBouncesToEvaluate& paths, const LegLanes& in, const LegLanes& out, size_t slot,
+                                  double* to) {
   using D = SingleBouncesToEvaluate;
   const auto set = [&](int row, Vec x) { store(to + static_cast<size_t>(row) * SingleBounceSlots::kSlots + slot, x); };
   const WeightLanes<kIsPolarized> weight(*paths.slots, in, out, slot);
@@ -241,7 +248,8 @@ ECHOPATH_INLINE void combine_legs(const SingleBouncesToEvaluate& paths, const Le
 }
 
 ECHOPATH_INLINE double* leg_of(const SingleBouncesToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {
-  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1], of_end = end == 0 || paths.is_monostatic ? 0 : paths.num_antennas[0];
+  const size_t num_legs = paths.num_antennas[0] + paths.num_antennas[1],
+               of_end = end == 0 || paths.is_monostatic ? 0 : paths.num_antennas[0];
   const size_t leg = node % SingleBouncesToEvaluate::kNodesTogether * num_legs + of_end + antenna;
   return paths.legs + leg * SingleBouncesToEvaluate::kNumLegRows * SingleBounceSlots::kSlots + slot;
 }

@@ -63,8 +63,7 @@ LocalHit PathPreparer::hit(const Hit& hit) const {
   local.triangle = local.deformed ? patches_[hit.mesh_id].corners(triangle) : triangle;
   local.u = hit.u;
   local.v = hit.v;
-  const std::vector<Vec3>& vertices =
-      local.deformed ? at_trace_.local_vertices(hit.mesh_id) : node.mesh->vertices();
+  const std::vector<Vec3>& vertices = local.deformed ? at_trace_.local_vertices(hit.mesh_id) : node.mesh->vertices();
   local.corner = vertices[local.triangle[0]];
   local.edge_u = vertices[local.triangle[1]] - local.corner;
   local.edge_v = vertices[local.triangle[2]] - local.corner;

@@ -56,8 +56,8 @@ class PathPreparer {
   LocalPath local_path(int64_t index, LocalPaths& block) const;
 
   const Paths& paths_;
-  std::vector<SurfacePatch> patches_;                         // by mesh ID
-  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;    // by mesh ID
+  std::vector<SurfacePatch> patches_;                                       // by mesh ID
+  std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;  // by mesh ID
   PosedScene at_trace_;
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;

@@ -10,7 +10,7 @@ namespace echopath {
 // Describes a hit in the frame of its mesh.
 struct LocalHit {
   uint32_t mesh_id = 0, triangle_id = 0;
-  bool deformed = false;        // the corners are those of the scene, `triangle` counts places in the mesh's patch
+  bool deformed = false;  // the corners are those of the scene, `triangle` counts places in the mesh's patch
   Triangle triangle{};
   double u = 0.0, v = 0.0;
   Vec3 corner, edge_u, edge_v;  // of its triangle at rest; of a deforming mesh, as at the trace
@@ -22,10 +22,10 @@ struct LocalHit {
 };
 
 struct PosedHit {
-  Vec3 point, normal;    // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
-  Vec3 edge_u, edge_v;   // only where they are asked for or the triangle bends
-  Vec3 facet;            // the point on the flat triangle; only where is_smooth
-  Mat3 curvature;        // 1/m, about `normal` (scene/smooth.h); only where is_smooth
+  Vec3 point, normal;   // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
+  Vec3 edge_u, edge_v;  // only where they are asked for or the triangle bends
+  Vec3 facet;           // the point on the flat triangle; only where is_smooth
+  Mat3 curvature;       // 1/m, about `normal` (scene/smooth.h); only where is_smooth
   bool is_smooth = false;
   double area_ratio = 1.0;  // of its triangle, over that at the trace
 };
@@ -33,12 +33,12 @@ struct PosedHit {
 // Holds the part of a path that does not depend on time.
 struct LocalPath {
   const LocalHit* hits = nullptr;
-  const Hit* recorded = nullptr;   // these hits in the order of the record
+  const Hit* recorded = nullptr;  // these hits in the order of the record
   int count = 0;
-  bool is_reversed = false;        // hits and bits stand as traced, from the receiver's end: antennas change their roles
+  bool is_reversed = false;  // hits and bits stand as traced, from the receiver's end: antennas change their roles
   uint64_t diffuse = 0;
-  uint64_t image = 0;              // bit per hit: specular on a flagged mirror, replayed by images
-  uint64_t sliding = 0;            // bit per hit: other specular hits, whose point of reflection slides over the surface
+  uint64_t image = 0;    // bit per hit: specular on a flagged mirror, replayed by images
+  uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

@@ -56,8 +56,13 @@ bool SpecularSlide::solve(const LocalPath& path, const PosedHit* hits, const Vec
   for (int k = path.first_material; k < path.last_material; ++k) {
     if (!path.is_sliding(k)) continue;
     const Vec3 first = hits[k].normal.unitOrthogonal(), second = hits[k].normal.cross(first);
-    points_.push_back({k, {first, second}, std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero(),
-                       Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), Eigen::Vector2d::Zero()});
+    points_.push_back({k,
+                       {first, second},
+                       std::numeric_limits<double>::infinity(),
+                       Eigen::Vector2d::Zero(),
+                       Eigen::Matrix2d::Zero(),
+                       Eigen::Matrix2d::Zero(),
+                       Eigen::Vector2d::Zero()});
   }
   int previous = path.first_material;
   if (path.is_sliding(previous)) {

@@ -14,7 +14,8 @@ constexpr size_t kLeast = 8;
 
 // Computes kVectors sums that stay in registers.
 template <size_t kVectors>
-ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_t order, size_t stride, double* __restrict sum) {
+ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_t order, size_t stride,
+                              double* __restrict sum) {
   Lanes<double, kLeast> some[kVectors] = {};
   for (size_t k = 0; k < order; ++k) {
     const double* row = values + k * stride;
@@ -25,7 +26,8 @@ ECHOPATH_INLINE void sum_some(const double* values, const double* weights, size_
 
 // Computes sum [count] = weights [order] times values [order, count], for count >= kLeast. The last vector overlaps the one
 // before.
-ECHOPATH_INLINE void weighted_sum(const double* values, const double* weights, size_t order, size_t count, double* __restrict sum) {
+ECHOPATH_INLINE void weighted_sum(const double* values, const double* weights, size_t order, size_t count,
+                                  double* __restrict sum) {
   constexpr size_t kVectors = 4, kTogether = kVectors * kLeast;
   size_t i = 0;
   for (; i + kTogether <= count; i += kTogether) sum_some<kVectors>(values + i, weights, order, count, sum + i);
@@ -46,7 +48,8 @@ void fill_derivatives(const TimeSampling& from, const double* delay, Echoes& ech
   const auto count = static_cast<size_t>(echoes.num_echoes), stride = static_cast<size_t>(echoes.sampling.order);
   const auto order = static_cast<size_t>(from.order);
   const bool are_few = count < kLeast;
-  const std::vector<double> wide = are_few ? widened(delay, static_cast<size_t>(from.num_rows), count) : std::vector<double>();
+  const std::vector<double> wide =
+      are_few ? widened(delay, static_cast<size_t>(from.num_rows), count) : std::vector<double>();
   const size_t width = are_few ? kLeast : count;
   double few[kLeast];
   const std::vector<double>* const weights[] = {&from.slope, &from.second_derivative, &from.third_derivative};

@@ -19,8 +19,8 @@ std::vector<double> coefficient_row(int n, int order) {
   const bool end_row = n == 0 || n == order - 1;
   for (int k = 0; k < order; ++k) {
     const bool end_point = k == 0 || k == order - 1;
-    row[static_cast<size_t>(k)] = std::cos(kPi * n * k / (order - 1)) * 2.0 / (order - 1) * (end_point ? 0.5 : 1.0) *
-                                  (end_row ? 0.5 : 1.0);
+    row[static_cast<size_t>(k)] =
+        std::cos(kPi * n * k / (order - 1)) * 2.0 / (order - 1) * (end_point ? 0.5 : 1.0) * (end_row ? 0.5 : 1.0);
   }
   return row;
 }
@@ -31,7 +31,8 @@ std::vector<std::array<double, 4>> chebyshev(int order, double x) {
   for (int n = 2; n < order; ++n) {
     const std::array<double, 4>&before = values[static_cast<size_t>(n) - 2], &here = values[static_cast<size_t>(n) - 1];
     std::array<double, 4> next;
-    for (size_t d = 0; d < 4; ++d) next[d] = 2.0 * (x * here[d] + (d > 0 ? static_cast<double>(d) * here[d - 1] : 0.0)) - before[d];
+    for (size_t d = 0; d < 4; ++d)
+      next[d] = 2.0 * (x * here[d] + (d > 0 ? static_cast<double>(d) * here[d - 1] : 0.0)) - before[d];
     values.push_back(next);
   }
   return values;
@@ -76,7 +77,8 @@ class NodeSet {
     sampling.order = order_;
     sampling.first_row.push_back(first_row);
     const std::vector<std::array<double, 4>> basis = chebyshev(order_, x);
-    std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
+    std::vector<double>* const out[4] = {&sampling.value, &sampling.slope, &sampling.second_derivative,
+                                         &sampling.third_derivative};
     double unit = 1.0;  // of the derivative, s^-d
     for (size_t d = 0; d <= num_derivatives_; ++d, unit *= scale) {
       out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
@@ -116,7 +118,8 @@ FrameNodes static_nodes(const Radar& radar, double time) {
   return nodes;
 }
 
-FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order) {
+FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints,
+                                     int order) {
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
   return nodes_of(pieces, order);
 }
@@ -160,7 +163,8 @@ FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int tra
 FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter) {
   FrameNodes nodes;
   nodes.is_exact = true;
-  for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) nodes.times.push_back(start_time + radar.chirp_time(transmitter, chirp));
+  for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp)
+    nodes.times.push_back(start_time + radar.chirp_time(transmitter, chirp));
   return nodes;
 }
 
@@ -169,7 +173,8 @@ TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   sampling.order = derivatives == ChirpDerivatives::kThird ? 4 : 2;
   sampling.num_rows = num_chirps * sampling.order;
   sampling.holds_derivatives = true;
-  std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative, &sampling.third_derivative};
+  std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative,
+                                          &sampling.third_derivative};
   for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_rows), 0.0);
   for (int chirp = 0; chirp < num_chirps; ++chirp) {
     sampling.first_row.push_back(chirp * sampling.order);

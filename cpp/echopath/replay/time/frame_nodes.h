@@ -8,10 +8,10 @@
 namespace echopath {
 
 struct FrameNodes {
-  std::vector<double> times;            // [num_nodes] s
-  std::vector<TimeSampling> sampling;   // by transmitter
-  int order = 1;                        // nodes per piece; 1: one node for all
-  bool is_exact = false;                // nodes in every chirp
+  std::vector<double> times;           // [num_nodes] s
+  std::vector<TimeSampling> sampling;  // by transmitter
+  int order = 1;                       // nodes per piece; 1: one node for all
+  bool is_exact = false;               // nodes in every chirp
 
   // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: they measure what the
   // polynomial leaves out. It is empty for order 1 and for exact nodes.
@@ -29,7 +29,8 @@ FrameNodes static_nodes(const Radar& radar, double time);
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives = ChirpDerivatives::kThird);
 // Returns the same nodes without their sampling, which is the costly part.
-FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order);
+FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints,
+                                     int order);
 // Returns `order` (odd) such nodes in every chirp of one transmitter, which alone has a sampling; the middle node is at the
 // window centre.
 FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter,

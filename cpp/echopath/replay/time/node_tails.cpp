@@ -12,8 +12,8 @@ namespace {
 constexpr double kShareOfBeforeLast = 0.25;
 
 // Adds values relative to those of the first node, so that the sums do not drown in the rounding of whole delays.
-ECHOPATH_INLINE void add_node(const double* values, const double* first, double weight_before_last, double weight_last, size_t count,
-                            double* __restrict before_last, double* __restrict last) {
+ECHOPATH_INLINE void add_node(const double* values, const double* first, double weight_before_last, double weight_last,
+                              size_t count, double* __restrict before_last, double* __restrict last) {
   for (size_t i = 0; i < count; ++i) {
     const double value = values[i] - first[i];
     before_last[i] += weight_before_last * value;
@@ -27,9 +27,12 @@ ECHOPATH_INLINE void raise_by_delays(const double* before_last, const double* la
   }
 }
 
-ECHOPATH_INLINE double modulus(const double* complex) { return std::sqrt(complex[0] * complex[0] + complex[1] * complex[1]); }
+ECHOPATH_INLINE double modulus(const double* complex) {
+  return std::sqrt(complex[0] * complex[0] + complex[1] * complex[1]);
+}
 
-ECHOPATH_INLINE void raise_by_amplitudes(const double* before_last, const double* last, size_t count, double* __restrict tail) {
+ECHOPATH_INLINE void raise_by_amplitudes(const double* before_last, const double* last, size_t count,
+                                         double* __restrict tail) {
   for (size_t i = 0; i < count; ++i) {
     tail[i] = std::max(tail[i], modulus(last + 2 * i) + kShareOfBeforeLast * modulus(before_last + 2 * i));
   }
@@ -57,7 +60,8 @@ class Coefficients {
     std::fill_n(last_.begin(), count, 0.0);
     const double* first = values + static_cast<size_t>(piece) * order * stride;
     for (size_t k = 1; k < order; ++k) {
-      run_simd<add_node>(first + k * stride, first, nodes_.tail[k], nodes_.tail[order + k], count, before_last_.data(), last_.data());
+      run_simd<add_node>(first + k * stride, first, nodes_.tail[k], nodes_.tail[order + k], count, before_last_.data(),
+                         last_.data());
     }
   }
   const double* before_last() const { return before_last_.data(); }
@@ -84,7 +88,8 @@ NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
       of_delays.find(echoes.delay.data() + begin, piece, num_paths, count);
       run_simd<raise_by_delays>(of_delays.before_last(), of_delays.last(), count, tails.delay.data() + begin);
       of_amplitudes.find(amplitude + 2 * begin, piece, 2 * num_paths, 2 * count);
-      run_simd<raise_by_amplitudes>(of_amplitudes.before_last(), of_amplitudes.last(), count, tails.amplitude.data() + begin);
+      run_simd<raise_by_amplitudes>(of_amplitudes.before_last(), of_amplitudes.last(), count,
+                                    tails.amplitude.data() + begin);
     }
     largest.fill(0.0);
     for (size_t node = 0; node < nodes.times.size(); ++node) {

@@ -14,8 +14,8 @@ constexpr int64_t kWorthOfANode = 5;
 
 }  // namespace
 
-PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed, double wavenumber,
-                     double phase_tolerance)
+PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed,
+                     double wavenumber, double phase_tolerance)
     : paths_(paths), grids_(grids), posed_(posed), wavenumber_(wavenumber), phase_tolerance_(phase_tolerance),
       num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.motion != nullptr) {
   const TimeSpan frame{grids.start_time(), grids.start_time() + radar.frame_duration()};
@@ -71,7 +71,8 @@ void PathGrids::first(int64_t begin, std::span<uint8_t> first) const {
     // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
     // place of those that are missing.
     for (int k = 0; k < num_hits; k += 4) {
-      for (int step = 0; step < 4; ++step) needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
+      for (int step = 0; step < 4; ++step)
+        needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
     }
     first[i] = static_cast<uint8_t>(needed);
   }

@@ -11,18 +11,17 @@ struct Overloaded : Functions... {
 }  // namespace
 
 FrameNodes nodes_of(const TimeGrid& grid, const Radar& radar, double start_time, ChirpDerivatives derivatives) {
-  return std::visit(
-      Overloaded{
-          [&](const StillGrid& still) { return static_nodes(radar, still.time); },
-          [&](const PolynomialGrid& polynomial) {
-            return chebyshev_nodes(radar, start_time, polynomial.cuts, polynomial.order, derivatives);
-          },
-          [&](const ChirpGrid& chirps) { return centre_nodes(radar, start_time, chirps.transmitter); },
-          [&](const SampleGrid& samples) {
-            return exact_nodes(radar, start_time, samples.order, samples.transmitter, derivatives);
-          },
-      },
-      grid);
+  return std::visit(Overloaded{
+                        [&](const StillGrid& still) { return static_nodes(radar, still.time); },
+                        [&](const PolynomialGrid& polynomial) {
+    return chebyshev_nodes(radar, start_time, polynomial.cuts, polynomial.order, derivatives);
+  },
+                        [&](const ChirpGrid& chirps) { return centre_nodes(radar, start_time, chirps.transmitter); },
+                        [&](const SampleGrid& samples) {
+    return exact_nodes(radar, start_time, samples.order, samples.transmitter, derivatives);
+  },
+                    },
+                    grid);
 }
 
 int transmitter_of(const TimeGrid& grid) {

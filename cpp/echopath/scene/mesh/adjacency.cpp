@@ -10,7 +10,7 @@ namespace {
 struct Edge {
   uint32_t low, high;  // numbers of the places of both ends
   uint32_t triangle;
-  uint32_t side;       // of the triangle
+  uint32_t side;  // of the triangle
   bool meets(const Edge& other) const { return low == other.low && high == other.high; }
 };
 

@@ -12,8 +12,8 @@ struct ReflectingTriangle {
   std::array<Vec3, 3> corners;  // m
   std::array<Vec3, 3> normals;  // unit; all equal to facet_normal where it is flat
   Vec3 centre, facet_normal;
-  double radius = 0.0;          // m, largest distance of a corner from the centre
-  double turn = 0.0;            // largest |corner normal - facet normal|
+  double radius = 0.0;  // m, largest distance of a corner from the centre
+  double turn = 0.0;    // largest |corner normal - facet normal|
 
   bool is_flat() const { return turn == 0.0; }
 };

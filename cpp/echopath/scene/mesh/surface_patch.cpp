@@ -18,9 +18,8 @@ std::vector<uint8_t> corners_of(const Mesh& mesh, const std::vector<uint8_t>& ta
 // Returns the triangles of the surface that have a corner among the marked vertices.
 std::vector<Triangle> ring_of(const Mesh& surface, const std::vector<uint8_t>& is_corner) {
   std::vector<Triangle> ring;
-  std::copy_if(surface.triangles().begin(), surface.triangles().end(), std::back_inserter(ring), [&](const Triangle& t) {
-    return is_corner[t[0]] || is_corner[t[1]] || is_corner[t[2]];
-  });
+  std::copy_if(surface.triangles().begin(), surface.triangles().end(), std::back_inserter(ring),
+               [&](const Triangle& t) { return is_corner[t[0]] || is_corner[t[1]] || is_corner[t[2]]; });
   return ring;
 }
 

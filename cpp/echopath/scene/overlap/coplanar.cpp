@@ -99,12 +99,10 @@ class OverlapSearch {
  private:
   void search_behind(uint32_t place, std::vector<OverlapPair>& found) const {
     const FacetPlane plane(tree_.triangle(place));
-    tree_.visit_behind(
-        place, [&](const Box& box) { return plane.may_meet(box, max_distance_); },
-        [&](uint32_t other) {
-          const auto overlap = plane.overlap(tree_.triangle(other), max_distance_);
-          if (overlap) found.push_back(overlap_pair(place, other, *overlap));
-        });
+    tree_.visit_behind(place, [&](const Box& box) { return plane.may_meet(box, max_distance_); }, [&](uint32_t other) {
+      const auto overlap = plane.overlap(tree_.triangle(other), max_distance_);
+      if (overlap) found.push_back(overlap_pair(place, other, *overlap));
+    });
   }
 
   OverlapPair overlap_pair(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {

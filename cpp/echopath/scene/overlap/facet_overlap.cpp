@@ -7,7 +7,7 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kMinCosine = 0.995;  // of 0.1 rad: creases as small as max_distance do not make a surface lie on itself
+constexpr double kMinCosine = 0.995;    // of 0.1 rad: creases as small as max_distance do not make a surface lie on itself
 constexpr double kTouchingShare = 0.1;  // of the narrower triangle's height, because slivers overlap, too
 
 struct Polygon {

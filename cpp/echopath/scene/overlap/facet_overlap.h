@@ -29,7 +29,7 @@ class FacetPlane {
 
  private:
   using Vec2 = Eigen::Vector2d;
-  struct Side {  // an edge, seen along the normal
+  struct Side {    // an edge, seen along the normal
     Vec2 outward;  // unit
     double reach;  // m, extent of the triangle that way
   };
@@ -38,7 +38,7 @@ class FacetPlane {
 
   Box box_;
   Vec3 origin_, across_, up_, normal_;
-  double height_;  // m, of the corner above the longest side
+  double height_;                // m, of the corner above the longest side
   std::array<Vec3, 3> corners_;  // in the coordinates of seen()
   std::array<Side, 3> sides_;
 };

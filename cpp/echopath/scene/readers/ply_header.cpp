@@ -89,8 +89,7 @@ class HeaderParser {
   }
 
   PlyType type(const std::string& name) const {
-    const auto found =
-        std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return name == known.first; });
+    const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return name == known.first; });
     if (found == kTypes.end()) refuse("unknown type '" + name + "'");
     return found->second;
   }

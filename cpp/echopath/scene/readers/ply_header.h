@@ -12,9 +12,9 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, 
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::kFloat32;        // of the value, or of the items of a list
+  PlyType type = PlyType::kFloat32;  // of the value, or of the items of a list
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;    // of a list's length
+  PlyType count_type = PlyType::kUint8;  // of a list's length
 };
 
 struct PlyElement {

@@ -66,8 +66,7 @@ class ObjLines : public std::streambuf {
     const std::string_view values = std::string_view(text_).substr(begin + 2);
     const bool is_vertex = statement[0] == 'v';
     const std::string_view allowed = is_vertex ? "0123456789+-.eE \t" : "0123456789-/ \t";
-    if (values.find_first_not_of(allowed) != std::string_view::npos)
-      fail(path_, line_, "not a number in '" + text_ + "'");
+    if (values.find_first_not_of(allowed) != std::string_view::npos) fail(path_, line_, "not a number in '" + text_ + "'");
     if (count_words(values) < 3) {
       fail(path_, line_,
            std::string(is_vertex ? "a vertex needs 3 numbers" : "a face needs 3 corners") + ": '" + text_ + "'");

@@ -9,11 +9,11 @@
 namespace echopath {
 
 struct Soup {
-  std::vector<Vec3> vertices;               // [V] in file units
-  std::vector<Triangle> triangles;          // [F]
-  std::vector<uint32_t> face;               // [F] face of the file, from 0; a polygon gives several triangles
-  std::vector<uint32_t> group;              // [F] index into group_names
-  std::vector<std::string> group_names;     // "" where the file gives no name
+  std::vector<Vec3> vertices;            // [V] in file units
+  std::vector<Triangle> triangles;       // [F]
+  std::vector<uint32_t> face;            // [F] face of the file, from 0; a polygon gives several triangles
+  std::vector<uint32_t> group;           // [F] index into group_names
+  std::vector<std::string> group_names;  // "" where the file gives no name
   uint32_t num_faces = 0;
 
   // Appends a polygon of three corners or more, cut into triangles; corners must be below the number of vertices.

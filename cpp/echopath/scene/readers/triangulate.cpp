@@ -13,9 +13,7 @@ Vec3 polygon_normal(const std::vector<Vec3>& vertices, const std::vector<uint32_
   return normal;
 }
 
-double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
-  return (b - a).cross(c - b).dot(normal);
-}
+double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) { return (b - a).cross(c - b).dot(normal); }
 
 bool is_inside(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
   return turn(a, b, p, normal) >= 0.0 && turn(b, c, p, normal) >= 0.0 && turn(c, a, p, normal) >= 0.0;

@@ -12,7 +12,7 @@ namespace {
 struct Nodes {
   const double *delay, *amplitude;  // amplitudes: re, im interleaved
   int64_t stride;
-  const double *value, *slope;      // weights [chirp, order]
+  const double *value, *slope;  // weights [chirp, order]
   int order;
 };
 
@@ -68,7 +68,8 @@ int chirps_that_share_nodes(const TimeSampling& sampling, int chirp, int most) {
   return count;
 }
 
-ECHOPATH_INLINE void add_derivatives(const double* delay, double second, double third, int count, EchoDerivatives* derivatives) {
+ECHOPATH_INLINE void add_derivatives(const double* delay, double second, double third, int count,
+                                     EchoDerivatives* derivatives) {
   for (int p = 0; p < count; ++p) {
     derivatives->second[p] += second * delay[p];
     derivatives->third[p] += third * delay[p];
@@ -84,7 +85,8 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
     const size_t row = static_cast<size_t>(chirp) * sampling.order;
     const int64_t first = int64_t{sampling.first_row[chirp]} * echoes.num_echoes + begin;
     const Nodes nodes{echoes.delay.data() + first, reinterpret_cast<const double*>(echoes.amplitude.data() + first),
-                      echoes.num_echoes, sampling.value.data() + row, sampling.slope.data() + row, sampling.order};
+                      echoes.num_echoes,           sampling.value.data() + row,
+                      sampling.slope.data() + row, sampling.order};
     const int shared = chirps_that_share_nodes(sampling, chirp, std::min(at_once, end - chirp));
     if (sampling.holds_derivatives) copy_nodes(nodes, count, *states);
     else if (shared == 4) interpolate_at<4>(nodes, count, states);
@@ -96,7 +98,8 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
   }
 }
 
-void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoDerivatives* derivatives) {
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states,
+                     EchoDerivatives* derivatives) {
   evaluate_states(echoes, chirp, 1, begin, count, &states);
   if (!derivatives) return;
   std::fill_n(derivatives->second, count, 0.0);
@@ -106,7 +109,8 @@ void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, 
   const size_t row = static_cast<size_t>(chirp) * sampling.order;
   const double* delay = echoes.delay.data() + int64_t{sampling.first_row[chirp]} * echoes.num_echoes + begin;
   for (int k = 0; k < sampling.order; ++k) {
-    run_simd<add_derivatives>(delay + k * echoes.num_echoes, sampling.second_derivative[row + k], sampling.third_derivative[row + k], count, derivatives);
+    run_simd<add_derivatives>(delay + k * echoes.num_echoes, sampling.second_derivative[row + k],
+                              sampling.third_derivative[row + k], count, derivatives);
   }
 }
 

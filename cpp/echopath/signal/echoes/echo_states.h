@@ -7,10 +7,10 @@ namespace echopath {
 struct Echoes;
 
 struct EchoStates {
-  static constexpr int kCapacity = 256;  // delays, amplitudes and carriers of a block stay in the first-level cache
-  alignas(64) double delay[kCapacity];              // s
-  alignas(64) double rate[kCapacity];               // s/s
-  alignas(64) double amplitude[2 * kCapacity];      // sqrt(W), re, im interleaved
+  static constexpr int kCapacity = 256;         // delays, amplitudes and carriers of a block stay in the first-level cache
+  alignas(64) double delay[kCapacity];          // s
+  alignas(64) double rate[kCapacity];           // s/s
+  alignas(64) double amplitude[2 * kCapacity];  // sqrt(W), re, im interleaved
 };
 
 // Holds the second and third derivatives of the delays, in 1/s and 1/s^2.
@@ -23,6 +23,7 @@ struct EchoDerivatives {
 // It costs least where neighbouring chirps share their nodes.
 void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states);
 // Evaluates these echoes at one chirp. `derivatives` may be null; they are zero where the sampling has none.
-void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states, EchoDerivatives* derivatives = nullptr);
+void evaluate_states(const Echoes& echoes, int chirp, int64_t begin, int count, EchoStates& states,
+                     EchoDerivatives* derivatives = nullptr);
 
 }  // namespace echopath

@@ -18,7 +18,7 @@ constexpr int kLanes = TileAtChirps::kLanes;
 constexpr int kDelayBits = 16;  // 64 places in each cell of 512 samples
 constexpr int kMaxDrifts = 64;
 constexpr int kEchoesOfCell = 4;  // least mean number for each class of drift, so that moments are worth while
-constexpr int kDigitBits = 11;  // of a pass of the radix sort
+constexpr int kDigitBits = 11;    // of a pass of the radix sort
 
 // Sorts by bits [first_bit, end_bit); equal keys keep their order. `sorted` is scratch memory.
 void radix_sort(std::vector<uint64_t>& keys, std::vector<uint64_t>& sorted, int first_bit, int end_bit) {
@@ -38,14 +38,12 @@ int bits_for(uint64_t count) { return static_cast<int>(std::bit_width(count - 1)
 
 }  // namespace
 
-const double* EchoTiles::nodes(const Tile& tile) const {
-  return nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes;
-}
+const double* EchoTiles::nodes(const Tile& tile) const { return nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes; }
 
 // Divides echoes into classes by how far they drift over the frame.
 struct DriftClasses {
-  double least = 0.0;   // s, of delay
-  double width = 1.0;   // s
+  double least = 0.0;  // s, of delay
+  double width = 1.0;  // s
   int count = 1;
 };
 
@@ -144,9 +142,7 @@ void EchoTiles::cut() {
   tiles_.clear();
   first_.clear();
   const auto total = static_cast<int64_t>(order_.size());
-  const auto group_of = [&](int64_t i) {
-    return static_cast<uint32_t>(order_[static_cast<size_t>(i)] >> group_shift());
-  };
+  const auto group_of = [&](int64_t i) { return static_cast<uint32_t>(order_[static_cast<size_t>(i)] >> group_shift()); };
   int64_t vector = 0;
   for (int64_t begin = 0; begin < total;) {
     const uint32_t group = group_of(begin);

@@ -43,7 +43,7 @@ class EchoTiles {
   int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
   std::vector<uint64_t> order_, spare_order_;  // keys of all echoes, and room to sort them
   std::vector<Tile> tiles_;
-  std::vector<int64_t> first_;     // [tiles], place of the first echo of each in the order
+  std::vector<int64_t> first_;       // [tiles], place of the first echo of each in the order
   std::unique_ptr<double[]> nodes_;  // with room for `num_values_`
   size_t num_values_ = 0;
 };

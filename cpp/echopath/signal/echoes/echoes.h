@@ -12,10 +12,10 @@ namespace echopath {
 // their own derivatives.
 struct TimeSampling {
   int num_rows = 1;
-  int order = 1;                 // rows that take part in one chirp
-  std::vector<int> first_row;    // [T]
-  std::vector<double> value;     // [T, order]
-  std::vector<double> slope;     // [T, order], 1/s
+  int order = 1;               // rows that take part in one chirp
+  std::vector<int> first_row;  // [T]
+  std::vector<double> value;   // [T, order]
+  std::vector<double> slope;   // [T, order], 1/s
   // [T, order] each, 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
   std::vector<double> second_derivative, third_derivative;
   // Where this is set, the rows of a chirp do not hold values at several nodes but the chirp's own value, slope, second and
@@ -33,9 +33,9 @@ TimeSampling exact_sampling(const std::vector<double>& times);
 struct Echoes {
   TimeSampling sampling;
   int64_t num_echoes = 0;
-  std::vector<double> delay;                     // [num_rows, num_echoes] s, at the window centre, round trip
-  std::vector<std::complex<double>> amplitude;   // [num_rows, num_echoes] sqrt(W)
-  std::vector<uint32_t> group;                   // [num_echoes], or empty: all in group 0
+  std::vector<double> delay;                    // [num_rows, num_echoes] s, at the window centre, round trip
+  std::vector<std::complex<double>> amplitude;  // [num_rows, num_echoes] sqrt(W)
+  std::vector<uint32_t> group;                  // [num_echoes], or empty: all in group 0
 };
 
 }  // namespace echopath

@@ -12,11 +12,8 @@ constexpr uint32_t kGroupZero[Carriers::kCapacity] = {};
 }  // namespace
 
 CarrierModel::CarrierModel(const ChirpSequence& waveform, int reference_sample)
-    : start_frequency(waveform.start_frequency),
-      slope(waveform.slope()),
-      window_centre(waveform.window_centre()),
-      sample_interval(1.0 / waveform.sampling_rate),
-      reference_offset(reference_sample - 0.5 * (waveform.num_samples - 1)),
+    : start_frequency(waveform.start_frequency), slope(waveform.slope()), window_centre(waveform.window_centre()),
+      sample_interval(1.0 / waveform.sampling_rate), reference_offset(reference_sample - 0.5 * (waveform.num_samples - 1)),
       highest_frequency(waveform.real ? 0.5 : 1.0) {
   using Real = long double;
   const Real swept = Real{waveform.bandwidth} * (waveform.num_samples - 1) / (2 * Real(waveform.num_samples));
@@ -25,8 +22,7 @@ CarrierModel::CarrierModel(const ChirpSequence& waveform, int reference_sample)
   centre_frequency_rest = static_cast<double>(centre - Real{centre_frequency});
 }
 
-void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count,
-                       Carriers& out) {
+void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count, Carriers& out) {
   EchoStates states;
   evaluate_states(echoes, chirp, begin, count, states);
   out.count = count;

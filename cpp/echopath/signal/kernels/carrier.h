@@ -18,7 +18,7 @@ struct ChirpSequence;
 struct Carriers {
   static constexpr int kCapacity = EchoStates::kCapacity;
   int count = 0;
-  const uint32_t* group = nullptr;       // [count]
+  const uint32_t* group = nullptr;          // [count]
   alignas(64) double frequency[kCapacity];  // cycles per sample, in [0, 1)
   alignas(64) double re[kCapacity];         // sqrt(W); 0 where the anti-alias filter removed the echo
   alignas(64) double im[kCapacity];
@@ -27,19 +27,18 @@ struct Carriers {
 // Holds the constants of the phase model. The phase of the carriers is taken at `reference_sample`.
 struct CarrierModel {
   CarrierModel(const ChirpSequence& waveform, int reference_sample);
-  double start_frequency;       // Hz
-  double slope;                 // Hz/s
-  double window_centre;         // s
-  double sample_interval;       // s
-  double reference_offset;      // samples from the window centre to the reference sample
-  double highest_frequency;     // cycles per sample; beat frequencies outside [0, highest) are removed
+  double start_frequency;    // Hz
+  double slope;              // Hz/s
+  double window_centre;      // s
+  double sample_interval;    // s
+  double reference_offset;   // samples from the window centre to the reference sample
+  double highest_frequency;  // cycles per sample; beat frequencies outside [0, highest) are removed
   // f0 + mu t_m is stored as a sum of two: the carrier turns 1e4 to 1e6 times, and one rounding of it would leave 1e-11 rad.
   double centre_frequency, centre_frequency_rest;  // Hz
 };
 
 // Finds the carriers of echoes [begin, begin + count) at `chirp`; count <= Carriers::kCapacity. Phases are right to 7e-14
 // rad.
-void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count,
-                       Carriers& out);
+void evaluate_carriers(const CarrierModel& model, const Echoes& echoes, int chirp, int64_t begin, int count, Carriers& out);
 
 }  // namespace echopath

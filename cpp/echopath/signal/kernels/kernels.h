@@ -28,13 +28,13 @@ struct TileAtChirps {
   static constexpr int kLanes = 8;       // of the layout, whatever the instruction set
   static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the first-level cache
   static constexpr int kMaxChirps = 4;   // for which the nodes are read once
-  const double* nodes;    // [vectors of kLanes echoes, num_nodes, (delay, re, im), kLanes]
-  int count;              // echoes; the last vector is filled up with zero amplitudes
+  const double* nodes;                   // [vectors of kLanes echoes, num_nodes, (delay, re, im), kLanes]
+  int count;                             // echoes; the last vector is filled up with zero amplitudes
   int num_nodes, order;
-  int num_chirps;         // 1 to kMaxChirps
+  int num_chirps;        // 1 to kMaxChirps
   const int* first_row;  // [num_chirps], as in TimeSampling
-  const double* value;    // [num_chirps, order]
-  const double* slope;    // [num_chirps, order]
+  const double* value;   // [num_chirps, order]
+  const double* slope;   // [num_chirps, order]
 };
 
 struct SignalKernels {

@@ -72,10 +72,10 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
 // Holds the places of echoes on the grid at one chirp. Loops may read a vector beyond the last.
 struct Places {
   static constexpr int kSize = TileAtChirps::kCapacity + 8;
-  alignas(64) double t[kSize];       // place in the cell, [-1, 1]
+  alignas(64) double t[kSize];  // place in the cell, [-1, 1]
   alignas(64) double re[kSize];
   alignas(64) double im[kSize];
-  alignas(64) int32_t cell[kSize];   // of the first kernel value, counted from 1 - width
+  alignas(64) int32_t cell[kSize];  // of the first kernel value, counted from 1 - width
 };
 
 // Adding this to twice a place in cells, less 1, leaves twice the number of whole cells, which also stands in the lowest
@@ -124,10 +124,10 @@ struct RunEnds {
 // yet ready to be raised again.
 struct CellCounts {
   static constexpr int kCounters = 4;
-  int share;           // echoes of each share but the last
+  int share;  // echoes of each share but the last
   int32_t lowest;
-  int num_cells;       // from the lowest to the highest; no counts where they are more than kCellsOfTile
-  int num_taken = 0;   // that have echoes
+  int num_cells;      // from the lowest to the highest; no counts where they are more than kCellsOfTile
+  int num_taken = 0;  // that have echoes
   int32_t count[kCellsOfTile][kCounters];
 };
 
@@ -157,7 +157,8 @@ CellCounts count_cells(const int32_t* cell, int count) {
   for (int c = 0; c < counts.num_cells; ++c) {
     for (int k = 0; k < CellCounts::kCounters; ++k) counts.count[c][k] = 0;
   }
-  visit_shares(counts.share, count, [&](int p, int k) __attribute__((always_inline)) { ++counts.count[cell[p] - lowest][k]; });
+  visit_shares(counts.share, count,
+               [&](int p, int k) __attribute__((always_inline)) { ++counts.count[cell[p] - lowest][k]; });
   for (int c = 0; c < counts.num_cells; ++c) {
     int32_t sum = 0;
     for (int k = 0; k < CellCounts::kCounters; ++k) sum += counts.count[c][k];
@@ -280,9 +281,8 @@ struct Spreader {
   }
 
   void add_runs(const Places& places, const RunEnds& ends, double* first) const {
-    ends.visit_runs([&](int begin, int end) __attribute__((always_inline)) {
-      add_run(places, begin, end, first + places.cell[begin]);
-    });
+    ends.visit_runs([&](int begin, int end)
+                        __attribute__((always_inline)) { add_run(places, begin, end, first + places.cell[begin]); });
   }
 
   // Adds the echoes that bring_together has sorted.
@@ -366,8 +366,8 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
   const double* slope = tile.slope + chirp * tile.order;
   for (int p = 0; p < tile.count; p += kLanes) {
     const int vector = p / TileAtChirps::kLanes;
-    const double* node = tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_row[chirp]) * kRow +
-                         p % TileAtChirps::kLanes;
+    const double* node =
+        tile.nodes + (int64_t{vector} * tile.num_nodes + tile.first_row[chirp]) * kRow + p % TileAtChirps::kLanes;
     States<kChirps> states = {};
     for (int k = 0; k < tile.order; ++k, node += kRow) {
       const Vec d = load(node), r = load(node + TileAtChirps::kLanes), i = load(node + 2 * TileAtChirps::kLanes);

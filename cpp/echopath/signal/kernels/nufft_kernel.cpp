@@ -14,7 +14,7 @@ using Real = long double;
 
 // Largest measured rms error over the samples of one tone of unit amplitude, for width 3, 4, ..., whatever the number of
 // samples (test_methods.cpp holds them to it).
-constexpr double kToneError[] = {8.8e-3, 8.9e-4, 1.0e-4, 8.7e-6, 8.9e-7, 9.7e-8, 1.25e-8,
+constexpr double kToneError[] = {8.8e-3,  8.9e-4,  1.0e-4,   8.7e-6,   8.9e-7,  9.7e-8,  1.25e-8,
                                  1.45e-9, 1.6e-10, 1.65e-11, 1.75e-12, 2.0e-13, 6.5e-14, 0.0};
 
 // Returns beta as a share of pi width (1 - 1 / 4), where the kernel's spectrum begins to alias. The error is least near

@@ -13,16 +13,15 @@ namespace echopath {
 class ToneMethod {
  public:
   virtual ~ToneMethod() = default;
-  int64_t row_length() const { return row_length_; }             // doubles of the real part of a row
-  int reference_sample() const { return reference_sample_; }     // where carriers have their phase
+  int64_t row_length() const { return row_length_; }          // doubles of the real part of a row
+  int reference_sample() const { return reference_sample_; }  // where carriers have their phase
   // Adds the carriers in their order, each to the row of its group. Several threads may add to different rows.
   virtual void add(const Carriers& carriers, Rows rows) const = 0;
   // Writes the time samples [num_samples] of one row (2 * row_length() doubles) to `out`.
   virtual void samples(const double* row, std::complex<double>* out) const = 0;
 
  protected:
-  ToneMethod(int64_t row_length, int reference_sample)
-      : row_length_(row_length), reference_sample_(reference_sample) {}
+  ToneMethod(int64_t row_length, int reference_sample) : row_length_(row_length), reference_sample_(reference_sample) {}
 
  private:
   int64_t row_length_;

@@ -53,11 +53,8 @@ FftBuffer& scratch(int size) {
 class Nufft : public SpreadMethod {
  public:
   Nufft(int num_samples, int width)
-      : SpreadMethod(row_length_for(grid_size_for(num_samples, width), width), num_samples / 2),
-        kernel_(width),
-        grid_size_(grid_size_for(num_samples, width)),
-        fft_(grid_size_, FftDirection::kBackward),
-        correction_(num_samples) {
+      : SpreadMethod(row_length_for(grid_size_for(num_samples, width), width), num_samples / 2), kernel_(width),
+        grid_size_(grid_size_for(num_samples, width)), fft_(grid_size_, FftDirection::kBackward), correction_(num_samples) {
     const std::vector<double> spectrum = kernel_.transform(1.0 / grid_size_, reference_sample() + 1);  // even in the bin
     for (int bin = 0; bin <= reference_sample(); ++bin) {
       const double correction = 1.0 / spectrum[bin];
@@ -66,9 +63,7 @@ class Nufft : public SpreadMethod {
     }
   }
 
-  void add(const Carriers& carriers, Rows rows) const override {
-    signal_kernels().spread(spreading(), carriers, rows);
-  }
+  void add(const Carriers& carriers, Rows rows) const override { signal_kernels().spread(spreading(), carriers, rows); }
 
   Spreading spreading() const override {
     return {kernel_.width, kernel_.coefficients.data(), static_cast<double>(grid_size_), row_length()};

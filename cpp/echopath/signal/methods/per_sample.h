@@ -13,8 +13,7 @@ namespace echopath {
 
 class PerSample {
  public:
-  PerSample(const ChirpSequence& waveform, const CarrierModel& model)
-      : num_samples_(waveform.num_samples), model_(model) {}
+  PerSample(const ChirpSequence& waveform, const CarrierModel& model) : num_samples_(waveform.num_samples), model_(model) {}
 
   // Adds echoes [begin, begin + count) of a chirp, each to the row of its group, whose parts are `row_length` long.
   void add(const Echoes& echoes, int chirp, int64_t begin, int count, int64_t row_length, Rows rows) const;

@@ -15,8 +15,8 @@ constexpr int kTones = 4;
 struct Tones {
   alignas(64) double power_re[kTones][kBlock];  // w^b
   alignas(64) double power_im[kTones][kBlock];
-  double step_re[kTones], step_im[kTones];      // w^kBlock
-  double re[kTones], im[kTones];                // c w^{kBlock a}
+  double step_re[kTones], step_im[kTones];  // w^kBlock
+  double re[kTones], im[kTones];            // c w^{kBlock a}
 };
 
 ECHOPATH_INLINE void set_tone(Tones& tones, int k, double frequency, double re, double im) {
@@ -40,10 +40,10 @@ ECHOPATH_INLINE void add_block(const Tones& tones, double* out_re, double* out_i
   const auto& pr = tones.power_re;
   const auto& pi = tones.power_im;
   for (int b = 0; b < kBlock; ++b) {
-    out_re[b] += (r0 * pr[0][b] - i0 * pi[0][b]) + (r1 * pr[1][b] - i1 * pi[1][b]) +
-                 (r2 * pr[2][b] - i2 * pi[2][b]) + (r3 * pr[3][b] - i3 * pi[3][b]);
-    out_im[b] += (r0 * pi[0][b] + i0 * pr[0][b]) + (r1 * pi[1][b] + i1 * pr[1][b]) +
-                 (r2 * pi[2][b] + i2 * pr[2][b]) + (r3 * pi[3][b] + i3 * pr[3][b]);
+    out_re[b] += (r0 * pr[0][b] - i0 * pi[0][b]) + (r1 * pr[1][b] - i1 * pi[1][b]) + (r2 * pr[2][b] - i2 * pi[2][b]) +
+                 (r3 * pr[3][b] - i3 * pi[3][b]);
+    out_im[b] += (r0 * pi[0][b] + i0 * pr[0][b]) + (r1 * pi[1][b] + i1 * pr[1][b]) + (r2 * pi[2][b] + i2 * pr[2][b]) +
+                 (r3 * pi[3][b] + i3 * pr[3][b]);
   }
 }
 

@@ -58,7 +58,8 @@ class GlintSearch {
     for (const auto& [kind, seen] : kinds_) is_met[kind.mesh] = 1;
     Job unseen(job);
     parallel_for(std::ssize(is_met), [&](int64_t mesh) {
-      if (is_met[static_cast<size_t>(mesh)]) triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
+      if (is_met[static_cast<size_t>(mesh)])
+        triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
     }, &unseen);
   }
 
@@ -91,7 +92,8 @@ class GlintSearch {
   // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
   std::optional<RouteKind> kind_of(int64_t path) const {
     const auto p = static_cast<size_t>(path);
-    if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0) return std::nullopt;
+    if (paths_.diffuse[p] != 0 || paths_.stratum[p] == kNoStratum || (paths_.flags[p] & kReversedPath) != 0)
+      return std::nullopt;
     RouteKind kind{paths_.stratum[p], 0, {}, {}};
     int surfaces = 0;
     for (int k = 0; k < paths_.num_bounces[p]; ++k) {
@@ -193,8 +195,8 @@ class GlintSearch {
   // Returns the path beside a glint, or null.
   static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
-    const auto found = std::min_element(seen.begin(), seen.end(),
-                                        [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
+    const auto found =
+        std::min_element(seen.begin(), seen.end(), [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
     return away(*found) <= kBeside * kBeside * cell * cell ? &*found : nullptr;
   }
 

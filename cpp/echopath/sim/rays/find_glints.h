@@ -9,9 +9,9 @@ namespace echopath {
 
 // Describes a direction of launch about which the path length is stationary.
 struct Glint {
-  int stratum = 0;        // index into frame.strata; for a focus, the stratum that it is in
-  Vec3 direction;         // unit, world axes
-  double power = 0.0;     // W, by stationary phase
+  int stratum = 0;                  // index into frame.strata; for a focus, the stratum that it is in
+  Vec3 direction;                   // unit, world axes
+  double power = 0.0;               // W, by stationary phase
   double narrow = 0.0, wide = 0.0;  // rad, half widths of the Fresnel zone, where the phase turns by half a cycle
 };
 

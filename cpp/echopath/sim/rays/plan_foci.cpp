@@ -15,10 +15,10 @@ namespace {
 constexpr double kZones = 2.0, kCells = 1.5;
 constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
-constexpr size_t kMaxFoci = 12;       // in a stratum
+constexpr size_t kMaxFoci = 12;        // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
 constexpr double kMostRays = 0.5;      // of the stratum's rays, for all its foci
-constexpr double kMinGain = 1.5;     // of the density of rays in a focus, over that without it
+constexpr double kMinGain = 1.5;       // of the density of rays in a focus, over that without it
 
 // Describes a stratum of the trace to come.
 struct StratumPlan {
@@ -90,12 +90,14 @@ void give_rays(StratumPlan& plan) {
   double asked = 0.0;
   for (const LaunchFocus& focus : plan.foci) asked += focus.share;
   for (LaunchFocus& focus : plan.foci) focus.share *= given / asked;
-  std::erase_if(plan.foci, [&](const LaunchFocus& focus) { return !(focus.share >= kMinGain * density * kTwoPi * focus.versine); });
+  std::erase_if(plan.foci,
+                [&](const LaunchFocus& focus) { return !(focus.share >= kMinGain * density * kTwoPi * focus.versine); });
 }
 
 }  // namespace
 
-void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints, LaunchGuide& guide) {
+void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints,
+              LaunchGuide& guide) {
   std::vector<StratumPlan> plans(frame.strata.size());
   for (size_t k = 0; k < plans.size(); ++k) {
     const Stratum& stratum = frame.strata[k];

@@ -18,6 +18,7 @@ struct KnownEcho {
 // so that echoes without a point of reflection, such as those of edges, keep what they need. Among foci, rays go by the
 // number of Fresnel zones and by the root of the glint's power. `frame` is that of the trace in which the glints were found;
 // `echoes` are by index of its strata, of those that are no foci; `glints` come strongest first.
-void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints, LaunchGuide& guide);
+void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints,
+              LaunchGuide& guide);
 
 }  // namespace echopath

@@ -14,16 +14,17 @@ namespace {
 
 constexpr double kDynamicRange = 1e-6;  // of the strongest echo
 constexpr double kMinGrowth = 1.0 / 16.0;
-constexpr double kUnseenGrowth = 0.25;  // of strata that send nothing back
-constexpr double kMovingTarget = 0.25;  // of the target: what moves is what a radar looks for
-constexpr double kImageWeight = 0.5;    // beside that of the aim
-constexpr double kNeedIsKnownTo = 2.0;  // a factor: intervals of few rays are that uncertain
+constexpr double kUnseenGrowth = 0.25;    // of strata that send nothing back
+constexpr double kMovingTarget = 0.25;    // of the target: what moves is what a radar looks for
+constexpr double kImageWeight = 0.5;      // beside that of the aim
+constexpr double kNeedIsKnownTo = 2.0;    // a factor: intervals of few rays are that uncertain
 constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
 
 double sum_of(const RayShares& shares) {
-  return std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const auto& share) { return sum + share.second; });
+  return std::accumulate(shares.begin(), shares.end(), 0.0,
+                         [](double sum, const auto& share) { return sum + share.second; });
 }
 
 // Returns the received power of each stratum with its foci.
@@ -73,10 +74,12 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
 }
 
 // Raises the rays of the field of view where its echo is not resolved and a glint makes it.
-void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints, RayShares& shares) {
+void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints,
+                         RayShares& shares) {
   const int field = static_cast<int>(frame.strata.size()) - 1;
   const std::string& name = frame.strata.back().name;
-  const bool has_glints = std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
+  const bool has_glints =
+      std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
   const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
                                        [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
   if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));

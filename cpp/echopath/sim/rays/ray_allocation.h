@@ -12,11 +12,11 @@ namespace echopath {
 
 // Tells how many rays the echo of a stratum (of one object, or of one image of it) needs.
 struct RayNeed {
-  std::string stratum;     // its name
+  std::string stratum;  // its name
   double rays = 0.0;
   KnownEcho echo;
   bool is_resolved = true;  // to the target, or below the floor
-  double weight = 1.0;     // of images, below that of objects
+  double weight = 1.0;      // of images, below that of objects
 };
 
 // Tells which echoes matter.
@@ -27,7 +27,7 @@ enum class EchoFloor {
 
 struct RayNeeds {
   std::vector<RayNeed> strata;  // in the order of the trace's, without foci
-  double worst_db = 0.0;  // largest half interval of an echo above the floor
+  double worst_db = 0.0;        // largest half interval of an echo above the floor
 
   double num_rays() const;
 };

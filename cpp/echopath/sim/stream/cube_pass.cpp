@@ -65,8 +65,11 @@ class StretchProbe {
 }  // namespace
 
 Cube Cube::zeros(const Radar& radar) {
-  Cube cube{static_cast<int>(radar.transmitters.size()), static_cast<int>(radar.receivers.size()), radar.waveform.num_chirps,
-            radar.waveform.num_samples, {}};
+  Cube cube{static_cast<int>(radar.transmitters.size()),
+            static_cast<int>(radar.receivers.size()),
+            radar.waveform.num_chirps,
+            radar.waveform.num_samples,
+            {}};
   cube.values.resize(static_cast<size_t>(cube.num_tx) * cube.num_rx * cube.num_chirps * cube.num_samples);
   return cube;
 }
@@ -94,8 +97,7 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
   std::vector<const std::vector<uint32_t>*> groups;
   for (const PathGroups& way : ways) {
     if (way.group) groups.push_back(way.group);
-    synthesizers_.emplace_back(radar.waveform, stream.num_channels(), way.num_groups, paths.num_paths(),
-                               settings.synthesis);
+    synthesizers_.emplace_back(radar.waveform, stream.num_channels(), way.num_groups, paths.num_paths(), settings.synthesis);
   }
   stream.join(groups);
   std::optional<PassProbe> probe;
@@ -116,8 +118,7 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
 
 Cube CubePass::cube(size_t way, int group, Job* job) const {
   return {static_cast<int>(radar_.transmitters.size()), static_cast<int>(radar_.receivers.size()),
-          radar_.waveform.num_chirps,
-          radar_.waveform.num_samples, synthesizers_[way].cube(group, job)};
+          radar_.waveform.num_chirps, radar_.waveform.num_samples, synthesizers_[way].cube(group, job)};
 }
 
 size_t CubePass::cube_bytes() const {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "echopath/replay/replay.h"
+#include "echopath/signal/synthesizer.h"
 #include "echopath/sim/stream/keyframes.h"
 #include "echopath/sim/stream/signal_probe.h"
-#include "echopath/signal/synthesizer.h"
 
 namespace echopath {
 

@@ -55,12 +55,13 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
   return std::clamp(found.keyframes(), 1, radar.waveform.num_chirps);
 }
 
-StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
-                               Job* job)
+StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches,
+                               Retrace retrace, Job* job)
     : paths_(paths), retrace_(retrace), job_(job) {
   // A new trace knows nothing of a selection.
   require(retrace != Retrace::kAlways || is_whole(paths), "retrace",
-          "'always' takes all paths of a trace, which decompose takes apart", "a selection of " + std::to_string(paths.num_paths()));
+          "'always' takes all paths of a trace, which decompose takes apart",
+          "a selection of " + std::to_string(paths.num_paths()));
   const bool moves = radar.motion || paths.scene->is_anything_moving();
   if (retrace == Retrace::kInvalid && is_whole(paths) && moves) find_new_surface(radar, stretches);
 }

@@ -11,7 +11,7 @@
 namespace echopath {
 
 enum class Retrace {
-  kNever,    // one record serves the frame
+  kNever,  // one record serves the frame
   // Hits stay, shadow rays and points of reflection are renewed (validity/renewal.h), and new surface gets paths.
   kInvalid,
   // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so
@@ -46,7 +46,8 @@ class StretchRecords {
   // found become a record with phases of its own. So each piece of surface stands in one of the records, with the same
   // material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface. Raises
   // invalid_argument for kAlways with a selection.
-  StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace, Job* job = nullptr);
+  StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
+                 Job* job = nullptr);
   // Returns records, at least one, whose echoes add up to those of the stretch.
   std::vector<Paths> of(const Stretch& stretch);
 

@@ -11,8 +11,8 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
-constexpr int64_t kEchoesInFlight = 1 << 17;   // paths x channels; as many are handed over meanwhile
-constexpr int64_t kNodesOfAPath = 32;          // with more nodes per path, fewer echoes are in flight
+constexpr int64_t kEchoesInFlight = 1 << 17;  // paths x channels; as many are handed over meanwhile
+constexpr int64_t kNodesOfAPath = 32;         // with more nodes per path, fewer echoes are in flight
 // The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
 // the first.
 constexpr int64_t kLargestBlock = 1000;
@@ -21,7 +21,7 @@ constexpr int64_t kLargestBlock = 1000;
 // for the first time costs as much as a path does at all its nodes.
 constexpr int64_t kNodesOfChirps = 128;
 constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
-constexpr int64_t kMinBlock = 64;  // fills the registers with vectors of joined echoes
+constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
 
 int64_t block_size(int64_t num_channels, int64_t num_rows) {
   const int64_t values = num_channels * std::max<int64_t>(1, num_rows / kNodesOfAPath);
@@ -83,8 +83,8 @@ class PathsByGrid {
   }
 
   size_t num_grids_;
-  std::vector<uint8_t> grid_;                // by path
-  std::vector<std::vector<size_t>> place_;   // [task][grid]
+  std::vector<uint8_t> grid_;               // by path
+  std::vector<std::vector<size_t>> place_;  // [task][grid]
   std::vector<std::vector<int64_t>> lists_;
 };
 
@@ -106,8 +106,8 @@ std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<
 
 struct ReplayStream::Block {
   std::vector<Echoes> channels;
-  std::vector<int64_t> paths;    // [echo] its path, or the first of those joined in it
-  int64_t num_paths = 0;         // of all echoes
+  std::vector<int64_t> paths;  // [echo] its path, or the first of those joined in it
+  int64_t num_paths = 0;       // of all echoes
   std::vector<UnfollowedPath> left;
 };
 
@@ -208,8 +208,8 @@ void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitte
 }
 
 // Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
-std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                                 WindowPipeline& out) const {
+std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent,
+                                                     const Replay& replay, WindowPipeline& out) const {
   const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = static_cast<int64_t>(paths.size());
   std::vector<UnfollowedPath> all_left;
   for (int64_t begin = 0; begin < num_paths; begin += size * kBlocksInFlight) {
@@ -225,7 +225,7 @@ std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>&
 
 // Replays a window of blocks. Returns the paths that are left.
 std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
-                                                    const Extent& extent, const Replay& replay, Window& window) const {
+                                                        const Extent& extent, const Replay& replay, Window& window) const {
   const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
   window.num_channels = static_cast<size_t>(extent.num_channels);

@@ -70,9 +70,9 @@ class ReplayStream {
     bool joins = false;
   };
   std::vector<UnfollowedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                     WindowPipeline& out) const;
+                                         WindowPipeline& out) const;
   std::vector<UnfollowedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
-                                        const Replay& replay, Window& window) const;
+                                            const Replay& replay, Window& window) const;
   bool is_watched(const Extent& extent) const;
   Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;
 

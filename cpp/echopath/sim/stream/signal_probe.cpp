@@ -22,7 +22,7 @@ namespace echopath {
 namespace {
 
 constexpr int kSamples = ProbedChirp::kSamples;
-constexpr int kMostChirps = 2;  // of a pass
+constexpr int kMostChirps = 2;                 // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
 constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
@@ -41,8 +41,8 @@ constexpr int kMaxLanes = 8;
 // Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
 // phasor for the first and one for the step between them.
 template <int kLanes>
-ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first, double step,
-                               double* sums) {
+ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first,
+                               double step, double* sums) {
   using Vec = Lanes<double, kLanes>;
   Vec sum_re[kSamples], sum_im[kSamples];
   for (int s = 0; s < kSamples; ++s) {
@@ -81,7 +81,8 @@ struct PowerSums {
 
 // Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
 ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
-  for (int p = 0; p < count; ++p) power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
+  for (int p = 0; p < count; ++p)
+    power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
   PowerSums sums;
   for (int p = 0; p < count; p += PowerSums::kLanes) {
     for (int lane = 0; lane < PowerSums::kLanes; ++lane) {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "echopath/sim/stream/replay_stream.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/synthesizer.h"
+#include "echopath/sim/stream/replay_stream.h"
 
 namespace echopath {
 
@@ -31,14 +31,14 @@ struct ProbedChirp {
   double amplitude_sum = 0.0;                          // sqrt(W), sum of |amplitude| of all echoes in this chirp
   // The number of moving echoes that were evaluated at the chirp too: the strongest and random ones of each block of paths.
   int64_t num_echoes = 0;
-  double phase_error = 0.0;      // rad at the start frequency, rms weighted by the power of the echoes
+  double phase_error = 0.0;          // rad at the start frequency, rms weighted by the power of the echoes
   double largest_phase_error = 0.0;  // rad
-  double amplitude_error = 0.0;  // rms of the differences over rms of the amplitudes
+  double amplitude_error = 0.0;      // rms of the differences over rms of the amplitudes
   // Shares of halves 0 and 1 (half_of_ray) of the rays of each batch in turn, then of the image method's paths: 2 batches +
   // 1.
   std::vector<RayShare> shares;
-  double power_sum = 0.0;        // W, of |amplitude|^2 of all paths
-  double strongest = 0.0;        // W, of the strongest path that rays found
+  double power_sum = 0.0;  // W, of |amplitude|^2 of all paths
+  double strongest = 0.0;  // W, of the strongest path that rays found
 
   // Adds the same chirp and samples of another record, whose echoes add up with these.
   void add(const ProbedChirp& other);

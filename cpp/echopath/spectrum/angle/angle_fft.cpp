@@ -22,7 +22,7 @@ constexpr int64_t kRangesPerTask = 8;  // neighbouring range bins share cache li
 struct Axis {
   Fft fft;
   int64_t num_points;
-  std::vector<double> cosine;  // [bins]
+  std::vector<double> cosine;   // [bins]
   std::vector<Complex> phasor;  // [bins] takes the phase from the grid's origin to the array's centre
 
   Axis(int points, int zero_pad, double spacing, double offset, double wavelength)
@@ -42,8 +42,7 @@ struct Axis {
 class GridTransform {
  public:
   GridTransform(const VirtualArray& array, const AngleFftOptions& options)
-      : array_(array),
-        weights_(element_weights(array, options.window)),
+      : array_(array), weights_(element_weights(array, options.window)),
         columns_(axis(array.grid->num_columns, options.zero_pad, array.grid->column_spacing, array.grid->column_axis)),
         rows_(axis(array.grid->num_rows, options.zero_pad, array.grid->row_spacing, array.grid->row_axis)) {}
 

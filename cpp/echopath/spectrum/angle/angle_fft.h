@@ -21,10 +21,10 @@ struct AngleFftOptions {
 struct AngleSpectrum {
   // Direction cosines along the grid's column axis and row axis: sin(azimuth) cos(elevation) and sin(elevation) for antennas
   // in the y-z plane. They ascend from -wavelength / (2 spacing); {0} for one column (row).
-  std::vector<double> sin_azimuth;    // [A]
-  std::vector<double> sin_elevation;  // [E]
-  std::vector<double> velocity;       // [V] m/s, receding positive
-  std::vector<double> range;          // [R] m
+  std::vector<double> sin_azimuth;           // [A]
+  std::vector<double> sin_elevation;         // [E]
+  std::vector<double> velocity;              // [V] m/s, receding positive
+  std::vector<double> range;                 // [R] m
   std::vector<std::complex<double>> values;  // [E, A, V, R] sqrt(W), phase as at the array's centre
 };
 

@@ -8,8 +8,8 @@ namespace echopath {
 namespace {
 
 constexpr int kColumns = BeamKernel::kColumns;
-constexpr int kElements = 4;         // added per pass over the columns
-constexpr int kFewColumns = 4;       // fewer do not fill a block
+constexpr int kElements = 4;    // added per pass over the columns
+constexpr int kFewColumns = 4;  // fewer do not fill a block
 
 // Adds four elements, each times its weight, to `out`.
 ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_im, const double* re, const double* im,
@@ -19,17 +19,17 @@ ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_
   const double *re1 = re + kColumns, *re2 = re1 + kColumns, *re3 = re2 + kColumns;
   const double *im1 = im + kColumns, *im2 = im1 + kColumns, *im3 = im2 + kColumns;
   for (int c = 0; c < kColumns; ++c) {
-    out_re[c] += (a0 * re[c] - b0 * im[c]) + (a1 * re1[c] - b1 * im1[c]) + (a2 * re2[c] - b2 * im2[c]) +
-                 (a3 * re3[c] - b3 * im3[c]);
-    out_im[c] += (a0 * im[c] + b0 * re[c]) + (a1 * im1[c] + b1 * re1[c]) + (a2 * im2[c] + b2 * re2[c]) +
-                 (a3 * im3[c] + b3 * re3[c]);
+    out_re[c] +=
+        (a0 * re[c] - b0 * im[c]) + (a1 * re1[c] - b1 * im1[c]) + (a2 * re2[c] - b2 * im2[c]) + (a3 * re3[c] - b3 * im3[c]);
+    out_im[c] +=
+        (a0 * im[c] + b0 * re[c]) + (a1 * im1[c] + b1 * re1[c]) + (a2 * im2[c] + b2 * re2[c]) + (a3 * im3[c] + b3 * re3[c]);
   }
 }
 
 // weights [directions, padded], columns [padded, kColumns]
 ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, const double* weight_re,
-                                        const double* weight_im, const double* re, const double* im, Combine combine,
-                                        double* power) {
+                                          const double* weight_im, const double* re, const double* im, Combine combine,
+                                          double* power) {
   for (int64_t d = 0; d < directions; ++d) {
     alignas(64) double out_re[kColumns] = {}, out_im[kColumns] = {};
     for (int64_t e = 0; e < padded; e += kElements) {
@@ -47,10 +47,8 @@ ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, co
 }  // namespace
 
 BeamKernel::BeamKernel(const Eigen::MatrixXcd& steering)
-    : steering_(steering),
-      padded_((steering.rows() + kElements - 1) / kElements * kElements),
-      re_(steering.cols() * padded_),
-      im_(steering.cols() * padded_) {
+    : steering_(steering), padded_((steering.rows() + kElements - 1) / kElements * kElements),
+      re_(steering.cols() * padded_), im_(steering.cols() * padded_) {
   for (int64_t d = 0; d < num_directions(); ++d) {
     for (int64_t e = 0; e < num_elements(); ++e) {
       re_[d * padded_ + e] = steering(e, d).real();

@@ -57,8 +57,7 @@ Eigen::VectorXd CellBeam::power(const BeamKernel& beams, Combine combine, const 
 }
 
 BeamSource::BeamSource(const RangeDoppler& map, const Radar& radar, const BeamformOptions& options)
-    : options_(options),
-      array_(virtual_array(radar)),
+    : options_(options), array_(virtual_array(radar)),
       reader_(checked(map, radar), array_, radar.waveform, options.overlaps, options.compensate) {
   options.validate();
   const std::vector<double> weights = element_weights(array_, options.window);

@@ -73,8 +73,8 @@ std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, Be
 }  // namespace
 
 void BeamformOptions::validate() const {
-  require(diagonal_loading >= kMinLoading && diagonal_loading <= kMaxLoading, "diagonal_loading",
-          "must be in [1e-9, 1e3]", diagonal_loading);
+  require(diagonal_loading >= kMinLoading && diagonal_loading <= kMaxLoading, "diagonal_loading", "must be in [1e-9, 1e3]",
+          diagonal_loading);
   for (const int reach : {velocity_neighbours, range_neighbours}) {
     require(reach >= 0 && reach <= kMaxNeighbours, "neighbours", "must be in [0, 64]", reach);
   }
@@ -100,8 +100,9 @@ BeamPower beamform(const RangeDoppler& map, const Radar& radar, const AngleGrid&
   angles.validate();
   const BeamSource source(map, radar, options);
   const int64_t num_cells = static_cast<int64_t>(map.velocity.size() * map.range.size());
-  return {angles.azimuth, angles.elevation, map.velocity, map.range, false,
-          powers(source, angles, options.method, strips_of(map), num_cells, job)};
+  return {angles.azimuth, angles.elevation,
+          map.velocity,   map.range,
+          false,          powers(source, angles, options.method, strips_of(map), num_cells, job)};
 }
 
 BeamPower beamform(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells, const AngleGrid& angles,

@@ -20,7 +20,7 @@ struct BeamformOptions {
   BeamMethod method = BeamMethod::kBartlett;
   Window window{WindowKind::kRect};  // kBartlett: over the rows and columns of a grid (steering.h)
   Overlaps overlaps = Overlaps::kAverage;
-  bool compensate = true;            // take out the phase between TDM slots
+  bool compensate = true;  // take out the phase between TDM slots
   // kCapon: added to the diagonal of the covariance, relative to the mean power of the elements, 1e-9 to 1e3
   double diagonal_loading = 1e-2;
   // kCapon: cells on each side whose snapshots are averaged in the covariance, 0 to 64; the velocity axis wraps around
@@ -39,7 +39,7 @@ struct BeamPower {
   std::vector<double> azimuth, elevation;  // [A], [E] rad
   std::vector<double> velocity, range;     // axes [V] m/s and [R] m, or [N] those of the cells given
   bool is_of_cells = false;
-  std::vector<double> power;               // W, [E, A, V, R], or [E, A, N] for cells
+  std::vector<double> power;  // W, [E, A, V, R], or [E, A, N] for cells
 };
 
 // Computes the power that beams toward a grid of directions pass, in all cells of a map or in those given.
@@ -57,8 +57,8 @@ struct BeamPower {
 // per cell.
 // Raises invalid_argument when the map is not the radar's, for angles or options out of range and for a window without a
 // grid; raises out_of_range for cells that the map does not have.
-BeamPower beamform(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
-                   const BeamformOptions& options = {}, Job* job = nullptr);
+BeamPower beamform(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& options = {},
+                   Job* job = nullptr);
 BeamPower beamform(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells, const AngleGrid& angles,
                    const BeamformOptions& options = {}, Job* job = nullptr);
 

@@ -11,8 +11,8 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxPeaks = 64;
-constexpr int kRefinements = 10;       // rounds; each narrows the stencil
-constexpr double kNarrowing = 0.35;    // factor of the stencil per round: 3e-5 of a step of the grid at the end
+constexpr int kRefinements = 10;     // rounds; each narrows the stencil
+constexpr double kNarrowing = 0.35;  // factor of the stencil per round: 3e-5 of a step of the grid at the end
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -94,7 +94,7 @@ class PeakSearch {
 
   // Moves to the highest of the peak, its neighbours at +-step along one angle, and the top of the parabola through the
   // three.
-  void climb(const CellBeam& beam, Peak& peak, double Peak::*angle, double step, const std::vector<double>& axis) const {
+  void climb(const CellBeam& beam, Peak& peak, double Peak::* angle, double step, const std::vector<double>& axis) const {
     if (step <= 0.0) return;
     const double centre = peak.*angle, low = at(beam, peak, angle, centre - step, axis).power;
     const double high = at(beam, peak, angle, centre + step, axis).power;
@@ -106,7 +106,7 @@ class PeakSearch {
     }
   }
 
-  Peak at(const CellBeam& beam, Peak peak, double Peak::*angle, double value, const std::vector<double>& axis) const {
+  Peak at(const CellBeam& beam, Peak peak, double Peak::* angle, double value, const std::vector<double>& axis) const {
     peak.*angle = std::clamp(value, axis.front(), axis.back());
     const Vec3 toward = direction(peak.azimuth, peak.elevation);
     peak.power = beam.power(BeamKernel(steering_vectors(source_.array(), {toward})))[0];

@@ -12,7 +12,7 @@ namespace echopath {
 
 struct EstimateOptions {
   BeamformOptions beams;
-  int max_peaks = 1;           // per cell, at least 1
+  int max_peaks = 1;            // per cell, at least 1
   double peak_range_db = 10.0;  // dB below the strongest peak of a cell, within which others are kept
   // The velocity may be v + 2 k v_max for |k| <= folds; the k with the strongest peak is taken, since TDM slots tell them
   // apart. At most half the number of transmitters less one.
@@ -22,9 +22,9 @@ struct EstimateOptions {
 };
 
 struct AngleEstimates {
-  std::vector<int64_t> cell;  // [N] index into the cells given, ascending
+  std::vector<int64_t> cell;                                       // [N] index into the cells given, ascending
   std::vector<double> range, velocity, azimuth, elevation, power;  // [N] m, m/s, rad, rad, W
-  std::vector<Vec3> points;   // [N] m, in the radar's frame
+  std::vector<Vec3> points;                                        // [N] m, in the radar's frame
 };
 
 // Finds the directions of the strongest peaks of beam power in each cell, strongest first. Parabolas through the power of

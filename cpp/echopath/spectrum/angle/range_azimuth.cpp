@@ -25,7 +25,8 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   const double step = count > 1 ? (map.velocity.back() - map.velocity.front()) / static_cast<double>(count - 1) : 0.0;
   require(count == 1 || std::abs(*nearest - velocity) <= 0.5 * step * (1.0 + 1e-9), "velocity",
           "must be on the map's axis (" + std::to_string(map.velocity.front()) + " to " +
-              std::to_string(map.velocity.back()) + " m/s)", velocity);
+              std::to_string(map.velocity.back()) + " m/s)",
+          velocity);
   return nearest - map.velocity.begin();
 }
 

@@ -13,8 +13,8 @@ namespace echopath {
 
 // Selects the velocities that a range-azimuth map shows.
 struct VelocityChoice {
-  std::optional<double> velocity;    // m/s, of the cells taken; none: all velocities
-  Combine combine = Combine::kSum;   // for all velocities: their sum, or the largest of them
+  std::optional<double> velocity;   // m/s, of the cells taken; none: all velocities
+  Combine combine = Combine::kSum;  // for all velocities: their sum, or the largest of them
 };
 
 struct RangeAzimuth {

@@ -103,8 +103,8 @@ std::optional<GridFit> fit_axes(const std::vector<Vec3>& points, const Vec3& col
   for (const Vec3& point : points) fit.grid.origin += normal.dot(point) * normal / static_cast<double>(points.size());
   fit.grid.origin += columns->offset * column_axis + rows->offset * row_axis;
   for (size_t i = 0; i < points.size(); ++i) {
-    const Vec3 on_grid = fit.grid.origin + columns->index[i] * columns->spacing * column_axis +
-                         rows->index[i] * rows->spacing * row_axis;
+    const Vec3 on_grid =
+        fit.grid.origin + columns->index[i] * columns->spacing * column_axis + rows->index[i] * rows->spacing * row_axis;
     fit.grid.deviation = std::max(fit.grid.deviation, (points[i] - on_grid).norm());
   }
   return fit;
@@ -119,8 +119,7 @@ std::optional<GridFit> fit_plane(const std::vector<Vec3>& points, const Vec3& ax
                   min_spacing);
 }
 
-std::optional<GridFit> fit_line(const std::vector<Vec3>& points, const Vec3& axis, double tolerance,
-                                double min_spacing) {
+std::optional<GridFit> fit_line(const std::vector<Vec3>& points, const Vec3& axis, double tolerance, double min_spacing) {
   const Vec3 across = horizontal_normal(axis);
   if (axis.z() * axis.z() > 0.5) return fit_axes(points, to_the_left(across), upwards(axis), tolerance, min_spacing);
   return fit_axes(points, to_the_left(axis), upwards(axis.cross(across)), tolerance, min_spacing);

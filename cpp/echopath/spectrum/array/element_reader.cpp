@@ -9,11 +9,8 @@ using Complex = std::complex<double>;
 
 ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array, const ChirpSequence& waveform,
                              Overlaps overlaps, bool compensate)
-    : map_(map),
-      num_velocities_(static_cast<int64_t>(map.velocity.size())),
-      num_ranges_(static_cast<int64_t>(map.range.size())),
-      compensate_(compensate && !map.is_tdm_compensated),
-      first_{0} {
+    : map_(map), num_velocities_(static_cast<int64_t>(map.velocity.size())),
+      num_ranges_(static_cast<int64_t>(map.range.size())), compensate_(compensate && !map.is_tdm_compensated), first_{0} {
   for (const VirtualElement& element : array.elements) {
     const auto end = overlaps == Overlaps::kFirst ? element.channels.begin() + 1 : element.channels.end();
     channel_.insert(channel_.end(), element.channels.begin(), end);

@@ -14,7 +14,7 @@ struct AngleGrid {
   std::vector<double> azimuth;    // [A] rad, ascending, in [-pi, pi]
   std::vector<double> elevation;  // [E] rad, ascending, in [-pi/2, pi/2]
 
-  void validate() const;                // raises invalid_argument naming the field, the rule and the value
+  void validate() const;                 // raises invalid_argument naming the field, the rule and the value
   std::vector<Vec3> directions() const;  // [E, A] unit vectors
 };
 

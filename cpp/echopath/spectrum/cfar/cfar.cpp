@@ -116,15 +116,18 @@ CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOp
   radar.validate();
   require_map_of(map, radar);
   const ChirpSequence& waveform = radar.waveform;
-  CfarDesign design{options.method, options.false_alarm_rate, options.rank, {},
-                    {map.window, waveform.num_chirps, waveform.num_samples, map.zero_pad,
-                     map.num_transmitters * map.num_receivers}};
+  CfarDesign design{
+      options.method,
+      options.false_alarm_rate,
+      options.rank,
+      {},
+      {map.window, waveform.num_chirps, waveform.num_samples, map.zero_pad, map.num_transmitters * map.num_receivers}};
   const int velocity_lobe = main_lobe_cells(map.window, waveform.num_chirps, map.zero_pad);
   const int range_lobe = main_lobe_cells(map.window, waveform.num_samples, map.zero_pad);
   const auto velocity = half_widths(options.guard_velocity, options.training_velocity, velocity_lobe,
                                     kTrainingVelocity * map.zero_pad, static_cast<int64_t>(map.velocity.size()));
-  const auto range = half_widths(options.guard_range, options.training_range, range_lobe,
-                                 kTrainingRange * map.zero_pad, static_cast<int64_t>(map.range.size()));
+  const auto range = half_widths(options.guard_range, options.training_range, range_lobe, kTrainingRange * map.zero_pad,
+                                 static_cast<int64_t>(map.range.size()));
   design.cells = {velocity.guard, range.guard, velocity.training, range.training};
   design.cells.validate(static_cast<int64_t>(map.velocity.size()), static_cast<int64_t>(map.range.size()));
   design.validate();

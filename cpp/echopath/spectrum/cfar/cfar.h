@@ -18,16 +18,16 @@ struct CfarOptions {
   CfarMethod method = CfarMethod::kCellAveraging;
   double false_alarm_rate = 1e-6;  // of each cell
   std::optional<int> guard_velocity, guard_range, training_velocity, training_range;
-  double rank = 0.75;              // kOrderedStatistic: share of the training cells up to the statistic
+  double rank = 0.75;  // kOrderedStatistic: share of the training cells up to the statistic
 };
 
 struct CfarResult {
-  CfarDesign design;               // resolved from the options
+  CfarDesign design;  // resolved from the options
   CfarFactors factors;
   int64_t num_velocities = 0, num_ranges = 0;
-  std::vector<double> power;       // [V, R] W, mean over channels
+  std::vector<double> power;                  // [V, R] W, mean over channels
   std::vector<std::array<int64_t, 2>> cells;  // [D] (velocity, range) of the cells above their thresholds, ascending
-  std::vector<double> noise;       // [D] W, mean noise power about each cell, from the training cells
+  std::vector<double> noise;                  // [D] W, mean noise power about each cell, from the training cells
 };
 
 // Finds the cells whose power, summed over all channels, exceeds the threshold that their training cells give for a

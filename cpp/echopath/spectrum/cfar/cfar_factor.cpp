@@ -34,9 +34,7 @@ double log_tail(int n, double x) {
 }
 
 // Returns -d log_tail / dx, which is density / tail.
-double hazard(int n, double x) {
-  return std::exp((n - 1) * std::log(x) - std::lgamma(n) - x - log_tail(n, x));
-}
+double hazard(int n, double x) { return std::exp((n - 1) * std::log(x) - std::lgamma(n) - x - log_tail(n, x)); }
 
 // Returns the x > 0 where a decreasing function falls through `value`, by secants of logarithms, in which it is nearly
 // straight.
@@ -208,8 +206,8 @@ double expected_statistic(const CfarDesign& design) {
 }
 
 void require_guard(int guard, int training, int lobe, const char* name) {
-  require(training == 0 || guard >= lobe, name,
-          "must cover the main lobe of the window, " + std::to_string(lobe) + " cells", guard);
+  require(training == 0 || guard >= lobe, name, "must cover the main lobe of the window, " + std::to_string(lobe) + " cells",
+          guard);
 }
 
 }  // namespace

@@ -10,12 +10,12 @@ namespace echopath {
 
 // Holds the echoes of N cells, in the order of the cells.
 struct Peaks {
-  std::vector<std::array<int64_t, 2>> cells;  // [N] (velocity, range)
+  std::vector<std::array<int64_t, 2>> cells;          // [N] (velocity, range)
   std::vector<double> velocity_offset, range_offset;  // [N] cells, from the middle of the cell to the peak
-  std::vector<double> velocity;  // [N] m/s, receding positive, wrapped into the axis
-  std::vector<double> range;     // [N] m, as in the map: with the shift f_c v / slope that velocity makes
-  std::vector<double> power;     // [N] W, mean over channels, with the loss by the offsets put back
-  std::vector<double> noise;     // [N] W, about the cell
+  std::vector<double> velocity;                       // [N] m/s, receding positive, wrapped into the axis
+  std::vector<double> range;  // [N] m, as in the map: with the shift f_c v / slope that velocity makes
+  std::vector<double> power;  // [N] W, mean over channels, with the loss by the offsets put back
+  std::vector<double> noise;  // [N] W, about the cell
 };
 
 // Finds the local maxima among the cells above their thresholds: a cell is not below any of its eight neighbours, and above

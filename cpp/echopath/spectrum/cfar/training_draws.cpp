@@ -1,8 +1,8 @@
 #include "echopath/spectrum/cfar/training_draws.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"

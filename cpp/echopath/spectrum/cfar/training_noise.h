@@ -24,7 +24,7 @@ class TrainingNoise {
 
   // [rows, degrees of freedom], even ones first
   const Eigen::MatrixXd& velocity_factor() const { return velocity_factor_; }
-  const Eigen::MatrixXd& range_factor() const { return range_factor_; }        // [columns, degrees of freedom]
+  const Eigen::MatrixXd& range_factor() const { return range_factor_; }  // [columns, degrees of freedom]
 
  private:
   Eigen::MatrixXd of(const Eigen::MatrixXd& form, Rows rows) const;

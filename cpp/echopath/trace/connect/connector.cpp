@@ -54,7 +54,8 @@ void Connector<Weight>::connect_coherent(Connection& at) const {
   const SurfaceHit& surface = at.surface;
   // The field holds 1/q for each bounce, but the area of the launch must not: hence the density without the probabilities.
   const double tube_area = ray.is_curved ? surface.tube_area : ray.leg_length * ray.leg_length;
-  const double launch_area = ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
+  const double launch_area =
+      ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
   const std::complex<double> coefficient =
       ray.coefficient * surface.response.gamma * surface.response.coherent * sign_of_return(ray);
   const std::complex<double> weight =

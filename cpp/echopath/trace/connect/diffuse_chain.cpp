@@ -14,7 +14,7 @@ void set_own_way_back(const Ray& ray, Leg& leg) {
 }  // namespace
 
 void DiffuseChainOrders::begin(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample,
-                        const std::vector<Leg>& receive) const {
+                               const std::vector<Leg>& receive) const {
   DiffuseChain& chain = ray.chain;
   chain.first = ray.depth - 1;
   chain.density = sample.probability() * ray.stands_for / surface.area;
@@ -58,7 +58,7 @@ void DiffuseChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const Scat
 }
 
 double DiffuseChainOrders::share(const DiffuseChain& chain, const SurfaceHit& surface, const SurfaceResponse& response,
-                          const Leg& leg) const {
+                                 const Leg& leg) const {
   if (chain.opposite_ratio == 0) return 1.0;
   const double density = density_over(context_.plan, surface.point.hit.mesh_id, leg) *
                          surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);

@@ -71,7 +71,9 @@ OrderShares MirrorOrders::shares(const Ray& ray, const SurfaceHit& surface, cons
 double MirrorOrders::resolution_of(const Ray& ray, const SurfaceHit& surface, const Leg& leg, const PathEnd& last) const {
   const PathEnd& first = ray.first_mirror;
   if (!first.is_smooth && !last.is_smooth) return 1.0;
-  const auto tube = [](const PathEnd& end) { return end.to_antenna * (end.to_antenna + end.to_next) * std::sqrt(end.spread); };
+  const auto tube = [](const PathEnd& end) {
+    return end.to_antenna * (end.to_antenna + end.to_next) * std::sqrt(end.spread);
+  };
   const LaunchPlan& plan = context_.plan;
   const double opposite_density = plan.density(plan.owners.owner(surface.point.hit.mesh_id, leg.sequence));
   return ray.launch_density * tube(last) / (opposite_density * tube(first));

@@ -1,15 +1,16 @@
 #pragma once
 // Finds the echoes of plain first hits in all lanes at once: such a hit lies on no flagged mirror and has only straight
 // legs.
-#include "echopath/trace/sbr/first_hits.h"
 #include "echopath/trace/near_antenna.h"
 #include "echopath/trace/record/path_block.h"
+#include "echopath/trace/sbr/first_hits.h"
 
 namespace echopath {
 
 // Returns whether the hit of a lane is plain, where all legs are straight.
 inline bool is_plain(const FirstHits& first, int lane) {
-  return !first.models[static_cast<size_t>(lane)]->material().mirror && first.near_squared[lane] >= kNearAntenna * kNearAntenna;
+  return !first.models[static_cast<size_t>(lane)]->material().mirror &&
+         first.near_squared[lane] >= kNearAntenna * kNearAntenna;
 }
 
 // Holds the weights of the coherent and of the diffuse echo to the receiver.

@@ -23,8 +23,8 @@ double PairConnector<Weight>::material_area(const Connection& at) const {
   const SurfaceHit& surface = at.surface;
   double hits_per_area = ray.launch_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
   for (const Leg& leg : at.legs.transmit) {
-    hits_per_area += density_over(context_.plan, surface.point.hit.mesh_id, leg) *
-                     surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
+    hits_per_area += density_over(context_.plan, surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) /
+                     (leg.length * leg.length);
   }
   return ray.stands_for / hits_per_area;
 }

@@ -48,7 +48,8 @@ void PathWriter<Weight>::write(Connection& at, const Leg& leg, uint64_t diffuse,
 }
 
 template <class Weight>
-void PathWriter<Weight>::write_reversed(Connection& at, const Leg& leg, uint64_t diffuse, std::complex<double> weight) const {
+void PathWriter<Weight>::write_reversed(Connection& at, const Leg& leg, uint64_t diffuse,
+                                        std::complex<double> weight) const {
   const Ray& ray = at.ray;
   at.block.add_reversal(hits_back_over(ray, leg).data(), ray.depth + leg.num_bounces, diffuse, std::complex<float>(weight),
                         ray.stratum);

@@ -54,10 +54,10 @@ void EmbreeScene::Device::start_scene(size_t num_meshes, bool tree_per_mesh) {
 void EmbreeScene::Device::set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices,
                                    const std::vector<Triangle>& triangles) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                             3 * sizeof(float), vertices.size()));
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                 3 * sizeof(uint32_t), triangles.size()));
+  auto* points = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangles.size()));
   if (!points || !indices) {
     rtcReleaseGeometry(geometry);
     throw DeviceError("Embree: out of memory for " + std::to_string(triangles.size()) + " triangles");
@@ -94,7 +94,9 @@ void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet
 
 void EmbreeScene::Device::occluded(RTCRay& ray) const { rtcOccluded1(scene, &ray); }
 
-void EmbreeScene::Device::occluded(const ValidLanes& valid, RTCRay16& rays) const { rtcOccluded16(valid.lanes, scene, &rays); }
+void EmbreeScene::Device::occluded(const ValidLanes& valid, RTCRay16& rays) const {
+  rtcOccluded16(valid.lanes, scene, &rays);
+}
 #else
 void EmbreeScene::Device::intersect(RTCRayHit& query) const {
   RTCIntersectContext context;

@@ -28,8 +28,8 @@ class EmbreeMeshes {
   struct Source {
     MeshPtr mesh;
     std::shared_ptr<const Deformation> deformation;
-    double time = 0.0;  // s, where it deforms
-    Mat3 linear = Mat3::Identity();  // of the pose
+    double time = 0.0;                // s, where it deforms
+    Mat3 linear = Mat3::Identity();   // of the pose
     Vec3 translation = Vec3::Zero();  // m, world
     bool smooth = false;
     bool is_same(const Source& other) const;

@@ -26,7 +26,7 @@ struct ConfirmedLanes {
 };
 
 ECHOPATH_INLINE void confirm_lanes(const PacketFacets* facets, VectorOf<double> from, const LaneVectors* directions,
-                                  ConfirmedLanes out) {
+                                   ConfirmedLanes out) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const VectorOf<double> corner = facets->corner.at(lane), direction = directions->at(lane);

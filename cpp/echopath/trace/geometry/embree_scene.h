@@ -8,17 +8,17 @@
 
 #include "echopath/base/job.h"
 #include "echopath/scene/scene.h"
+#include "echopath/trace/geometry/embree_meshes.h"
 #include "echopath/trace/geometry/packet.h"
 #include "echopath/trace/record/paths.h"
-#include "echopath/trace/geometry/embree_meshes.h"
 #include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {
 
 struct RayHit {
   Hit hit;
-  Vec3 position;  // rebuilt in double from (u, v), relative to the origin; on the curved surface where it is smooth
-  Vec3 normal;    // unit, flipped against the ray
+  Vec3 position;          // rebuilt in double from (u, v), relative to the origin; on the curved surface where it is smooth
+  Vec3 normal;            // unit, flipped against the ray
   double distance = 0.0;  // m, along the ray
   bool is_smooth = false;
   double stretch = 1.0;

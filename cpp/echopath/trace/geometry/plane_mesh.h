@@ -21,8 +21,8 @@ class PlaneMesh {
  private:
   struct Facet {
     uint32_t triangle_id;
-    Vec3 corner, along_u, along_v;         // u = along_u.dot(p - corner), likewise v
-    double slack_u, slack_v, slack_w;      // change of the barycentric coordinates over 1 nm
+    Vec3 corner, along_u, along_v;     // u = along_u.dot(p - corner), likewise v
+    double slack_u, slack_v, slack_w;  // change of the barycentric coordinates over 1 nm
     bool holds(double u, double v) const { return u >= -slack_u && v >= -slack_v && 1.0 - u - v >= -slack_w; }
   };
   struct Cell {
@@ -30,10 +30,12 @@ class PlaneMesh {
   };
   static Facet facet_of(uint32_t triangle_id, const std::array<Vec3, 3>& corners);
   Cell cell_of(const Vec3& point) const;
-  size_t index(Cell cell) const { return static_cast<size_t>(cell.row) * static_cast<size_t>(size_) + static_cast<size_t>(cell.column); }
+  size_t index(Cell cell) const {
+    return static_cast<size_t>(cell.row) * static_cast<size_t>(size_) + static_cast<size_t>(cell.column);
+  }
 
   uint32_t mesh_id_ = 0;
-  int size_ = 1;  // cells per side
+  int size_ = 1;                                       // cells per side
   Vec3 first_ = Vec3::Zero(), second_ = Vec3::Zero();  // across the plane, cells per m
   double first_begin_ = 0.0, second_begin_ = 0.0;
   std::vector<std::vector<Facet>> cells_{std::vector<Facet>()};  // [size * size], by triangle ID in each

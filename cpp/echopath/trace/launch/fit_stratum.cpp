@@ -22,8 +22,8 @@ constexpr double kMargin = 1e-2, kMarginOfLarger = 1e-4;
 constexpr double kSteepestSine = 0.57;
 constexpr size_t kSampledVertices = 4096;  // for the middle of directions
 constexpr int kAxisSteps = 64;
-constexpr int kTriedTurns = 48;            // directions of strips, beside those of few hull edges
-constexpr int kOutwardDirections = 16;     // by which points inside the hull are sorted out
+constexpr int kTriedTurns = 48;         // directions of strips, beside those of few hull edges
+constexpr int kOutwardDirections = 16;  // by which points inside the hull are sorted out
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -45,7 +45,8 @@ Vec3 middle_of(const std::vector<Vec3>& directions) {
 }
 
 bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
-  return std::all_of(directions.begin(), directions.end(), [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
+  return std::all_of(directions.begin(), directions.end(),
+                     [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
 }
 
 // Points toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far
@@ -66,9 +67,7 @@ struct GnomonicPlane {
   Eigen::Vector2d project(const Vec3& direction) const {
     return Eigen::Vector2d(direction.dot(first), direction.dot(second)) / direction.dot(axis);
   }
-  Vec3 direction(const Eigen::Vector2d& point) const {
-    return (axis + point[0] * first + point[1] * second).normalized();
-  }
+  Vec3 direction(const Eigen::Vector2d& point) const { return (axis + point[0] * first + point[1] * second).normalized(); }
 };
 
 // Returns the points that may be corners of the convex hull: those outside of the polygon of the outermost ones in some
@@ -89,7 +88,8 @@ PlanePoints outer_points(const PlanePoints& points) {
     return true;
   };
   PlanePoints outer;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(outer), [&](const auto& point) { return !is_inside(point); });
+  std::copy_if(points.begin(), points.end(), std::back_inserter(outer),
+               [&](const auto& point) { return !is_inside(point); });
   return outer;
 }
 
@@ -177,7 +177,8 @@ PlanePoints turns_to_try(const PlanePoints& hull) {
 
 }  // namespace
 
-std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name, bool may_be_strip) {
+std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name,
+                                   bool may_be_strip) {
   std::vector<Vec3> directions;
   directions.reserve(vertices.size());
   for (const Vec3& vertex : vertices) {

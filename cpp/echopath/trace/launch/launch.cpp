@@ -7,8 +7,8 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/trace/launch/ray_targets.h"
 #include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/launch/ray_targets.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {
@@ -131,9 +131,9 @@ Stratum field_of_view(const LaunchSettings& settings) {
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);
-  RayTargets found = find_ray_targets(scene, geometry, mirrors,
-                              {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(),
-                               settings.sampler == Sampler::kLattice});
+  RayTargets found = find_ray_targets(
+      scene, geometry, mirrors,
+      {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(), settings.sampler == Sampler::kLattice});
   const bool is_guided = !settings.guide.shares.empty();
   std::vector<Focus> foci;
   if (is_guided) foci = foci_of(settings.guide.foci, found.aims, field);
@@ -141,7 +141,8 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
                                                : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
   std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
   for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
-    if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0) rays.back() += std::exchange(rays[found.aims.size() + i], 0);
+    if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0)
+      rays.back() += std::exchange(rays[found.aims.size() + i], 0);
   }
   LaunchPlan plan;
   plan.seed = settings.seed;
@@ -153,7 +154,8 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   for (size_t k = 0; k < found.aims.size(); ++k) {
     add_stratum(plan, found.aims[k].stratum, rays[k], settings.sampler);
     if (plan.strata[k].num_rays == 0) continue;
-    for (const MirrorSequence sequence : found.aims[k].sequences) plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
+    for (const MirrorSequence sequence : found.aims[k].sequences)
+      plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
   }
   std::map<size_t, int> numbers;
   for (size_t i = 0; i < foci.size(); ++i) {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/trace/launch/launch_focus.h"
-#include "echopath/trace/mirrors/mirror_frusta.h"
 #include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/launch/launch_focus.h"
 #include "echopath/trace/launch/ray_owners.h"
 #include "echopath/trace/launch/sampler.h"
 #include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/mirrors/mirror_frusta.h"
 
 namespace echopath {
 
@@ -32,7 +32,7 @@ struct LaunchPlan {
 
   std::vector<Stratum> strata;
   std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
-  std::vector<int64_t> first_ray;  // [strata + 1] running sum of num_rays
+  std::vector<int64_t> first_ray;                           // [strata + 1] running sum of num_rays
   RayOwners owners;
   LaunchFoci foci;
   uint64_t seed = 0;
@@ -55,12 +55,12 @@ struct LaunchSettings {
   int64_t num_rays = 0;
   uint64_t seed = 0;
   Sampler sampler = Sampler::kLattice;
-  int batches = 1;  // independent shifts of the set of each stratum, which share its rays
+  int batches = 1;                         // independent shifts of the set of each stratum, which share its rays
   int max_image_mirrors = kMaxLegMirrors;  // images over more get no stratum
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
-  LaunchGuide guide;  // by default the rule above, without foci
+  LaunchGuide guide;           // by default the rule above, without foci
 };
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

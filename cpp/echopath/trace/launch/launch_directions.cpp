@@ -26,8 +26,9 @@ LaunchDomain domain_of(const Stratum& stratum) {
 
 StratumFrame::StratumFrame(const Stratum& stratum)
     : axis_(unpacked(stratum.axis)),
-      first_(unpacked(stratum.is_strip() ? stratum.across : Vec3(stratum.axis.unitOrthogonal()))), second_(cross(axis_, first_)),
-      size_(stratum.is_strip() ? 0.5 * (stratum.low + stratum.high) : stratum.versine), is_strip_(stratum.is_strip()) {}
+      first_(unpacked(stratum.is_strip() ? stratum.across : Vec3(stratum.axis.unitOrthogonal()))),
+      second_(cross(axis_, first_)), size_(stratum.is_strip() ? 0.5 * (stratum.low + stratum.high) : stratum.versine),
+      is_strip_(stratum.is_strip()) {}
 
 Vec3 LaunchDirections::direction(int stratum, const Eigen::Vector2d& point) const {
   const StratumFrame& frame = frames_[static_cast<size_t>(stratum)];

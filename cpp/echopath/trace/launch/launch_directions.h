@@ -31,7 +31,9 @@ class StratumFrame {
 
  private:
   static constexpr double kPerTurn = 0.15915494309189535;  // 1 / (2 pi)
-  ECHOPATH_INLINE static VectorOf<double> unit(const VectorOf<double>& out) { return (1.0 / ScalarMath::root(dot(out, out))) * out; }
+  ECHOPATH_INLINE static VectorOf<double> unit(const VectorOf<double>& out) {
+    return (1.0 / ScalarMath::root(dot(out, out))) * out;
+  }
 
   VectorOf<double> axis_, first_, second_;
   double size_;  // versine of the cone; sine of the elevation of the strip's middle

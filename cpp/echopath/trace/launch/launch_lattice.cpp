@@ -59,7 +59,8 @@ void LaunchLattice::add_rows(double cell_area, const Eigen::Vector2d& shift) {
 // Finds where the row through `base` enters and leaves the domain, in steps. Returns false where it misses the domain.
 bool LaunchLattice::find_row(const Eigen::Vector2d& base, double& begin, double& end) const {
   if (!domain_.is_disc()) {
-    const Eigen::Array2d one = (-domain_.half - base).array() / step_.array(), other = (domain_.half - base).array() / step_.array();
+    const Eigen::Array2d one = (-domain_.half - base).array() / step_.array(),
+                         other = (domain_.half - base).array() / step_.array();
     begin = one.min(other).maxCoeff();
     end = one.max(other).minCoeff();
     return begin <= end;

@@ -35,8 +35,8 @@ class LaunchLattice : public LaunchPoints {
   double cell_area_ = 0.0;
   Eigen::Vector2d step_ = Eigen::Vector2d::Zero();  // along a row
   std::vector<Eigen::Vector2d> rows_;               // first point of each row
-  std::vector<int64_t> first_;  // [rows + 1] index of the first point of each row
-  std::vector<int64_t> end_of_batch_;  // [batches] index behind the last point of each
+  std::vector<int64_t> first_;                      // [rows + 1] index of the first point of each row
+  std::vector<int64_t> end_of_batch_;               // [batches] index behind the last point of each
 };
 
 }  // namespace echopath

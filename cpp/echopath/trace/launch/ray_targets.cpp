@@ -36,9 +36,11 @@ bool is_same(const Stratum& a, const Stratum& b) {
 
 class RayTargetFinder {
  public:
-  RayTargetFinder(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
+  RayTargetFinder(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                  const RayTargetSettings& settings)
       : scene_(scene), mirrors_(mirrors), settings_(settings),
-        frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {}
+        frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {
+  }
 
   std::optional<RayTarget> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
 
@@ -53,7 +55,8 @@ class RayTargetFinder {
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
       std::optional<RayTarget> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
       if (!made) continue;
-      const auto same = std::find_if(images.begin(), images.end(), [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
+      const auto same = std::find_if(images.begin(), images.end(),
+                                     [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
       RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
       image.sequences.push_back(frustum.sequence);
     }
@@ -61,7 +64,8 @@ class RayTargetFinder {
   }
 
  private:
-  std::optional<RayTarget> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name, int num_mirrors) const {
+  std::optional<RayTarget> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name,
+                               int num_mirrors) const {
     std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
@@ -90,7 +94,8 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
   target.object = index;
   target.node = object.node;
   target.name = scene.nodes()[static_cast<size_t>(object.node)].name;
-  target.sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, object.mesh_ids);
+  target.sphere =
+      bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, object.mesh_ids);
   for (const uint32_t id : object.mesh_ids) {
     const std::vector<Vec3>& vertices = geometry.vertices(id);
     target.vertices.insert(target.vertices.end(), vertices.begin(), vertices.end());
@@ -102,9 +107,12 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
 // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
 void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
   const size_t all = objects.size() + images.size();
-  std::stable_sort(images.begin(), images.end(), [](const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
+  std::stable_sort(images.begin(), images.end(),
+                   [](const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
   if (objects.size() > kMaxAims) {
-    const auto wider = [](const RayTarget& a, const RayTarget& b) { return a.stratum.solid_angle() > b.stratum.solid_angle(); };
+    const auto wider = [](const RayTarget& a, const RayTarget& b) {
+      return a.stratum.solid_angle() > b.stratum.solid_angle();
+    };
     std::stable_sort(objects.begin(), objects.end(), wider);
     objects.resize(kMaxAims);
   }
@@ -118,7 +126,7 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
 double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
 
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                    const RayTargetSettings& settings) {
+                            const RayTargetSettings& settings) {
   RayTargets out;
   out.object_of_mesh.assign(scene.meshes().size(), -1);
   const RayTargetFinder aimer(scene, geometry, mirrors, settings);

@@ -2,8 +2,8 @@
 // Finds the objects of a scene and their images over mirrors, as targets of rays.
 #include <vector>
 
-#include "echopath/trace/mirrors/mirror_frusta.h"
 #include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/mirrors/mirror_frusta.h"
 
 namespace echopath {
 
@@ -26,14 +26,14 @@ struct RayTargetSettings {
 };
 
 struct RayTargets {
-  std::vector<RayTarget> aims;             // objects first, then images
-  std::vector<int> object_of_mesh;   // by mesh ID, -1: a mirror
+  std::vector<RayTarget> aims;      // objects first, then images
+  std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
   int num_objects = 0;
-  bool any_unaimed = false;          // some object has no stratum
-  int64_t num_left_out = 0;          // objects and images beyond the number of strata that a record can tell apart
+  bool any_unaimed = false;  // some object has no stratum
+  int64_t num_left_out = 0;  // objects and images beyond the number of strata that a record can tell apart
 };
 
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                    const RayTargetSettings& settings);
+                            const RayTargetSettings& settings);
 
 }  // namespace echopath

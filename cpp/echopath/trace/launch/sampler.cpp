@@ -27,7 +27,8 @@ Eigen::Vector2d concentric(double x, double y) {
 // Divides points into batches of equal size, but for one point.
 class EqualShares : public LaunchPoints {
  public:
-  EqualShares(int64_t num_points, std::vector<Eigen::Vector2d> shifts) : num_points_(num_points), shifts_(std::move(shifts)) {}
+  EqualShares(int64_t num_points, std::vector<Eigen::Vector2d> shifts)
+      : num_points_(num_points), shifts_(std::move(shifts)) {}
   int64_t size() const override { return num_points_; }
   double cell_area() const override { return kPi / static_cast<double>(num_points_); }
   int batch_of(int64_t index) const override {
@@ -83,7 +84,8 @@ double LaunchDomain::area() const { return is_disc() ? kPi : 4.0 * half[0] * hal
 
 std::unique_ptr<const LaunchPoints> launch_points(Sampler sampler, const LaunchDomain& domain, int64_t num_points,
                                                   const std::vector<Eigen::Vector2d>& shifts) {
-  require(sampler == Sampler::kLattice || domain.is_disc(), "sampler", "must be the lattice for strips", static_cast<int>(sampler));
+  require(sampler == Sampler::kLattice || domain.is_disc(), "sampler", "must be the lattice for strips",
+          static_cast<int>(sampler));
   switch (sampler) {
     case Sampler::kLattice: return std::make_unique<LaunchLattice>(domain, num_points, shifts);
     case Sampler::kFibonacci: return std::make_unique<FibonacciSpiral>(num_points, shifts);

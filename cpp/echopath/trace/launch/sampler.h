@@ -28,7 +28,7 @@ class LaunchPoints {
  public:
   virtual ~LaunchPoints() = default;
   virtual int64_t size() const = 0;
-  virtual double cell_area() const = 0;                     // area for which one point stands
+  virtual double cell_area() const = 0;                    // area for which one point stands
   virtual Eigen::Vector2d point(int64_t index) const = 0;  // index in [0, size())
   // Finds the coordinates [count] of points in a row.
   virtual void points(int64_t first, int64_t count, double* x, double* y) const {
@@ -38,7 +38,7 @@ class LaunchPoints {
       y[i] = one[1];
     }
   }
-  virtual int batch_of(int64_t index) const = 0;           // index of its shift
+  virtual int batch_of(int64_t index) const = 0;  // index of its shift
 };
 
 // Returns exactly num_points points, in as many independent batches, one after the other, as there are shifts [2] in [0, 1).

@@ -5,11 +5,11 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kFewFrusta = 16;         // up to this many are looked at one by one
-constexpr int kMaxHalvings = 21;        // of the space, until a cell is left whole
-constexpr size_t kMaxEntries = 8 << 20; // of all cells; beyond that none is halved
+constexpr size_t kFewFrusta = 16;        // up to this many are looked at one by one
+constexpr int kMaxHalvings = 21;         // of the space, until a cell is left whole
+constexpr size_t kMaxEntries = 8 << 20;  // of all cells; beyond that none is halved
 constexpr double kWorth = 0.9;           // halves that hold more than this share of the frusta are in vain,
-constexpr int kMaxVain = 4;             // and a cell is halved no further after so many in a row
+constexpr int kMaxVain = 4;              // and a cell is halved no further after so many in a row
 constexpr double kAround = 0.25;         // share of the extent of the mirrors by which the cells reach beyond them
 
 }  // namespace
@@ -28,7 +28,7 @@ FrustumLocator::FrustumLocator(const std::vector<MirrorFrustum>& frusta, double 
 }
 
 int FrustumLocator::grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth,
-                      int num_vain) {
+                         int num_vain) {
   const auto index = cells_.size();
   cells_.emplace_back();
   const bool is_full = entries_.size() + reaching.size() > kMaxEntries;
@@ -63,7 +63,8 @@ int FrustumLocator::grow(const Regions& regions, const Eigen::AlignedBox3d& box,
 std::span<const int> FrustumLocator::near(const Vec3& point) const {
   if (cells_.empty() || !box_.contains(point)) return all_;
   size_t at = 0;
-  while (cells_[at].axis >= 0) at = point[cells_[at].axis] < cells_[at].split ? at + 1 : static_cast<size_t>(cells_[at].second);
+  while (cells_[at].axis >= 0)
+    at = point[cells_[at].axis] < cells_[at].split ? at + 1 : static_cast<size_t>(cells_[at].second);
   return {entries_.data() + cells_[at].begin, cells_[at].end - cells_[at].begin};
 }
 

@@ -18,9 +18,9 @@ class FrustumLocator {
 
  private:
   struct Cell {
-    int axis = -1;       // along which it is halved, -1: not
-    double split = 0.0;  // m
-    int second = 0;      // the half above; the one below follows this cell
+    int axis = -1;              // along which it is halved, -1: not
+    double split = 0.0;         // m
+    int second = 0;             // the half above; the one below follows this cell
     size_t begin = 0, end = 0;  // in entries_
   };
   using Regions = std::vector<std::vector<HalfSpace>>;  // of the frusta

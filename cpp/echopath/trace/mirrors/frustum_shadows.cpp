@@ -10,8 +10,8 @@ constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near h
 constexpr double kOffPlane = 1e-6;    // m: occluders lie this far before the mirror's plane and behind that of the last one
 constexpr double kBefore = 1e-3;      // m: a surface this near to the mirror does not hide it
 constexpr double kFarAway = 1e12;     // m
-constexpr int kMaxSurfaceSearches = 24;        // rays for one window; parts that they do not look at count as seen
-constexpr size_t kMaxPieces = 24;    // parts into which shadows cut one window; further shadows are not cut out
+constexpr int kMaxSurfaceSearches = 24;  // rays for one window; parts that they do not look at count as seen
+constexpr size_t kMaxPieces = 24;        // parts into which shadows cut one window; further shadows are not cut out
 
 using Polygons = std::vector<std::vector<Vec3>>;
 
@@ -68,18 +68,20 @@ FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mi
 
 // Returns whether something stands between the source and a point of the target. Sets `occluder` to a polygon of it, as far
 // as that lies between the two planes, or to none where its shadow cannot be told.
-bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const {
+bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, const Vec3& point,
+                          std::vector<Vec3>& occluder) const {
   Vec3 from = source.apex;
   if (source.lit_normal) {
-    const double behind = source.offset - source.lit_normal->dot(from), ahead = source.lit_normal->dot(point) - source.offset;
+    const double behind = source.offset - source.lit_normal->dot(from),
+                 ahead = source.lit_normal->dot(point) - source.offset;
     if (ahead <= kOffPlane) return false;
     from = geometry_.lifted(from + behind / (behind + ahead) * (point - from), *source.lit_normal);
   }
   RayHit met;
   const double length = (point - from).norm();
   const Vec3 direction = (point - from) / length;
-  const EmbreeScene::Verdict verdict = source.lit_normal ? geometry_.intersect_from_surface(from, direction, met)
-                                                         : geometry_.intersect(from, direction, met);
+  const EmbreeScene::Verdict verdict =
+      source.lit_normal ? geometry_.intersect_from_surface(from, direction, met) : geometry_.intersect(from, direction, met);
   if (verdict != EmbreeScene::Verdict::kHit || met.distance > length - kBefore) return false;
   const uint32_t mesh = met.hit.mesh_id;
   const int mirror = mesh < mirror_of_mesh_.size() ? mirror_of_mesh_[mesh] : -1;

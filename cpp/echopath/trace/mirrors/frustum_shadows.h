@@ -16,9 +16,9 @@ std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex);
 
 // Describes where a frustum comes from: its antenna or its last mirror.
 struct FrustumSource {
-  Vec3 apex;                      // the antenna or its image
+  Vec3 apex;                         // the antenna or its image
   const Vec3* lit_normal = nullptr;  // of the last mirror, unit, on the lit side; null for the antenna itself
-  double offset = 0.0;            // of its plane
+  double offset = 0.0;               // of its plane
 };
 
 class FrustumShadows {

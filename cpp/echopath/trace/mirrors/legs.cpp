@@ -67,8 +67,8 @@ void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& anten
 }
 
 // Sets the bounces from the point over the mirrors to the antenna. Returns false where the way misses a mirror.
-bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum, Leg& leg,
-                            std::vector<Segment>& segments) const {
+bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum,
+                            Leg& leg, std::vector<Segment>& segments) const {
   Vec3 position = point, from = geometry_.lifted(point, normal), met;
   for (size_t k = frustum.mirrors.size(); k-- > 0;) {
     if (!bounce(frustum.mirrors[k], position, frustum.images[k], leg, met)) return false;

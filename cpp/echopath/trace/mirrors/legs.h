@@ -11,10 +11,10 @@ namespace echopath {
 
 // A bounce of a leg is seen by a wave that travels from the surface point to the antenna.
 struct LegBounce {
-  int mirror;          // index into the mirrors
+  int mirror;  // index into the mirrors
   Hit hit;
-  Vec3 direction;      // unit, of travel toward the mirror
-  Vec3 normal;         // unit, on the lit side
+  Vec3 direction;         // unit, of travel toward the mirror
+  Vec3 normal;            // unit, on the lit side
   double specular_share;  // s_m^2
 };
 
@@ -22,17 +22,17 @@ struct Leg {
   MirrorSequence sequence = kDirect;
   int num_bounces = 0;
   std::array<LegBounce, kMaxLegMirrors> bounces;  // from the point toward the antenna
-  double length = 0.0;        // m, unfolded
-  Vec3 to_antenna;            // unit, from the point toward the antenna or its image
-  Vec3 at_antenna;            // unit, from the antenna toward the point or its image
-  std::complex<double> gain = 1.0;  // field factor: product of Gamma_m s_m of the mirrors
-  double specular_share = 1.0;      // product of s_m^2: the probability with which a ray goes on specularly over all of them
+  double length = 0.0;                            // m, unfolded
+  Vec3 to_antenna;                                // unit, from the point toward the antenna or its image
+  Vec3 at_antenna;                                // unit, from the antenna toward the point or its image
+  std::complex<double> gain = 1.0;                // field factor: product of Gamma_m s_m of the mirrors
+  double specular_share = 1.0;  // product of s_m^2: the probability with which a ray goes on specularly over all of them
 
   Leg() {}  // so that a list of legs grows without touching bounces that are not there
 };
 
 struct AntennaView {
-  Vec3 position;               // relative to the trace origin
+  Vec3 position;  // relative to the trace origin
   std::vector<MirrorFrustum> frusta;
   FrustumLocator locator;      // of the frusta
   int64_t num_unfollowed = 0;  // MirrorFrusta::num_unfollowed
@@ -42,9 +42,9 @@ enum class ShadowState : uint8_t { kUnknown, kOpen, kBlocked };
 
 // Says where legs are searched.
 struct LegQuery {
-  Vec3 point, normal;       // m; unit, on the lit side
+  Vec3 point, normal;  // m; unit, on the lit side
   int max_mirrors = 0;
-  MirrorSequence skip = -1;  // a sequence that is left out, negative for none
+  MirrorSequence skip = -1;                    // a sequence that is left out, negative for none
   ShadowState direct = ShadowState::kUnknown;  // of the antenna itself
 };
 
@@ -52,7 +52,7 @@ struct LegQuery {
 struct LegSearch {
   std::vector<Segment> segments;  // of all legs tried, in their order
   std::vector<uint8_t> blocked;
-  int64_t num_queries = 0;        // of all searches
+  int64_t num_queries = 0;  // of all searches
 };
 
 class LegFinder {
@@ -67,8 +67,8 @@ class LegFinder {
 
  private:
   void add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
-  void add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const MirrorFrustum& frustum, std::vector<Leg>& legs,
-                        LegSearch& search) const;
+  void add_over_mirrors(const LegQuery& query, const AntennaView& antenna, const MirrorFrustum& frustum,
+                        std::vector<Leg>& legs, LegSearch& search) const;
   bool set_bounces(const Vec3& point, const Vec3& normal, const Vec3& antenna, const MirrorFrustum& frustum, Leg& leg,
                    std::vector<Segment>& segments) const;
   bool bounce(int mirror, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const;

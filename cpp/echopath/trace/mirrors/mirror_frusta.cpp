@@ -8,9 +8,9 @@
 namespace echopath {
 namespace {
 
-constexpr double kOnPlane = 1e-4;      // m: an antenna or image this near the plane has no image in it
-constexpr double kFlatBox = 1e-4;      // m: mirrors may stray this far from their outlines
-constexpr size_t kTogether = 512;      // frusta that are followed side by side
+constexpr double kOnPlane = 1e-4;  // m: an antenna or image this near the plane has no image in it
+constexpr double kFlatBox = 1e-4;  // m: mirrors may stray this far from their outlines
+constexpr size_t kTogether = 512;  // frusta that are followed side by side
 
 std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -45,7 +45,8 @@ FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeSce
 
 // Reflects the frustum (null: the antenna itself), whose source appears at `source`, in one mirror; returns false where it
 // shows nothing.
-bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const {
+bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack,
+                            MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double side = mirror.height(source);
   if (std::abs(side) < kOnPlane) return false;
@@ -75,7 +76,8 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
 }
 
 // Appends the reflections of the frustum in all mirrors.
-void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, double slack, std::vector<MirrorFrustum>& out) const {
+void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, double slack,
+                           std::vector<MirrorFrustum>& out) const {
   std::vector<int> lit;
   boxes_.find(frustum ? frustum->region(slack) : std::vector<HalfSpace>(), lit);
   MirrorFrustum next;

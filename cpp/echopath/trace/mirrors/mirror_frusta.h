@@ -11,7 +11,7 @@
 
 namespace echopath {
 
-inline constexpr int kMaxLegMirrors = 2;  // mirrors between a surface point and an antenna
+inline constexpr int kMaxLegMirrors = 2;       // mirrors between a surface point and an antenna
 inline constexpr size_t kMaxFrusta = 250'000;  // of one antenna, about 0.2 GiB; those left out are counted
 
 // A sequence of mirrors in travel order from the antenna to the surface is kept as a number; 0 means no mirror.
@@ -27,12 +27,12 @@ inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_m
 // last image.
 struct MirrorFrustum {
   MirrorSequence sequence = kDirect;
-  std::vector<int> mirrors;   // in travel order from the antenna
-  std::vector<Vec3> images;   // of the antenna over the first 1, 2, .. of these mirrors
-  Vec3 lit_normal;            // of the last mirror, unit, on the side that is lit
-  double offset = 0.0;        // of its plane: lit_normal.dot(p) > offset is lit
-  std::vector<Vec3> window;   // corners of the polygon on the last mirror through which the last image is seen
-  std::vector<Vec3> rims;     // inward unit normals of the planes through the last image and an edge of the window
+  std::vector<int> mirrors;  // in travel order from the antenna
+  std::vector<Vec3> images;  // of the antenna over the first 1, 2, .. of these mirrors
+  Vec3 lit_normal;           // of the last mirror, unit, on the side that is lit
+  double offset = 0.0;       // of its plane: lit_normal.dot(p) > offset is lit
+  std::vector<Vec3> window;  // corners of the polygon on the last mirror through which the last image is seen
+  std::vector<Vec3> rims;    // inward unit normals of the planes through the last image and an edge of the window
 
   const Vec3& image() const { return images.back(); }
   // Returns whether a ball of `radius` (m) about `point` reaches into the frustum. This is true for all that is lit and for

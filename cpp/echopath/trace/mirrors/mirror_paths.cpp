@@ -10,7 +10,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kAtEdge = 1e-4;      // m: bounces this near to each other are at a common edge
+constexpr double kAtEdge = 1e-4;  // m: bounces this near to each other are at a common edge
 // A path through an edge belongs to the sequences of mirrors on both sides of it: those of a receiver a little beside the
 // true one, and of one as far on the other side. No scene is likely to be built along the direction of the shift.
 constexpr double kAside = 1e-5;  // m
@@ -124,7 +124,8 @@ class ImageMethod {
     for (size_t k = 0; k < points_.size(); ++k) {
       const Vec3& normal = mirror(k).normal;
       const PolarizationMode mode = polarization_mode(settings_.polarization, direction, normal);
-      const SurfaceResponse response = respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)), mode);
+      const SurfaceResponse response =
+          respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)), mode);
       product *= response.gamma * response.coherent *
                  mirror_sign(*mirror(k).material, mode, settings_.polarization, direction, normal);
       direction = mirror(k).mirrored(direction);
@@ -180,7 +181,8 @@ class HalfwayMeeting {
  private:
   static std::vector<Eigen::AlignedBox3d> boxes_of_images(FrustumRange frusta) {
     std::vector<Eigen::AlignedBox3d> boxes;
-    for (const MirrorFrustum* one = frusta.first; one != frusta.second; ++one) boxes.emplace_back(one->image(), one->image());
+    for (const MirrorFrustum* one = frusta.first; one != frusta.second; ++one)
+      boxes.emplace_back(one->image(), one->image());
     return boxes;
   }
 
@@ -197,7 +199,8 @@ class HalfwayMeeting {
 
 class MirrorPathSearch {
  public:
-  MirrorPathSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings, const Job* job)
+  MirrorPathSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
+                   const Job* job)
       : geometry_(geometry), mirrors_(mirrors), settings_(settings), job_(job) {
     const FrustumFinder finder(mirrors, &geometry);
     const int half = settings.max_bounces / 2;
@@ -224,7 +227,8 @@ class MirrorPathSearch {
   }
 
   void add_longer(size_t count, std::vector<PathBlock>& blocks) const {
-    const HalfwayMeeting meeting(with_mirrors(transmit_.frusta, count - count / 2), with_mirrors(receive_.frusta, count / 2));
+    const HalfwayMeeting meeting(with_mirrors(transmit_.frusta, count - count / 2),
+                                 with_mirrors(receive_.frusta, count / 2));
     const size_t first = blocks.size();
     blocks.resize(first + (meeting.size() + kFrustaPerBlock - 1) / kFrustaPerBlock);
     Job own(job_);

@@ -23,8 +23,8 @@ class AxisCover {
  public:
   AxisCover(const EmbreeScene& geometry, const MirrorView& view, const ZoneAxis& axis, const ZoneTarget* target,
             double wavelength, int64_t& num_queries)
-      : geometry_(geometry), view_(view), axis_(axis), target_(target), gap_(std::max(kGap * wavelength, 4.0 * geometry.lift())),
-        num_queries_(num_queries) {}
+      : geometry_(geometry), view_(view), axis_(axis), target_(target),
+        gap_(std::max(kGap * wavelength, 4.0 * geometry.lift())), num_queries_(num_queries) {}
 
   ZoneCover look() {
     ZoneCover cover;

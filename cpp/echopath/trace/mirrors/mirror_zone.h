@@ -18,9 +18,9 @@ struct MirrorView {
 
 // Describes one of the two axes of the zone, in the plane of incidence and across it.
 struct ZoneAxis {
-  Vec3 along;            // unit, tangent to the surface
-  double half = 0.0;     // m: a wave over a point so far off comes half a wavelength later
-  double spread = 1.0;   // of the tube of rays behind the bounce, over that behind a flat mirror
+  Vec3 along;           // unit, tangent to the surface
+  double half = 0.0;    // m: a wave over a point so far off comes half a wavelength later
+  double spread = 1.0;  // of the tube of rays behind the bounce, over that behind a flat mirror
 };
 std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength);
 

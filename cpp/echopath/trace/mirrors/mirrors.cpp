@@ -9,12 +9,12 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatAbsolute = 1e-4;   // m
-constexpr double kFlatRelative = 1e-6;   // of the mesh's extent
-constexpr double kFilled = 1e-6;         // of the area
+constexpr double kFlatAbsolute = 1e-4;  // m
+constexpr double kFlatRelative = 1e-6;  // of the mesh's extent
+constexpr double kFilled = 1e-6;        // of the area
 constexpr double kTeLimit = 0.70710678118654752;
 constexpr double kNormalIncidence = 1e-12;  // sine of incidence
-constexpr double kAlongTravel = 0.1;  // sine between field and direction of travel
+constexpr double kAlongTravel = 0.1;        // sine between field and direction of travel
 
 Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_id) {
   const std::vector<Triangle>& triangles = scene.node_of(mesh_id).mesh->triangles();

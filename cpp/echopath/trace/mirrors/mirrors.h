@@ -40,7 +40,8 @@ double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& 
                    const Vec3& normal);
 
 // Returns the mode at a surface whose coefficients may depend on it; `direction` is the unit direction of travel.
-inline PolarizationMode mode_along(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
+inline PolarizationMode mode_along(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction,
+                                   const Vec3& normal) {
   return model.is_dielectric() ? polarization_mode(polarization, direction, normal) : PolarizationMode::kTe;
 }
 

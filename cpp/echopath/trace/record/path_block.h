@@ -11,12 +11,12 @@ namespace echopath {
 class PathBlock {
  public:
   std::vector<Hit> hits;
-  PathColumns rows;  // the paths that are not of fans
-  uint8_t current_batch = kNoBatch;  // of the paths added from now on
-  uint32_t current_half = 0;         // for the same paths: 0 or kSecondHalf
+  PathColumns rows;                               // the paths that are not of fans
+  uint8_t current_batch = kNoBatch;               // of the paths added from now on
+  uint32_t current_half = 0;                      // for the same paths: 0 or kSecondHalf
   std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
-  std::vector<JonesMatrix> jones;  // as curved_cell, of the paths that are polarised
-  std::vector<JonesMatrix> fan_jones;  // of all paths of all fans, where polarised
+  std::vector<JonesMatrix> jones;                 // as curved_cell, of the paths that are polarised
+  std::vector<JonesMatrix> fan_jones;             // of all paths of all fans, where polarised
   TraceStatistics statistics;
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
@@ -34,8 +34,14 @@ class PathBlock {
   // Begins a fan: paths over `hit` and every pair of the legs that are added next, first those in and then those out, except
   // pairs of more than `max_bounces` hits. `end_fan` ends it.
   void begin_fan(const Hit& hit, int stratum, int max_bounces);
-  void add_leg_in(std::complex<double> factor) { ++fans.back().num_in; add_leg(factor); }
-  void add_leg_out(std::complex<double> factor) { ++fans.back().num_out; add_leg(factor); }
+  void add_leg_in(std::complex<double> factor) {
+    ++fans.back().num_in;
+    add_leg(factor);
+  }
+  void add_leg_out(std::complex<double> factor) {
+    ++fans.back().num_out;
+    add_leg(factor);
+  }
   // Adds the next hit of the leg added last, in order of travel.
   void add_leg_hit(const Hit& hit);
   // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.

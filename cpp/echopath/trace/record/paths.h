@@ -24,7 +24,8 @@ struct Hit {  // 16 bytes
   float u, v;
 
   Hit() {}  // not set: so that an array of hits is made without touching its memory
-  Hit(uint32_t mesh, uint32_t triangle, float first, float second) : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
+  Hit(uint32_t mesh, uint32_t triangle, float first, float second)
+      : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
 };
 static_assert(sizeof(Hit) == 16);
 
@@ -49,22 +50,22 @@ inline constexpr uint32_t half_of_ray(int64_t index) {
 }
 
 struct TraceStatistics {
-  int64_t num_rays = 0;        // launched
-  int64_t num_queries = 0;     // closest-hit and shadow queries
-  int64_t num_hits = 0;        // surface points found
-  int64_t num_paths = 0;       // recorded; selections have fewer
-  int64_t num_near_antenna = 0;  // contributions dropped because an antenna lay within 1 mm
-  int64_t num_grazing = 0;       // hits dropped, cos of incidence below 1e-3
+  int64_t num_rays = 0;           // launched
+  int64_t num_queries = 0;        // closest-hit and shadow queries
+  int64_t num_hits = 0;           // surface points found
+  int64_t num_paths = 0;          // recorded; selections have fewer
+  int64_t num_near_antenna = 0;   // contributions dropped because an antenna lay within 1 mm
+  int64_t num_grazing = 0;        // hits dropped, cos of incidence below 1e-3
   int64_t num_small_mirrors = 0;  // rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
-  int64_t num_false_hits = 0;    // Embree hits that double precision did not confirm
-  int64_t num_unaimed = 0;       // objects and images that no rays aim at, because there are too many of them
+  int64_t num_false_hits = 0;     // Embree hits that double precision did not confirm
+  int64_t num_unaimed = 0;        // objects and images that no rays aim at, because there are too many of them
   int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
 };
 
 // Holds the values to which a path's amplitude and length refer.
 struct TraceFrame {
-  double start_time = 0.0;  // s, first sample of the frame
-  double trace_time = 0.0;  // s, the time the rays saw the scene at (mid-frame)
+  double start_time = 0.0;                                   // s, first sample of the frame
+  double trace_time = 0.0;                                   // s, the time the rays saw the scene at (mid-frame)
   Vec3 transmitter = Vec3::Zero(), receiver = Vec3::Zero();  // world, mean positions at trace_time
   std::vector<Stratum> strata;
   uint64_t seed = 0;
@@ -73,9 +74,9 @@ struct TraceFrame {
   Footprint footprint = Footprint::kSecondOrder;
   Sampler sampler = Sampler::kLattice;
   TraceStatistics statistics;
-  int num_batches = 1;             // independent lattices of launch directions, which share the rays of each stratum
-  double target_error_db = 0.0;    // dB, the error of the received power that was asked for; 0: none
-  double error_db = 0.0;           // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
+  int num_batches = 1;           // independent lattices of launch directions, which share the rays of each stratum
+  double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
+  double error_db = 0.0;         // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each
@@ -90,11 +91,11 @@ struct Paths {
   // -> RX.
   std::vector<int64_t> offsets;
   std::vector<uint8_t> num_bounces;
-  std::vector<uint64_t> diffuse;             // bit k: hit k is diffuse; 0: the path is coherent
-  std::vector<std::complex<float>> weight;   // what neither motion nor antennas change (see replay/kernels/path_formula.h)
-  std::vector<uint16_t> stratum;             // index into frame.strata; kNoStratum: none (image method)
-  std::vector<uint8_t> batch;                // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;               // bits: kReversedPath, kSecondHalf
+  std::vector<uint64_t> diffuse;            // bit k: hit k is diffuse; 0: the path is coherent
+  std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
+  std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
+  std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
+  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;
@@ -103,8 +104,8 @@ struct Paths {
   // then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
-  std::shared_ptr<const Scene> scene;        // snapshot
-  Radar radar;                               // snapshot
+  std::shared_ptr<const Scene> scene;  // snapshot
+  Radar radar;                         // snapshot
   TraceFrame frame;
 
   int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }

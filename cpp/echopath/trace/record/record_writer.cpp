@@ -26,7 +26,8 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
 struct Places {
   std::vector<size_t> paths, hits;
 
-  Places(const std::vector<const PathBlock*>& blocks, size_t first_path, size_t first_hit) : paths{first_path}, hits{first_hit} {
+  Places(const std::vector<const PathBlock*>& blocks, size_t first_path, size_t first_hit)
+      : paths{first_path}, hits{first_hit} {
     for (const PathBlock* block : blocks) {
       paths.push_back(paths.back() + block->num_paths());
       hits.push_back(hits.back() + block->num_hits());
@@ -70,17 +71,13 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
 void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
   const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
   const bool has_jones = !paths_.jones.empty() || has_matrices(blocks);
-  const std::function<void()> grow[] = {
-      [&] { hits_->resize(num_hits); },
-      [&] { paths_.offsets.resize(num_paths); },
-      [&] { paths_.diffuse.resize(num_paths); },
-      [&] { paths_.weight.resize(num_paths); },
-      [&] { paths_.flags.resize(num_paths); },
-      [&] { paths_.num_bounces.resize(num_paths); },
-      [&] { paths_.stratum.resize(num_paths); },
-      [&] { paths_.batch.resize(num_paths); },
-      [&] { paths_.curved_cell.resize(has_cells ? num_paths : 0); },
-      [&] { paths_.jones.resize(has_jones ? num_paths : 0); }};
+  const std::function<void()> grow[] = {[&] { hits_->resize(num_hits); }, [&] { paths_.offsets.resize(num_paths); }, [&] {
+    paths_.diffuse.resize(num_paths);
+  }, [&] { paths_.weight.resize(num_paths); }, [&] { paths_.flags.resize(num_paths); }, [&] {
+    paths_.num_bounces.resize(num_paths);
+  }, [&] { paths_.stratum.resize(num_paths); }, [&] { paths_.batch.resize(num_paths); }, [&] {
+    paths_.curved_cell.resize(has_cells ? num_paths : 0);
+  }, [&] { paths_.jones.resize(has_jones ? num_paths : 0); }};
   parallel_for(std::ssize(grow), [&](int64_t i) { grow[i](); });
 }
 
@@ -88,17 +85,16 @@ void RecordWriter::append(const std::vector<const PathBlock*>& blocks, Job* job)
   const Places places(blocks, paths_.offsets.size(), hits_->size());
   make_room(blocks, places.paths.back(), places.hits.back());
   Job own(job);  // its progress is not that of the rays
-  parallel_for(
-      std::ssize(blocks),
-      [&](int64_t index) {
-        const auto i = static_cast<size_t>(index);
-        const size_t row = places.paths[i], hit = places.hits[i];
-        const PathRows rows{hits_->data() + hit,             static_cast<int64_t>(hit),   paths_.offsets.data() + row,
-                            paths_.num_bounces.data() + row, paths_.diffuse.data() + row, paths_.weight.data() + row,
-                            paths_.stratum.data() + row,     paths_.batch.data() + row,   paths_.flags.data() + row};
-        blocks[i]->write(rows, paths_);
-      },
-      &own);
+  parallel_for(std::ssize(blocks), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    const size_t row = places.paths[i], hit = places.hits[i];
+    const PathRows rows{hits_->data() + hit,         static_cast<int64_t>(hit),
+                        paths_.offsets.data() + row, paths_.num_bounces.data() + row,
+                        paths_.diffuse.data() + row, paths_.weight.data() + row,
+                        paths_.stratum.data() + row, paths_.batch.data() + row,
+                        paths_.flags.data() + row};
+    blocks[i]->write(rows, paths_);
+  }, &own);
   for (const PathBlock* block : blocks) add_statistics(paths_.frame.statistics, block->statistics);
 }
 

@@ -15,20 +15,20 @@ struct FirstHits {
   LaneValues densities;
   PacketSamples samples;
   EmbreeScene::PacketHits hits;
-  LaneVectors lifted;        // the hits, off their surfaces
+  LaneVectors lifted;  // the hits, off their surfaces
   LaneValues cos_incidence;
-  LaneValues cos_receiver;   // positive where the receiver is on the lit side; not divided by its distance
-  LaneValues near_squared;   // m^2: to the nearest antenna
+  LaneValues cos_receiver;                 // positive where the receiver is on the lit side; not divided by its distance
+  LaneValues near_squared;                 // m^2: to the nearest antenna
   EmbreeScene::Lanes arrives;              // whether the ray is at a hit that its stratum owns, or passes over a mirror
   std::array<bool, kPacketSize> is_owned;  // whether its stratum owns the hit
   std::array<ShadowState, kPacketSize> receiver;  // as seen from the hit
   std::array<const SurfaceModel*, kPacketSize> models;
   std::array<PolarizationMode, kPacketSize> modes;
   LaneValues gamma_re, gamma_im, coherent, diffuse, facet;  // the responses
-  LaneValues sign;                                   // of the field that comes back (connector.cpp)
-  LaneValues specular_probability, diffuse_probability;  // of going on that way, if it does
-  LaneVectors out;                                   // the direction in which it goes on
-  std::array<bool, kPacketSize> goes_on;             // whether the ray goes on at all
+  LaneValues sign;                                          // of the field that comes back (connector.cpp)
+  LaneValues specular_probability, diffuse_probability;     // of going on that way, if it does
+  LaneVectors out;                                          // the direction in which it goes on
+  std::array<bool, kPacketSize> goes_on;                    // whether the ray goes on at all
 
   void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
     gamma_re[lane] = response.gamma.real();

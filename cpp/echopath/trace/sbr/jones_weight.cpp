@@ -8,7 +8,8 @@ namespace echopath {
 namespace {
 
 // Reflects fields at a mirror or specular bounce of the given specular share of power.
-void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const SurfaceModel& model, double specular_share) {
+void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const SurfaceModel& model,
+                 double specular_share) {
   const ModeCoefficients modes = model.modes(-direction.dot(normal));
   for (FieldVector& field : fields) field = std::sqrt(specular_share) * reflected_field(field, direction, normal, modes);
 }

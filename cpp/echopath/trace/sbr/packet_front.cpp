@@ -97,9 +97,9 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
   const SurfaceModel& model = context_.surfaces.model(first.hits.met[k].mesh_id);
   first.models[k] = &model;
-  first.modes[k] = model.is_constant() ? PolarizationMode::kTe
-                                       : mode_along(model, context_.settings.polarization, first.directions[lane],
-                                                    first.hits.normal[lane]);
+  first.modes[k] = model.is_constant()
+                       ? PolarizationMode::kTe
+                       : mode_along(model, context_.settings.polarization, first.directions[lane], first.hits.normal[lane]);
   const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
   first.set_response(lane, response, first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn);
   first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 // Traces launch rays in packets to their first hits, and draws how they go on from there.
-#include "echopath/trace/sbr/first_hits.h"
 #include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/sbr/first_hits.h"
 
 namespace echopath {
 

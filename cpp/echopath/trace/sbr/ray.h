@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "echopath/em/jones.h"
-#include "echopath/trace/scatter/hit_samples.h"
 #include "echopath/trace/mirrors/legs.h"
-#include "echopath/trace/scatter/lobe_probabilities.h"
 #include "echopath/trace/sbr/ray_differential.h"
+#include "echopath/trace/scatter/hit_samples.h"
+#include "echopath/trace/scatter/lobe_probabilities.h"
 
 namespace echopath {
 
@@ -20,24 +20,24 @@ using RayHits = std::array<Hit, 64>;
 // Describes one end of a coherent path over unflagged surfaces: a hit that is a mirror in one of the path's two orders and
 // radiates in the other (mirror_orders.h).
 struct PathEnd {
-  double cover = 1.0;       // share of the Fresnel zone that it covers as a mirror
-  double spread = 1.0;      // of the tube's area behind it, over that behind a flat mirror
+  double cover = 1.0;                      // share of the Fresnel zone that it covers as a mirror
+  double spread = 1.0;                     // of the tube's area behind it, over that behind a flat mirror
   double to_antenna = 0.0, to_next = 0.0;  // m, unfolded
   bool is_smooth = false;
 };
 
 // Holds the hits of a ray from its first diffuse one on, which other rays meet in the opposite order (diffuse_chain.h).
 struct DiffuseChain {
-  int first = 0;             // index of its first hit: number of hits of the transmit leg
-  std::optional<Leg> back;   // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
-  double density = 0.0;      // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
+  int first = 0;            // index of its first hit: number of hits of the transmit leg
+  std::optional<Leg> back;  // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
+  double density = 0.0;     // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
   // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray; 0 where none
   // comes.
   double opposite_ratio = 1.0;
   // The survival probability in the opposite order at the hit that was left last; it joins `opposite_ratio` one hit later.
   double opposite_survival = 1.0;
   std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
-  FieldPair fields;          // where polarised: fields of launches at the receiver that run the ray's way
+  FieldPair fields;                        // where polarised: fields of launches at the receiver that run the ray's way
 };
 
 struct Ray {
@@ -45,9 +45,9 @@ struct Ray {
   int stratum = 0;
   Vec3 direction, launch_direction;
   RayHits hits;
-  int depth = 0;              // hits so far
-  uint64_t diffuse = 0;       // bit per hit
-  bool coherent = true;       // the ray carries a field, not a power (sbr.h)
+  int depth = 0;                      // hits so far
+  uint64_t diffuse = 0;               // bit per hit
+  bool coherent = true;               // the ray carries a field, not a power (sbr.h)
   MirrorSequence sequence = kDirect;  // the mirrors over which the ray left the transmitter
   double chain_share = 1.0;           // product of s_m^2 of these mirrors
   bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
@@ -64,14 +64,14 @@ struct Ray {
   std::complex<double> field_factor = 1.0;
   RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
   bool is_curved = false;        // some bounce so far was on a curved surface
-  int num_mirrors = 0;            // specular bounces off unflagged surfaces since the last anchor
-  bool last_was_mirror = false;   // the last bounce was one of these
-  bool holds_zones = true;        // each of these mirrors covers enough of its Fresnel zone (kHeldShare)
-  RayHit mirror;                  // the last of these mirrors
-  Vec3 mirror_arrival;            // unit, direction of the ray there
-  PathEnd first_mirror;           // the first of these mirrors
-  double area = 1.0;              // product of the material areas of the diffuse anchors
-  DiffuseChain chain;             // of rays that have left a diffuse hit
+  int num_mirrors = 0;           // specular bounces off unflagged surfaces since the last anchor
+  bool last_was_mirror = false;  // the last bounce was one of these
+  bool holds_zones = true;       // each of these mirrors covers enough of its Fresnel zone (kHeldShare)
+  RayHit mirror;                 // the last of these mirrors
+  Vec3 mirror_arrival;           // unit, direction of the ray there
+  PathEnd first_mirror;          // the first of these mirrors
+  double area = 1.0;             // product of the material areas of the diffuse anchors
+  DiffuseChain chain;            // of rays that have left a diffuse hit
 
   Ray() {}  // leaves members without defaults unset, to save time
 };
@@ -84,7 +84,7 @@ struct SurfaceHit {
   double cos_incidence = 0.0;
   PolarizationMode mode = PolarizationMode::kTe;
   SurfaceResponse response;
-  double area = 0.0;  // m^2: surface that this hit stands for, seen from the last anchor
+  double area = 0.0;                             // m^2: surface that this hit stands for, seen from the last anchor
   ShadowState receiver = ShadowState::kUnknown;  // as seen from this hit
   HitSamples samples;
   double tube_area = 0.0;  // m^2/sr: D of the ray tube behind curved bounces

@@ -2,8 +2,8 @@
 // Holds what all rays of a trace share. Internal to the module, as everything about single rays.
 #include "echopath/base/constants.h"
 #include "echopath/trace/launch/launch.h"
-#include "echopath/trace/scatter/lobe_probabilities.h"
 #include "echopath/trace/sbr/sbr_settings.h"
+#include "echopath/trace/scatter/lobe_probabilities.h"
 #include "echopath/trace/scatter/surface_table.h"
 
 namespace echopath {

@@ -1,8 +1,8 @@
 #pragma once
 // Follows rays from their launch to their end.
-#include "echopath/trace/scatter/arrivals.h"
 #include "echopath/trace/connect/connector.h"
 #include "echopath/trace/sbr/packet_front.h"
+#include "echopath/trace/scatter/arrivals.h"
 #include "echopath/trace/scatter/scatterer.h"
 
 namespace echopath {

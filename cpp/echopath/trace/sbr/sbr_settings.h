@@ -9,11 +9,11 @@ namespace echopath {
 struct SbrSettings {
   int max_bounces = 4;
   uint64_t seed = 0;
-  double frequency = 77e9;                   // Hz
-  Vec3 transmitter = Vec3::Zero();           // relative to the trace origin, as the receiver
+  double frequency = 77e9;          // Hz
+  Vec3 transmitter = Vec3::Zero();  // relative to the trace origin, as the receiver
   Vec3 receiver = Vec3::Zero();
-  bool is_polarized = false;                 // follow field vectors (PolarizationModel::kJones)
-  Vec3 polarization = Vec3::UnitZ();         // transmit polarisation, unit, world axes
+  bool is_polarized = false;          // follow field vectors (PolarizationModel::kJones)
+  Vec3 polarization = Vec3::UnitZ();  // transmit polarisation, unit, world axes
   // Probability of going on specularly where a surface does both. 0 stands for its specular share; any other value leaves
   // the expected echo as it is.
   double specular_probability = 0.0;

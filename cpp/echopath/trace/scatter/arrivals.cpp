@@ -32,8 +32,7 @@ void Arrivals::find_response(const Ray& ray, SurfaceHit& surface) const {
 // Serves a ray that has met flagged mirrors alone: returns whether its stratum owns the mesh that it meets, or it goes on
 // over another mirror.
 bool Arrivals::finds_owner(Ray& ray, uint32_t mesh_id) const {
-  const bool passes_on =
-      context_.is_passed(ray.stratum, mesh_id) && ray.sequence != kOther && ray.depth < kMaxLegMirrors;
+  const bool passes_on = context_.is_passed(ray.stratum, mesh_id) && ray.sequence != kOther && ray.depth < kMaxLegMirrors;
   ray.is_owned = !passes_on && context_.is_owner(ray.stratum, mesh_id, ray.sequence);
   return passes_on || ray.is_owned;
 }

@@ -74,9 +74,7 @@ HitSamples hit_samples(uint64_t seed, int64_t ray, int depth) {
   return samples;
 }
 
-Vec3 cosine_lobe(const std::array<double, 2>& random) {
-  return packed(direction_of(random[0], random[1]));
-}
+Vec3 cosine_lobe(const std::array<double, 2>& random) { return packed(direction_of(random[0], random[1])); }
 
 void PacketSamples::draw(uint64_t seed, int64_t first, int count, const int* batches) {
   ScatterCell shift{};
@@ -91,8 +89,9 @@ void PacketSamples::draw(uint64_t seed, int64_t first, int count, const int* bat
   std::fill(lobe.y.lanes + count, lobe.y.lanes + kPacketSize, 0.0);
   const auto index = static_cast<uint64_t>(first);
   using Lanes = SampleLanes<kPacketSize>;
-  run_simd<&draw_samples<kPacketSize>>(seed, index, uint32_t{1}, Lanes{phase_re.lanes, phase_im.lanes, axis_sample.lanes,
-                                                                     lobe_sample.lanes, survival_sample.lanes});
+  run_simd<&draw_samples<kPacketSize>>(
+      seed, index, uint32_t{1},
+      Lanes{phase_re.lanes, phase_im.lanes, axis_sample.lanes, lobe_sample.lanes, survival_sample.lanes});
   run_simd<&draw_lobes>(seed, index, &lobe);
 }
 

@@ -27,9 +27,8 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   sample.lobe_probability = sample.is_specular ? lobes.specular : lobes.diffuse;
   const Vec3& normal = surface.point.normal;
   sample.from = context_.geometry.lifted(surface.point.position, normal);
-  sample.direction = packed(sample.is_specular
-                                ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
-                                : over_surface(unpacked(normal), unpacked(lobe_direction(ray, batch))));
+  sample.direction = packed(sample.is_specular ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
+                                               : over_surface(unpacked(normal), unpacked(lobe_direction(ray, batch))));
   return sample;
 }
 

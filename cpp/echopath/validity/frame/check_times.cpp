@@ -11,7 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr double kChecksPerTurn = 8.0;
-constexpr double kSmallTurn = 0.25 * kPi;     // rad: what turns no farther is followed by the base
+constexpr double kSmallTurn = 0.25 * kPi;  // rad: what turns no farther is followed by the base
 constexpr double kChecksPerBreakpoint = 2.0;
 
 // Counts the breakpoints of the motions of a mesh, of those above it and of the radar.

@@ -67,8 +67,8 @@ struct FrameCheck::Sweep {
 };
 
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
-    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(with_first_antennas(radar)),
-      preparer_(paths, whole_patches(*paths.scene)),
+    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)),
+      first_radar_(with_first_antennas(radar)), preparer_(paths, whole_patches(*paths.scene)),
       walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
       memory_(ReplayMemory::take()), mesh_moves_(moving_meshes(*paths.scene)) {
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
@@ -97,7 +97,8 @@ void FrameCheck::find_sweeps() {
   }
   for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
     if (times_.of_mesh[id] <= times_.num_base) continue;
-    sweeps_.push_back({centres[id].center() - paths_.frame.transmitter, 0.5 * centres[id].diagonal().norm() + radii[id], times_.of_mesh[id]});
+    sweeps_.push_back({centres[id].center() - paths_.frame.transmitter, 0.5 * centres[id].diagonal().norm() + radii[id],
+                       times_.of_mesh[id]});
   }
 }
 

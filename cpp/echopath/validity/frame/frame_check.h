@@ -30,7 +30,7 @@ class FrameCheck {
  public:
   struct Scratch {
     ProbeScratch probe;
-    std::vector<LegMemo> known;  // by time, of the paths that were checked with this scratch
+    std::vector<LegMemo> known;     // by time, of the paths that were checked with this scratch
     explicit Scratch(int longest);  // most hits of a path
   };
 
@@ -51,7 +51,8 @@ class FrameCheck {
   std::vector<Echo> at_trace(std::span<const int64_t> paths) const;
   // Returns the echoes [P, time] at the posed times. `local` holds the same paths; `traced` holds their echoes at the trace
   // time, which paths on which nothing moves keep.
-  std::vector<Echo> at_posed_times(std::span<const int64_t> paths, const LocalPaths& local, std::span<const Echo> traced) const;
+  std::vector<Echo> at_posed_times(std::span<const int64_t> paths, const LocalPaths& local,
+                                   std::span<const Echo> traced) const;
   size_t num_posed_times() const { return views_.size(); }
   // Adds what becomes of a path at the posed times that it needs. `traced` is its echo at the trace time, and `posed` those
   // at the posed times, whose `is_lost` is set here. Returns how many times it needed.

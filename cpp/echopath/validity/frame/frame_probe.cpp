@@ -8,10 +8,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kConfirmed = 0.03;   // rad: a step beyond the triangles around a hit counts where it leaves no more
-constexpr double kLost = 1.0;          // rad: a step that leaves more has not come near the point of reflection
-constexpr double kTurned = 2.0;       // factor
-constexpr double kOnePlace = 1e-9;    // m
+constexpr double kConfirmed = 0.03;  // rad: a step beyond the triangles around a hit counts where it leaves no more
+constexpr double kLost = 1.0;        // rad: a step that leaves more has not come near the point of reflection
+constexpr double kTurned = 2.0;      // factor
+constexpr double kOnePlace = 1e-9;   // m
 
 // Returns the bits of hits in the order of the record.
 uint64_t recorded_order(const LocalPath& path, uint64_t bits) {
@@ -45,7 +45,8 @@ struct Run {
 constexpr int kMostHits = 58;  // hits of a run whose events fit beside the rest
 uint64_t kind_of(const LocalPath& path, const Run& run) {
   const bool has_cell = path.diffuse == 0 && run.last >= path.last_material;
-  const uint64_t events = run.part == Part::kInner ? path.diffuse >> run.first & ((uint64_t{1} << (run.last - run.first + 1)) - 1) : 0;
+  const uint64_t events =
+      run.part == Part::kInner ? path.diffuse >> run.first & ((uint64_t{1} << (run.last - run.first + 1)) - 1) : 0;
   return static_cast<uint64_t>(run.part) | uint64_t{path.is_reversed} << 2 | uint64_t{has_cell} << 3 | events << 4;
 }
 
@@ -72,7 +73,8 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
 }
 
 // Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs.
-void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end, std::vector<double>& out) {
+void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
+                  std::vector<double>& out) {
   int previous = path.first_material;
   const auto set_arrival = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
   const auto set_departure = [&](int k, const Vec3& travel) {
@@ -111,7 +113,7 @@ PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch, LegMem
 
 // Holds what one antenna sees of the points of reflection.
 struct FrameProbe::Slides {
-  uint64_t left = 0;                  // bits in the order of the trace
+  uint64_t left = 0;                   // bits in the order of the trace
   double frozen = 0.0, stepped = 0.0;  // m, errors of the length
 };
 

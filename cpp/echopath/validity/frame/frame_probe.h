@@ -19,13 +19,13 @@ struct LengthError {
 
 // Describes a path at one instant. Hits are counted in the order of the record, TX -> RX.
 struct PathState {
-  LengthError frozen;           // over the hits where they were recorded (SpecularPoints::kMaterial)
-  LengthError stepped;          // one Newton step from there (SpecularPoints::kFermat)
-  uint64_t left = 0;            // bit per hit: its point of reflection leaves the surface or is lost, for some antenna
-  uint64_t blocked = 0;         // bit per hit: something blocks the leg that arrives there, for some antenna
+  LengthError frozen;    // over the hits where they were recorded (SpecularPoints::kMaterial)
+  LengthError stepped;   // one Newton step from there (SpecularPoints::kFermat)
+  uint64_t left = 0;     // bit per hit: its point of reflection leaves the surface or is lost, for some antenna
+  uint64_t blocked = 0;  // bit per hit: something blocks the leg that arrives there, for some antenna
   bool is_receiver_blocked = false;
-  bool is_turned = false;       // some cosine changes by more than a factor of two, or its sign
-  double cosine_change = 0.0;   // largest change of a cosine of incidence or departure
+  bool is_turned = false;      // some cosine changes by more than a factor of two, or its sign
+  double cosine_change = 0.0;  // largest change of a cosine of incidence or departure
 };
 
 // Returns `radar` with the trace's antennas, carried along by its motion, first, and then those at the rim of its array.

@@ -5,7 +5,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kSamePlace = 1e-6;        // m: bounces at an edge where two mirrors meet
+constexpr double kSamePlace = 1e-6;         // m: bounces at an edge where two mirrors meet
 constexpr double kOnMirrorAbsolute = 1e-3;  // m: how far before its place a leg may meet another mirror's edge
 constexpr double kOnMirrorRelative = 1e-5;
 
@@ -30,7 +30,9 @@ LegTester::End LegTester::facet_of(const PosedHit& hit) {
 }
 
 // Returns the end on the curved surface, where the trace left it.
-LegTester::End LegTester::surface_of(const PosedHit& hit) { return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr}; }
+LegTester::End LegTester::surface_of(const PosedHit& hit) {
+  return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr};
+}
 
 void LegTester::block(int leg) {
   if (leg == path_.count) shadows_.is_end_blocked = true;

@@ -9,9 +9,9 @@ namespace echopath {
 
 // Holds what was found of the legs, in the order of the path's hits.
 struct LegShadows {
-  uint64_t blocked = 0;        // bit per hit: the leg that arrives there is blocked
+  uint64_t blocked = 0;         // bit per hit: the leg that arrives there is blocked
   bool is_end_blocked = false;  // the leg from the last hit
-  uint64_t off_mirror = 0;     // bit per hit: the image's point of reflection is not on its mirror
+  uint64_t off_mirror = 0;      // bit per hit: the image's point of reflection is not on its mirror
 
   void add(const LegShadows& other) {
     blocked |= other.blocked;

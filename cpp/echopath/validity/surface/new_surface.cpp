@@ -31,8 +31,8 @@ TraceSettings settings_like(const TraceFrame& frame) {
   return settings;
 }
 
-SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job, KeptGeometry* then,
-                          KeptGeometry* now) {
+SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job,
+                                KeptGeometry* then, KeptGeometry* now) {
   TraceSettings rays = settings_like(record.frame);
   rays.num_rays = settings.num_rays;
   rays.seed = settings.seed;

@@ -14,15 +14,15 @@ TraceSettings settings_like(const TraceFrame& frame);
 
 // Holds what one look at the scene finds, as it is at one time.
 struct SurfaceSearch {
-  Paths paths;                   // [P] 1: a trace at the time of the record could not have found it
-  std::vector<uint8_t> is_new;   // [P] 1: a trace at the time of the record could not have had it
+  Paths paths;                  // [P] 1: a trace at the time of the record could not have found it
+  std::vector<uint8_t> is_new;  // [P] 1: a trace at the time of the record could not have had it
 };
 
 struct SurfaceSearchSettings {
-  double time = 0.0;      // s
+  double time = 0.0;  // s
   int64_t num_rays = 0;
-  uint64_t seed = 1;      // of directions and random phases
-  size_t antenna = 0;     // index into the antennas of probe_radar(record, radar); 0: the trace's, carried along
+  uint64_t seed = 1;   // of directions and random phases
+  size_t antenna = 0;  // index into the antennas of probe_radar(record, radar); 0: the trace's, carried along
 };
 
 // Traces the record's scene at another time and marks the paths that the record cannot have: then something blocked a leg,
@@ -30,7 +30,7 @@ struct SurfaceSearchSettings {
 // its blocked paths, together with the new paths, is a whole. `then` and `now` keep geometry at the time of the record and
 // from look to look. The result has the same bits for any number of threads. Raises invalid_argument when a motion does not
 // cover the time; raises Cancelled.
-SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job = nullptr,
-                          KeptGeometry* then = nullptr, KeptGeometry* now = nullptr);
+SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings,
+                                Job* job = nullptr, KeptGeometry* then = nullptr, KeptGeometry* now = nullptr);
 
 }  // namespace echopath

@@ -8,10 +8,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kInside = -1e-9;      // barycentric: on an edge is inside
-constexpr double kOverEdge = -0.05;    // barycentric: how far outside of a facet the point above its edge may lie
-constexpr double kOnePlane = 1e-5;     // 1 - cosine between facets of one plane: 0.26 degrees
-constexpr int kMaxSteps = 128;         // triangles on the way
+constexpr double kInside = -1e-9;    // barycentric: on an edge is inside
+constexpr double kOverEdge = -0.05;  // barycentric: how far outside of a facet the point above its edge may lie
+constexpr double kOnePlane = 1e-5;   // 1 - cosine between facets of one plane: 0.26 degrees
+constexpr int kMaxSteps = 128;       // triangles on the way
 
 // Returns the barycentric coordinates of the point's projection, by corner.
 Vec3 barycentric(const std::array<Vec3, 3>& corners, const Vec3& normal, const Vec3& point) {

@@ -30,7 +30,7 @@ class SurfaceWalk {
 
   const Scene& scene_;
   const std::vector<std::vector<Vec3>>& smooth_normals_;
-  mutable std::vector<std::once_flag> made_;               // by mesh ID
+  mutable std::vector<std::once_flag> made_;  // by mesh ID
   mutable std::vector<std::unique_ptr<const Surface>> surfaces_;
 };
 

@@ -9,7 +9,7 @@
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/signal/echoes.h"
-#include "echopath/signal/synthesis_memory.h"
+#include "echopath/signal/echo_tiles.h"
 
 namespace echopath {
 
@@ -35,7 +35,7 @@ struct SynthesisOptions {
 // bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
 // chirps.
 // Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and what
-// `add` says; up to KeptMemory::kMost of it is kept for the next.
+// `add` says; it is left to KeptMemory for the next.
 class Synthesizer {
  public:
   // `expected_echoes`: echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
@@ -58,8 +58,10 @@ class Synthesizer {
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
 
  private:
+  struct RowMemory;
   struct ChannelRows {
-    std::vector<RowMemory> moving;           // [group], each [chirp, re/im, row length]; none until a moving echo of it comes
+    // [group], each [chirp, re/im, row length]; null until a moving echo of it comes
+    std::vector<std::unique_ptr<RowMemory>> moving;
     std::vector<std::vector<double>> still;  // [group], each [re/im, row length], added to every chirp; empty likewise
   };
   using RowsOfGroups = std::vector<double*>;  // [group], null where a group has none
@@ -86,7 +88,7 @@ class Synthesizer {
   std::shared_ptr<const ToneMethod> sample_rows_;   // the form of the rows of moving echoes, where per_sample_ is there
   std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
-  std::unique_ptr<SynthesisMemory> memory_;
+  std::unique_ptr<EchoTiles> tiles_;                // null until moving echoes come
   std::vector<ChannelRows> channels_;
 };
 

@@ -6,7 +6,10 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/kept_memory.h"
 #include "echopath/base/parallel.h"
+#include "echopath/replay/evaluate/path_evaluator.h"
+#include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
 #include "echopath/replay/time/node_tails.h"
 
@@ -73,10 +76,7 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      preparer_(paths, hit_patches(paths)), grids_(paths, radar, settings), posed_(grids_, paths, radar, preparer_),
-      memory_(ReplayMemory::take()) {}
-
-Replayer::~Replayer() { ReplayMemory::leave(std::move(memory_)); }
+      preparer_(paths, hit_patches(paths)), grids_(paths, radar, settings), posed_(grids_, paths, radar, preparer_) {}
 
 PathGrids Replayer::path_grids() const {
   return PathGrids(paths_, radar_, grids_, posed_, radio_.wavenumber, settings_.phase_tolerance);
@@ -87,13 +87,13 @@ int Replayer::num_channels() const { return static_cast<int>(radar_.transmitters
 std::vector<Echoes> Replayer::take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const {
   std::vector<Echoes> echoes;
   for (size_t channel = 0; channel < num_channels; ++channel) {
-    echoes.push_back(memory_->echoes.take(num_nodes * num_echoes));
+    echoes.push_back(echopath::take_echoes(num_nodes * num_echoes));
     echoes.back().num_echoes = static_cast<int64_t>(num_echoes);
   }
   return echoes;
 }
 
-void Replayer::recycle(std::span<Echoes> echoes) const { memory_->echoes.give(echoes); }
+void Replayer::recycle(std::span<Echoes> echoes) const { leave_echoes(echoes); }
 
 JoinRule Replayer::join_rule(std::vector<const std::vector<uint32_t>*> labels) const {
   return {paths_, preparer_, settings_.specular, std::move(labels)};
@@ -104,7 +104,7 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   if (static_cast<size_t>(num_left) == joined.size()) return of_paths;
   std::vector<Echoes> echoes;
   for (Echoes& all : of_paths) {
-    Echoes& to = echoes.emplace_back(memory_->echoes.take(static_cast<size_t>(num_left * all.sampling.num_rows)));
+    Echoes& to = echoes.emplace_back(echopath::take_echoes(static_cast<size_t>(num_left * all.sampling.num_rows)));
     to.num_echoes = num_left;
     join(all, joined, to);
     to.sampling = std::move(all.sampling);
@@ -132,7 +132,7 @@ RadioConstants Replayer::radio_of(const Target& target) const {
 }
 
 void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
-  std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
+  std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
   evaluator->begin(preparer_, radar_, settings_.specular);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
@@ -142,7 +142,7 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
       evaluator->evaluate(target.posed, radio_of(target), target.channels(), {turned, target.with_amplitudes});
     }
   }
-  memory_->give(std::move(evaluator));
+  KeptMemory::of_process().leave(std::move(evaluator));
 }
 
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.at_trace()); }

@@ -4,11 +4,10 @@
 // Material points (diffuse hits and the physical-optics hit) move with their triangles, exactly; hits on flagged mirrors are
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move with
 // the point of reflection by one Newton step (specular_slide.h).
-#include <memory>
 #include <span>
 
+#include "echopath/replay/evaluate/radio_constants.h"
 #include "echopath/replay/joined_echoes.h"
-#include "echopath/replay/replay_memory.h"
 #include "echopath/replay/time/path_grids.h"
 
 namespace echopath {
@@ -18,7 +17,6 @@ class Replayer {
   // The radar may differ from the one of the trace in its waveform, antennas and motion. Both must outlive the replayer.
   // Raises invalid_argument when a motion does not cover the frame.
   Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings = {});
-  ~Replayer();
 
   int num_channels() const;
   const TimeGrids& grids() const { return grids_; }
@@ -79,7 +77,6 @@ class Replayer {
   PathPreparer preparer_;
   TimeGrids grids_;
   PosedGrids posed_;
-  std::unique_ptr<ReplayMemory> memory_;
 };
 
 }  // namespace echopath

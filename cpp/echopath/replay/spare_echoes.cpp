@@ -1,19 +1,26 @@
 #include "echopath/replay/spare_echoes.h"
 
+#include <memory>
 #include <utility>
 
-namespace echopath {
+#include "echopath/base/kept_memory.h"
 
-// Takes the smallest memory that suffices; where none does, it frees the largest and takes new memory.
-Echoes SpareEchoes::take(size_t num_values) {
+namespace echopath {
+namespace {
+
+constexpr size_t kBytesOfValue = sizeof(double) + sizeof(std::complex<double>);
+
+struct SpareEchoes {
   Echoes echoes;
-  {
-    const std::lock_guard lock(mutex_);
-    auto found = by_room_.lower_bound(num_values);
-    if (found != by_room_.end()) echoes = std::move(found->second);
-    else if (!by_room_.empty()) found = std::prev(by_room_.end());
-    if (found != by_room_.end()) by_room_.erase(found);
-  }
+
+  // By the room for delays: their number is that of the paths that were followed.
+  size_t num_bytes() const { return echoes.delay.capacity() * kBytesOfValue; }
+};
+
+}  // namespace
+
+Echoes take_echoes(size_t num_values) {
+  Echoes echoes = std::move(KeptMemory::of_process().take<SpareEchoes>(num_values * kBytesOfValue)->echoes);
   echoes.group.clear();
   echoes.sampling = {};
   echoes.delay.resize(num_values);
@@ -21,18 +28,12 @@ Echoes SpareEchoes::take(size_t num_values) {
   return echoes;
 }
 
-void SpareEchoes::give(std::span<Echoes> echoes) {
-  const std::lock_guard lock(mutex_);
+void leave_echoes(std::span<Echoes> echoes) {
   for (Echoes& one : echoes) {
-    const size_t room = one.delay.capacity();  // its size is that of the paths that were followed
-    if (room > 0) by_room_.emplace(room, std::move(one));
+    auto spare = std::make_unique<SpareEchoes>();
+    spare->echoes = std::move(one);
+    KeptMemory::of_process().leave(std::move(spare));
   }
-}
-
-size_t SpareEchoes::num_bytes() const {
-  size_t values = 0;
-  for (const auto& [room, echoes] : by_room_) values += room;
-  return values * (sizeof(double) + sizeof(std::complex<double>));
 }
 
 }  // namespace echopath

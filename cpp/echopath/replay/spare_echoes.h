@@ -1,25 +1,16 @@
 #pragma once
-// Keeps the memory of echoes that are no longer needed: touching a new page costs as much as evaluating a path.
-#include <map>
-#include <mutex>
+// Echoes whose memory goes from block to block and from replay to replay (KeptMemory): a page that is touched for the
+// first time costs as much as a path does.
+#include <cstddef>
 #include <span>
-#include <vector>
 
 #include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {
 
-// All of its functions are thread-safe.
-class SpareEchoes {
- public:
-  // Returns echoes without a group and with room for `num_values` delays and amplitudes each, whose values are not set.
-  Echoes take(size_t num_values);
-  void give(std::span<Echoes> echoes);
-  size_t num_bytes() const;  // of all that are here
-
- private:
-  std::mutex mutex_;
-  std::multimap<size_t, Echoes> by_room_;  // for delays
-};
+// Echoes without group and with room for that many delays and amplitudes each, which are not set.
+Echoes take_echoes(size_t num_values);
+// Echoes that are done with.
+void leave_echoes(std::span<Echoes> echoes);
 
 }  // namespace echopath

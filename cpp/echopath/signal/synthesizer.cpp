@@ -10,12 +10,13 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/kept_memory.h"
+#include "echopath/base/large_array.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/simd.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/methods/method.h"
 #include "echopath/signal/methods/per_sample.h"
-#include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {
 namespace {
@@ -99,10 +100,25 @@ size_t run_of_one_sampling(std::span<const Echoes> blocks) {
 
 }  // namespace
 
+struct Synthesizer::RowMemory {
+  std::unique_ptr<double[]> values;
+  size_t room = 0;
+
+  size_t num_bytes() const { return room * sizeof(double); }
+  // With room for `count` values, which are not set.
+  static std::unique_ptr<RowMemory> take(size_t count) {
+    std::unique_ptr<RowMemory> rows = KeptMemory::of_process().take<RowMemory>(count * sizeof(double));
+    if (rows->room >= count) return rows;
+    *rows = {};
+    *rows = {std::make_unique_for_overwrite<double[]>(count), count};
+    prefer_large_pages(rows->values.get(), rows->num_bytes());
+    return rows;
+  }
+};
+
 Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int num_groups, int64_t expected_echoes,
                          const SynthesisOptions& options)
-    : waveform_(waveform), num_groups_(num_groups), method_(choose_method(options.method, expected_echoes)),
-      memory_(SynthesisMemory::take()) {
+    : waveform_(waveform), num_groups_(num_groups), method_(choose_method(options.method, expected_echoes)) {
   waveform.validate();
   require(num_channels >= 1, "num_channels", "must be at least 1", num_channels);
   require(num_groups >= 1, "num_groups", "must be at least 1", num_groups);
@@ -122,16 +138,16 @@ Synthesizer::Synthesizer(const ChirpSequence& waveform, int num_channels, int nu
   }
   const auto groups = static_cast<size_t>(num_groups);
   for (int channel = 0; channel < num_channels; ++channel) {
-    channels_.push_back({std::vector<RowMemory>(groups), std::vector<std::vector<double>>(groups)});
+    channels_.push_back({std::vector<std::unique_ptr<RowMemory>>(groups), std::vector<std::vector<double>>(groups)});
   }
 }
 
 Synthesizer::~Synthesizer() {
-  if (!memory_) return;  // moved from
+  KeptMemory& kept = KeptMemory::of_process();
   for (ChannelRows& channel : channels_) {
-    for (RowMemory& rows : channel.moving) memory_->give(std::move(rows));
+    for (std::unique_ptr<RowMemory>& rows : channel.moving) kept.leave(std::move(rows));
   }
-  SynthesisMemory::leave(std::move(memory_));
+  kept.leave(std::move(tiles_));
 }
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
 
@@ -239,17 +255,17 @@ void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, con
 
 // Each task clears its own chirps in the rows of groups that are new.
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
-  EchoTiles& tiles = memory_->tiles;
-  if (spread_) tiles.assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
-  const std::vector<uint8_t> has_echoes = spread_ ? groups_of(tiles, num_groups_) : groups_of(blocks, num_groups_);
+  if (spread_ && !tiles_) tiles_ = KeptMemory::of_process().take<EchoTiles>();
+  if (spread_) tiles_->assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
+  const std::vector<uint8_t> has_echoes = spread_ ? groups_of(*tiles_, num_groups_) : groups_of(blocks, num_groups_);
   const int64_t size = row_size(true);
   RowsOfGroups all(has_echoes.size()), fresh;
   for (size_t group = 0; group < all.size(); ++group) {
     if (!has_echoes[group]) continue;
-    RowMemory& of_group = rows.moving[group];
-    const bool is_new = !of_group.values;
-    if (is_new) of_group = memory_->take_rows(static_cast<size_t>(size * waveform_.num_chirps));
-    all[group] = of_group.values.get();
+    std::unique_ptr<RowMemory>& of_group = rows.moving[group];
+    const bool is_new = !of_group;
+    if (is_new) of_group = RowMemory::take(static_cast<size_t>(size * waveform_.num_chirps));
+    all[group] = of_group->values.get();
     if (is_new) fresh.push_back(all[group]);
   }
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
@@ -266,12 +282,12 @@ double Synthesizer::longest_delay() const { return waveform_.sampling_rate / wav
 void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const Spreading spreading = spread_->spreading();
   const int64_t stride = row_size(true);
-  for (const EchoTiles::Tile& tile : memory_->tiles.tiles()) {
+  for (const EchoTiles::Tile& tile : tiles_->tiles()) {
     if (job) job->throw_if_cancelled();
     for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
       const auto weights = static_cast<size_t>(chirp * sampling.order);
       const int count = static_cast<int>(std::min<int64_t>(kChirpGroup, chirps.end - chirp));
-      const TileAtChirps at{memory_->tiles.nodes(tile),
+      const TileAtChirps at{tiles_->nodes(tile),
                             tile.count,
                             sampling.num_rows,
                             sampling.order,
@@ -320,7 +336,7 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
 
 // Adds to `out`, zeros [chirp, sample], the samples of one channel and group.
 void Synthesizer::write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const {
-  const double* const moving = rows.moving[group].values.get();
+  const double* const moving = rows.moving[group] ? rows.moving[group]->values.get() : nullptr;
   const std::vector<double>& still = rows.still[group];
   if (!moving && still.empty()) return;
   const int64_t num_samples = waveform_.num_samples;

@@ -8,8 +8,8 @@
 
 #include "echopath/base/job.h"
 #include "echopath/radar/radar.h"
+#include "echopath/signal/echoes/echo_tiles.h"
 #include "echopath/signal/echoes/echoes.h"
-#include "echopath/signal/synthesis_memory.h"
 
 namespace echopath {
 
@@ -29,13 +29,14 @@ struct SynthesisOptions {
   bool per_sample = false;
 };
 
-// Adds echoes block by block. The model is that of carrier.h ("lin", residual video phase included, brick-wall anti-alias
-// filter at the sampling rate, or half of it for real samples), or that of per_sample.h for moving echoes. Synthesis is
-// linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once from the
-// number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same bits for any
-// number of threads. Echoes that do not move are added once, so a static scene gives bit-identical chirps. It needs 16 bytes
-// x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and the memory that
-// `add` names; up to KeptMemory::kMost of it is kept for the next.
+// Adds echoes block by block. Model: carrier.h ("lin", residual video phase included, brick-wall anti-alias filter at
+// the sampling rate, or half of it for real samples), or per_sample.h for what moves.
+// Linear: the cubes of the groups add up to the cube of the whole (to rounding), because the method is chosen once
+// from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
+// bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
+// chirps.
+// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and what
+// `add` says; it is left to KeptMemory for the next.
 class Synthesizer {
  public:
   // `expected_echoes` counts the echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
@@ -58,9 +59,11 @@ class Synthesizer {
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
 
  private:
+  struct RowMemory;
   struct ChannelRows {
-    std::vector<RowMemory> moving;  // [group], each [chirp, re/im, row length]; none until a moving echo of it comes
-    std::vector<std::vector<double>> still;  // [group], each [re/im, row length], of every chirp; empty if nothing rests
+    // [group], each [chirp, re/im, row length]; null until a moving echo of it comes
+    std::vector<std::unique_ptr<RowMemory>> moving;
+    std::vector<std::vector<double>> still;  // [group], each [re/im, row length], added to every chirp; empty likewise
   };
   using RowsOfGroups = std::vector<double*>;  // [group], null for a group without rows
   void validate(const Echoes& block) const;
@@ -86,7 +89,7 @@ class Synthesizer {
   std::shared_ptr<const ToneMethod> sample_rows_;  // form of the rows of moving echoes, where there is a per_sample_
   std::unique_ptr<const PerSample> per_sample_;
   std::unique_ptr<const CarrierModel> model_;
-  std::unique_ptr<SynthesisMemory> memory_;
+  std::unique_ptr<EchoTiles> tiles_;  // null until moving echoes come
   std::vector<ChannelRows> channels_;
 };
 

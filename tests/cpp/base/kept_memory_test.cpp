@@ -2,88 +2,156 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <set>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace echopath {
 namespace {
 
-// Memory of so many bytes, in name only.
+// Memory of so many bytes, in name only. Kinds are types of their own.
+template <int kKind>
 struct Work {
   size_t bytes = 0;
   std::atomic<int> users = 0;
 
   size_t num_bytes() const { return bytes; }
 };
-using Kept = KeptMemory<Work>;
-static_assert(noexcept(std::declval<Kept&>().leave(nullptr)), "destructors leave memory");
+using Rows = Work<0>;
+using Echoes = Work<1>;
+static_assert(noexcept(std::declval<KeptMemory&>().leave(std::unique_ptr<Rows>())), "destructors leave memory");
 
-std::unique_ptr<Work> work_of(size_t bytes) {
-  auto work = std::make_unique<Work>();
+constexpr size_t kObject = sizeof(Rows);  // bytes that one takes besides
+
+template <class Kind = Rows>
+std::unique_ptr<Kind> work_of(size_t bytes) {
+  auto work = std::make_unique<Kind>();
   work->bytes = bytes;
   return work;
 }
 
-TEST(KeptMemory, WhatIsLeftLastIsTakenFirst) {
-  Kept kept;
+TEST(KeptMemory, TheSmallestThatWillDoIsTaken) {
+  KeptMemory kept;
   for (const size_t bytes : {10, 30, 20}) kept.leave(work_of(bytes));
-  for (const size_t bytes : {20, 30, 10}) EXPECT_EQ(kept.take()->bytes, bytes);
+  EXPECT_EQ(kept.take<Rows>(11)->bytes, 20u);
+  EXPECT_EQ(kept.take<Rows>(30)->bytes, 30u);
+  EXPECT_EQ(kept.take<Rows>(10)->bytes, 10u);
+  EXPECT_EQ(kept.take<Rows>(10)->bytes, 0u);
 }
 
-TEST(KeptMemory, IsNewWhereNothingIsLeft) {
-  Kept kept;
-  EXPECT_EQ(kept.take()->bytes, 0u);
-  kept.leave(work_of(10));
-  kept.take();
-  EXPECT_EQ(kept.take()->bytes, 0u);
+TEST(KeptMemory, TheLargestMakesRoomWhereNoneWillDo) {
+  KeptMemory kept;
+  for (const size_t bytes : {10, 30, 20}) kept.leave(work_of(bytes));
+  for (const size_t bytes : {30, 20, 10, 0}) EXPECT_EQ(kept.take<Rows>(31)->bytes, bytes);
 }
 
-TEST(KeptMemory, KeepsNoMoreThanItsMostInAll) {
-  Kept kept;
-  kept.leave(work_of(Kept::kMost + 1));
-  EXPECT_EQ(kept.take()->bytes, 0u);
-  kept.leave(work_of(Kept::kMost - 10));
-  kept.leave(work_of(11));
-  EXPECT_EQ(kept.take()->bytes, Kept::kMost - 10);
-  kept.leave(work_of(Kept::kMost - 10));
-  kept.leave(work_of(10));
-  EXPECT_EQ(kept.take()->bytes, 10u);
+TEST(KeptMemory, TheLargestIsTakenWhereNoSizeIsAskedFor) {
+  KeptMemory kept;
+  for (const size_t bytes : {10, 30, 20}) kept.leave(work_of(bytes));
+  for (const size_t bytes : {30, 20, 10, 0}) EXPECT_EQ(kept.take<Rows>()->bytes, bytes);
+}
+
+TEST(KeptMemory, OfEqualOnesTheLastLeftIsTakenFirst) {
+  KeptMemory kept;
+  std::vector<const Rows*> left;
+  for (int i = 0; i < 4; ++i) {
+    auto rows = work_of(10);
+    left.push_back(rows.get());
+    kept.leave(std::move(rows));
+  }
+  const auto last = kept.take<Rows>(), third = kept.take<Rows>(10), second = kept.take<Rows>(5);
+  EXPECT_EQ(last.get(), left[3]);
+  EXPECT_EQ(third.get(), left[2]);
+  EXPECT_EQ(second.get(), left[1]);
+}
+
+TEST(KeptMemory, TypesAreKeptApart) {
+  KeptMemory kept;
+  kept.leave(work_of<Rows>(10));
+  EXPECT_EQ(kept.take<Echoes>()->bytes, 0u);
+  EXPECT_EQ(kept.take<Echoes>(1)->bytes, 0u);
+  kept.leave(work_of<Echoes>(20));
+  EXPECT_EQ(kept.take<Rows>(15)->bytes, 10u);
+  EXPECT_EQ(kept.take<Echoes>()->bytes, 20u);
+}
+
+TEST(KeptMemory, AllTypesShareOneBudgetFromWhichTheOldestGoes) {
+  KeptMemory kept(100 + 2 * kObject);
+  kept.leave(work_of<Rows>(40));
+  kept.leave(work_of<Echoes>(60));
+  kept.leave(work_of<Echoes>(39));  // takes the place of the rows, and of no more
+  EXPECT_EQ(kept.take<Rows>()->bytes, 0u);
+  EXPECT_EQ(kept.take<Echoes>()->bytes, 60u);
+  EXPECT_EQ(kept.take<Echoes>()->bytes, 39u);
+}
+
+TEST(KeptMemory, NothingGoesForWhatIsLargerThanTheBudget) {
+  KeptMemory kept(100 + kObject);
+  kept.leave(work_of<Rows>(100));
+  kept.leave(work_of<Echoes>(101));
+  EXPECT_EQ(kept.take<Echoes>()->bytes, 0u);
+  EXPECT_EQ(kept.take<Rows>()->bytes, 100u);
 }
 
 TEST(KeptMemory, HasRoomAgainForWhatWasTaken) {
-  Kept kept;
+  KeptMemory kept(100 + kObject);
   for (int i = 0; i < 3; ++i) {
-    kept.leave(work_of(Kept::kMost));
-    EXPECT_EQ(kept.take()->bytes, Kept::kMost);
+    kept.leave(work_of<Rows>(100));
+    EXPECT_EQ(kept.take<Rows>()->bytes, 100u);
+    kept.leave(work_of<Echoes>(100));
+    EXPECT_EQ(kept.take<Echoes>()->bytes, 100u);
   }
 }
 
+TEST(KeptMemory, NothingIsKeptOfWhatIsEmptyOrMovedFrom) {
+  KeptMemory kept;
+  kept.leave(std::unique_ptr<Rows>());
+  auto empty = work_of(0);
+  empty->users = 7;
+  kept.leave(std::move(empty));
+  EXPECT_EQ(kept.take<Rows>()->users, 0);
+}
+
+// Takes and leaves one kind of work many times; counts what another thread has at the same time.
+template <class Kind>
+void use(KeptMemory& kept, std::atomic<int>& num_shared) {
+  constexpr int kRounds = 10000;
+  for (size_t i = 0; i < kRounds; ++i) {
+    std::unique_ptr<Kind> work = i % 2 ? kept.take<Kind>() : kept.take<Kind>(i % 5);
+    num_shared += work->users++ != 0;
+    work->bytes = 1 + i % 7;
+    --work->users;
+    kept.leave(std::move(work));
+  }
+}
+
+template <class Kind>
+void expect_distinct(KeptMemory& kept, size_t num_threads) {
+  std::vector<std::unique_ptr<Kind>> all;
+  std::set<const Kind*> distinct;
+  do {
+    distinct.insert(all.emplace_back(kept.take<Kind>()).get());
+  } while (all.back()->bytes != 0);  // the last is new
+  EXPECT_EQ(distinct.size(), all.size());
+  EXPECT_GE(all.size(), 2u);
+  EXPECT_LE(all.size(), num_threads + 1);  // and no more than were in use at once
+}
+
 TEST(KeptMemory, BelongsToOneThreadAtATime) {
-  constexpr int kThreads = 4, kRounds = 20000;
-  Kept kept;
+  constexpr size_t kThreads = 2;  // of each kind
+  KeptMemory kept;
   std::atomic<int> num_shared = 0;
-  const auto use = [&] {
-    for (int i = 0; i < kRounds; ++i) {
-      std::unique_ptr<Work> work = kept.take();
-      num_shared += work->users++ != 0;
-      work->bytes = Kept::kMost / kThreads;  // all that are in use have room
-      --work->users;
-      kept.leave(std::move(work));
-    }
-  };
   std::vector<std::thread> threads;
-  for (int i = 0; i < kThreads; ++i) threads.emplace_back(use);
+  for (size_t i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&] { use<Rows>(kept, num_shared); });
+    threads.emplace_back([&] { use<Echoes>(kept, num_shared); });
+  }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(num_shared, 0);
-  std::set<Work*> left;
-  std::vector<std::unique_ptr<Work>> all;
-  while (all.empty() || all.back()->bytes != 0) left.insert(all.emplace_back(kept.take()).get());
-  EXPECT_EQ(left.size(), all.size());
-  EXPECT_GE(all.size(), 2u);  // and what is new
-  EXPECT_LE(all.size(), size_t{kThreads} + 1);
+  expect_distinct<Rows>(kept, kThreads);
+  expect_distinct<Echoes>(kept, kThreads);
 }
 
 }  // namespace

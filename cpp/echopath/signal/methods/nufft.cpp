@@ -2,9 +2,10 @@
 // the grid into samples, and the kernel's own spectrum is divided out. A row is the grid, its ends overhanging by the
 // kernel.
 #include <algorithm>
-#include <mutex>
+#include <utility>
 #include <vector>
 
+#include "echopath/base/recent_results.h"
 #include "echopath/base/simd.h"
 #include "echopath/fft/fft.h"
 #include "echopath/signal/kernels/nufft_kernel.h"
@@ -43,7 +44,7 @@ ECHOPATH_INLINE void scale(const double* values, const double* factor, int64_t c
   }
 }
 
-// Returns a buffer of this thread, valid until the thread asks again.
+// Of this thread, until it asks again: kept as it is of the size of its plan.
 FftBuffer& scratch(int size) {
   thread_local FftBuffer buffer(size);
   if (buffer.size() != size) buffer = FftBuffer(size);
@@ -94,38 +95,15 @@ class Nufft : public SpreadMethod {
   std::vector<double> correction_;
 };
 
-// Keeps the methods of the last few sizes. Thread-safe.
-class RecentNuffts {
- public:
-  std::shared_ptr<const Nufft> get(int num_samples, int width) {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-      return kept.num_samples == num_samples && kept.width == width;
-    });
-    if (found != kept_.end()) {
-      std::rotate(kept_.begin(), found, found + 1);
-      return kept_.front().nufft;
-    }
-    if (kept_.size() == kMost) kept_.pop_back();
-    kept_.insert(kept_.begin(), {num_samples, width, std::make_shared<const Nufft>(num_samples, width)});
-    return kept_.front().nufft;
-  }
-
- private:
-  static constexpr size_t kMost = 8;
-  struct Kept {
-    int num_samples, width;
-    std::shared_ptr<const Nufft> nufft;
-  };
-  std::mutex mutex_;
-  std::vector<Kept> kept_;  // the one asked for last first
-};
+constexpr size_t kKeptNuffts = 8;
 
 }  // namespace
 
 std::shared_ptr<const SpreadMethod> make_nufft(int num_samples, double tolerance) {
-  static RecentNuffts& recent = *new RecentNuffts;  // never destroyed: threads may outlive what is static
-  return recent.get(num_samples, NufftKernel::width_for(tolerance));
+  using Recent = RecentResults<std::pair<int, int>, std::shared_ptr<const Nufft>>;
+  static Recent& recent = *new Recent(kKeptNuffts);  // never destroyed: threads may outlive what is static
+  const int width = NufftKernel::width_for(tolerance);
+  return recent.get({num_samples, width}, [&] { return std::make_shared<const Nufft>(num_samples, width); });
 }
 
 }  // namespace echopath

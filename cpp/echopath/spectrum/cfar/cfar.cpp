@@ -1,10 +1,9 @@
 #include "echopath/spectrum/cfar/cfar.h"
 
 #include <algorithm>
-#include <deque>
-#include <mutex>
 
 #include "echopath/base/parallel.h"
+#include "echopath/base/recent_results.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/training_power.h"
 
@@ -31,19 +30,9 @@ HalfWidths half_widths(std::optional<int> guard, std::optional<int> training, in
 
 // Computing factors takes a tenth of a second, for large windows several seconds; the frames of a data set share them.
 CfarFactors kept_factors(const CfarDesign& design, Job* job) {
-  static std::mutex mutex;
-  static std::deque<std::pair<CfarDesign, CfarFactors>> kept;
-  const auto is_it = [&](const auto& entry) { return entry.first == design; };
-  {
-    const std::lock_guard lock(mutex);
-    const auto found = std::find_if(kept.begin(), kept.end(), is_it);
-    if (found != kept.end()) return found->second;
-  }
-  const CfarFactors factors = cfar_factors(design, job);
-  const std::lock_guard lock(mutex);
-  if (std::none_of(kept.begin(), kept.end(), is_it)) kept.emplace_front(design, factors);
-  if (kept.size() > kKeptDesigns) kept.pop_back();
-  return factors;
+  using Recent = RecentResults<CfarDesign, CfarFactors>;
+  static Recent& recent = *new Recent(kKeptDesigns);  // never destroyed: threads may outlive what is static
+  return recent.get(design, [&] { return cfar_factors(design, job); });
 }
 
 struct Found {

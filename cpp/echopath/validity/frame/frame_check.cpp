@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "echopath/base/kept_memory.h"
+
 namespace echopath {
 namespace {
 
@@ -70,7 +72,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)),
       first_radar_(with_first_antennas(radar)), preparer_(paths, whole_patches(*paths.scene)),
       walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
-      memory_(ReplayMemory::take()), mesh_moves_(moving_meshes(*paths.scene)) {
+      mesh_moves_(moving_meshes(*paths.scene)) {
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
   const PosedScene pose(*paths.scene, paths.frame.trace_time);
@@ -81,7 +83,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
   find_sweeps();
 }
 
-FrameCheck::~FrameCheck() { ReplayMemory::leave(std::move(memory_)); }
+FrameCheck::~FrameCheck() = default;
 
 void FrameCheck::find_sweeps() {
   std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
@@ -168,11 +170,11 @@ std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const Po
   std::vector<double> lengths(paths.size() * num_times);
   std::vector<std::complex<double>> amplitudes(lengths.size());
   const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
-  std::unique_ptr<PathEvaluator> evaluator = memory_->take_evaluator();
+  std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
   evaluator->begin(preparer_, first_radar_, specular_);
   evaluator->plan(paths);
   evaluator->evaluate(nodes, radio_, {0, {&all, 1}});
-  memory_->give(std::move(evaluator));
+  KeptMemory::of_process().leave(std::move(evaluator));
   std::vector<Echo> echoes(lengths.size());
   for (size_t i = 0; i < lengths.size(); ++i) {
     Echo& echo = echoes[i % paths.size() * num_times + i / paths.size()];

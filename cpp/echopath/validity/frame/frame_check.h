@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/replay/replay_memory.h"
+#include "echopath/replay/evaluate/path_evaluator.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/validity/frame/check_times.h"
 #include "echopath/validity/frame/frame_probe.h"
@@ -85,7 +85,6 @@ class FrameCheck {
   SurfaceWalk walk_;
   RadioConstants radio_;
   SpecularPoints specular_;
-  std::unique_ptr<ReplayMemory> memory_;
   std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;

@@ -1,0 +1,43 @@
+#pragma once
+// Results that are costly to make, kept for those who ask for the same again.
+#include <algorithm>
+#include <cstddef>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace echopath {
+
+// The last few. Thread-safe.
+template <class Key, class Result>
+class RecentResults {
+ public:
+  explicit RecentResults(size_t most) : most_(most) {}
+
+  // What was made for an equal key, or what `make` makes, which others need not wait for: they make the same meanwhile.
+  template <class Make>
+  Result get(const Key& key, Make make) {
+    if (std::optional<Result> found = find(key)) return *std::move(found);
+    Result made = make();
+    const std::lock_guard lock(mutex_);
+    kept_.emplace_front(key, made);
+    if (kept_.size() > most_) kept_.pop_back();
+    return made;
+  }
+
+ private:
+  std::optional<Result> find(const Key& key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& entry) { return entry.first == key; });
+    if (found == kept_.end()) return std::nullopt;
+    kept_.splice(kept_.begin(), kept_, found);
+    return found->second;
+  }
+
+  const size_t most_;
+  std::mutex mutex_;
+  std::list<std::pair<Key, Result>> kept_;  // the one asked for last first
+};
+
+}  // namespace echopath

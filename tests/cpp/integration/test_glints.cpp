@@ -86,32 +86,6 @@ TEST(Glints, OverAMirrorLieTowardTheImage) {
 
 TEST(Glints, OfNothingAreNone) { EXPECT_TRUE(find_glints(shot(Scene())).empty()); }
 
-RayNeed need_of(const std::string& stratum, double rays, double weight) {
-  RayNeed need;
-  need.stratum = stratum;
-  need.rays = rays;
-  need.weight = weight;
-  return need;
-}
-
-TEST(ShareOut, ScarceRaysServeModestNeedsTwiceAndGoToTheOthersByWeight) {
-  const RayNeeds needs{{need_of("large ghost", 25000.0, 0.5), need_of("small", 10.0, 1.0), need_of("large", 1e5, 1.0),
-                        need_of("medium", 500.0, 1.0)},
-                       0.0};
-  const RayShares shares = share_out(needs, 3020.0);
-  EXPECT_NEAR(shares.at("small"), 20.0, 20.0 * kShares);
-  EXPECT_NEAR(shares.at("medium"), 1000.0, 1000.0 * kShares);
-  EXPECT_NEAR(shares.at("large"), 2000.0 / 1.5, 2000.0 * kShares);
-  EXPECT_NEAR(shares.at("large ghost"), 1000.0 / 1.5, 1000.0 * kShares);
-}
-
-TEST(ShareOut, WhereRaysSufficeAllGetWhatTheyNeed) {
-  const RayNeeds needs{{need_of("one", 100.0, 0.25), need_of("other", 300.0, 1.0)}, 0.0};
-  const RayShares shares = share_out(needs, 1000.0);
-  EXPECT_NEAR(shares.at("one"), 100.0, 100.0 * kShares);
-  EXPECT_NEAR(shares.at("other"), 300.0, 300.0 * kShares);
-}
-
 TEST(GuideRays, AddUpAndDoNotDependOnTheNumberOfThreads) {
   Scene scene;
   add_ball(scene, "near", {8, 0, 0}, 0.2);

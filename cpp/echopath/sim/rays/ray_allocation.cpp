@@ -17,7 +17,7 @@ constexpr double kMinGrowth = 1.0 / 16.0;
 constexpr double kUnseenGrowth = 0.25;    // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;    // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;      // beside that of the aim
-constexpr double kNeedIsKnownTo = 2.0;    // a factor: intervals of few rays are that uncertain
+constexpr double kServedFirst = 0.75;     // of the rays
 constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
@@ -69,6 +69,7 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   double growth = power.high > 0 ? std::clamp(missing / target_db, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
+  need.is_bounded = growth < kMaxGrowth;
   need.rays = growth * num_rays;
   return need;
 }
@@ -123,22 +124,15 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
 }
 
 RayShares share_out(const RayNeeds& needs, double num_rays) {
+  double bounded = 0.0, others = 0.0;
+  for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight;
+  const bool is_scarce = needs.num_rays() > num_rays && others > 0;
+  const double to_bounded = std::min(bounded, kServedFirst * num_rays);
+  const double of_bounded = is_scarce && bounded > 0 ? to_bounded / bounded : 1.0;
   RayShares shares;
-  for (const RayNeed& need : needs.strata) shares[need.stratum] = need.rays;
-  if (needs.num_rays() <= num_rays) return shares;
-  std::vector<const RayNeed*> by_modesty;
-  double weights = 0.0, left = num_rays;
   for (const RayNeed& need : needs.strata) {
-    by_modesty.push_back(&need);
-    weights += need.weight;
-  }
-  std::stable_sort(by_modesty.begin(), by_modesty.end(),
-                   [](const RayNeed* a, const RayNeed* b) { return a->rays * b->weight < b->rays * a->weight; });
-  for (const RayNeed* need : by_modesty) {
-    const double share = std::min(kNeedIsKnownTo * need->rays, left * need->weight / weights);
-    shares[need->stratum] = share;
-    left -= share;
-    weights -= need->weight;
+    const bool shares_rest = is_scarce && !need.is_bounded;
+    shares[need.stratum] = shares_rest ? need.weight * (num_rays - to_bounded) / others : need.rays * of_bounded;
   }
   return shares;
 }

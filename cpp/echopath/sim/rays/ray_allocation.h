@@ -17,6 +17,7 @@ struct RayNeed {
   KnownEcho echo;
   bool is_resolved = true;  // to the target, or below the floor
   double weight = 1.0;      // of images, below that of objects
+  bool is_bounded = true;   // false: it asks for as many as kMaxGrowth allows, and may need any number more
 };
 
 // Tells which echoes matter.
@@ -40,9 +41,8 @@ struct RayNeeds {
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 
-// Shares of `num_rays` rays. Where they are too few, no stratum gets more for its weight than another that lacks rays: what needs
-// few for its weight gets twice of that, as few rays tell their need within a factor of two, and the others share the rest by
-// their weights. One that needs very many takes nothing away from those that fewer would serve.
+// Returns the shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three
+// quarters of the rays, so that most objects get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints

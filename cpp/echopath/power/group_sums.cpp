@@ -9,7 +9,6 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/phasor.h"
-#include "echopath/power/outline.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -75,7 +74,7 @@ class KnownKinds {
   size_t index_of(uint64_t kind, std::vector<CoherentKind>& kinds) {
     if (!kinds.empty() && kind == last_) return last_index_;
     const auto [entry, is_new] = index_.try_emplace(kind, kinds.size());
-    if (is_new) kinds.emplace_back().id = kind;
+    if (is_new) kinds.emplace_back();
     last_ = kind;
     last_index_ = entry->second;
     return last_index_;
@@ -160,38 +159,7 @@ class Sums {
   std::vector<GroupSums> groups_;
 };
 
-// Looks which cells lie at a rim, of the kinds where that matters. edge_power: [P] W, of each coherent path.
-void find_rims(const Paths& paths, const Sorting& sorting, std::span<const float> edge_power,
-               std::vector<GroupSums>& groups) {
-  std::vector<CoherentKind*> kinds;
-  std::vector<std::unordered_map<uint64_t, uint32_t>> index_of_kind(groups.size());  // by group and id, into kinds
-  for (size_t group = 0; group < groups.size(); ++group) {
-    for (CoherentKind& kind : groups[group].kinds) {
-      if (!(kind.power[kEdges] > 0.0) || !kind.is_uncertain()) continue;
-      kind.edges_at_rim = 0.0;
-      index_of_kind[group][kind.id] = static_cast<uint32_t>(kinds.size());
-      kinds.push_back(&kind);
-    }
-  }
-  if (kinds.empty()) return;
-  std::vector<int64_t> members;
-  std::vector<uint32_t> sets;
-  for (int64_t path = 0; path < paths.num_paths(); ++path) {
-    const auto p = static_cast<size_t>(path);
-    const auto& of_group = index_of_kind[sorting.group_of_path[p]];
-    if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || of_group.empty()) continue;
-    const auto found = of_group.find(kind_of(paths, path));
-    if (found == of_group.end()) continue;
-    members.push_back(path);
-    sets.push_back(found->second);
-  }
-  const std::vector<uint8_t> at_rim = cells_at_rim(paths, members, sets);
-  for (size_t i = 0; i < members.size(); ++i) {
-    if (at_rim[i]) kinds[sets[i]]->edges_at_rim += edge_power[static_cast<size_t>(members[i])];
-  }
-}
-
-// The paths of a block and what they send back.
+// Evaluates the paths of a block and what they send back.
 class Block {
  public:
   Block(const Paths& paths, const Radar& radar)
@@ -209,12 +177,6 @@ class Block {
     arrive(diffuse_.size(), 1, diffuse_fields_);
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
     arrive(coherent_.size(), kNumCellViews, coherent_fields_);
-  }
-
-  void note_edges(std::vector<float>& edge_power) const {
-    const std::complex<double>* edges = coherent_fields_.data() + kEdges * coherent_.size();
-    for (size_t i = 0; i < coherent_.size(); ++i)
-      edge_power[static_cast<size_t>(coherent_[i])] = static_cast<float>(std::norm(edges[i]));
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {
@@ -258,13 +220,11 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
   for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());
   std::optional<Block> block;
-  std::vector<float> edge_power(static_cast<size_t>(paths.num_paths()), 0.0f);
   if (paths.num_paths() > 0) block.emplace(paths, radar);
   for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
     block->evaluate(begin, end);
-    block->note_edges(edge_power);
     parallel_for(std::ssize(sums), [&](int64_t i) {
       const auto at = static_cast<size_t>(i);
       block->add_to(sums[at], sortings[at].group_of_path);
@@ -272,10 +232,7 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     if (job) job->advance(end - begin);
   }
   std::vector<std::vector<GroupSums>> found;
-  for (size_t i = 0; i < sums.size(); ++i) {
-    found.push_back(sums[i].finish());
-    find_rims(paths, sortings[i], edge_power, found.back());
-  }
+  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish());
   return found;
 }
 

@@ -10,7 +10,6 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
 constexpr double kGone = 0.3, kOfBetween = 1.25;
-constexpr double kCertain = 0.1 * kGone;  // a ten thousandth of what may be between rays counts
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
@@ -60,7 +59,7 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     gone += squared(squared(std::min(halving / kGone, 1.0))) * between;
   }
   const double of_finer = std::sqrt(finer);
-  return {std::hypot(above.size(), of_finer, std::sqrt(gone)), std::hypot(below.size(), of_finer)};
+  return {std::hypot(above.size() + of_finer, std::sqrt(gone)), below.size() + of_finer};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {
@@ -113,14 +112,10 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
 
 }  // namespace
 
-bool CoherentKind::is_uncertain() const {
-  return !(std::abs(field[kHalfDensity] - field[kAsLaunched]) <= kCertain * std::abs(field[kAsLaunched]));
-}
-
 double power_between_rays(const CoherentKind& kind, int num_batches) {
   const double edges = kind.power[kEdges];
   const double num_cells = effective_number(edges, kind.edge_squares) / num_batches;  // of each batch
-  const double of_edges = std::min(edges * std::min(1.0, kEdgeCells / std::sqrt(num_cells)), kind.edges_at_rim);
+  const double of_edges = edges * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
   return num_batches * (kind.power[kPoints] + of_edges);
 }
 

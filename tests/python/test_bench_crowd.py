@@ -36,6 +36,13 @@ def test_street_has_what_it_is_named_for(street):
         assert sum(name.startswith(kind) for name in names) == count
 
 
+def test_powers_that_are_no_numbers_get_no_verdict():
+    assert crowd.decibels(2.0, 1.0) == pytest.approx(10.0 * np.log10(2.0))
+    for powers in ((np.nan, 1.0), (1.0, np.nan), (np.inf, 1.0)):
+        with pytest.raises(ValueError, match="must be finite"):
+            crowd.decibels(*powers)
+
+
 def test_no_object_of_the_street_shadows_another(street):
     spans = {}
     for mesh in street.meshes:

@@ -78,7 +78,9 @@ def direct(paths, name: str):
 
 
 def decibels(power: float, truth: float) -> float:
-    """Of the ratio, at least -99 dB."""
+    """Of the ratio, at least -99 dB. What is not a number is no result: it would compare as right or wrong by chance."""
+    if not (np.isfinite(power) and np.isfinite(truth)):
+        raise ValueError(f"power, truth: must be finite, got {power} W, {truth} W")
     return float(10.0 * np.log10(max(power / truth, 10.0 ** -9.9)))
 
 

@@ -23,7 +23,8 @@ void run_beside(const std::string& stage, const pybind11::object& progress, cons
 // else may raise then: that ends the job.
 bool looks_for_signals();
 
-// run_beside for work with a result: const Paths paths = run_job("trace", progress, [&](Job& job) { return trace(..., &job); });
+// run_beside for work with a result: const Paths paths = run_job("trace", progress, [&](Job& job) { return trace(..., &job);
+// });
 template <class Work>
 std::invoke_result_t<Work&, Job&> run_job(const std::string& stage, const pybind11::object& progress, Work&& work) {
   using Result = std::invoke_result_t<Work&, Job&>;

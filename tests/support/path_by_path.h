@@ -1,6 +1,7 @@
 #pragma once
-// Lengths and amplitudes of paths evaluated one by one, hit by hit, as plainly as the formula (replay/kernels/path_formula.h) is written:
-// what Replayer, which shares what paths have in common and runs in lanes, is held against.
+// Lengths and amplitudes of paths evaluated one by one, hit by hit, as plainly as the formula
+// (replay/kernels/path_formula.h) is written: what Replayer, which shares what paths have in common and runs in lanes, is
+// held against.
 #include <complex>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a build under a sanitizer leaves out: bounds by the clock or by resident memory, and statistics over many runs of code
-// that other tests run, too.
+// What a build under a sanitizer leaves out: bounds by the clock or by resident memory, and statistics over many runs of
+// code that other tests run, too.
 namespace echopath::test {
 
 #ifdef ECHOPATH_SANITIZED

@@ -17,8 +17,8 @@ struct SlowPaths {
   std::set<std::vector<int>> unsure;
 };
 
-// All sequences of 1 to `max_bounces` rectangles over which a mirror path leads from transmitter to receiver (m). Work grows as
-// the number of rectangles to the power of `max_bounces`.
+// All sequences of 1 to `max_bounces` rectangles over which a mirror path leads from transmitter to receiver (m). Work grows
+// as the number of rectangles to the power of `max_bounces`.
 SlowPaths slow_mirror_paths(const Vec3& transmitter, const Vec3& receiver, const std::vector<MirrorRectangle>& rectangles,
                             int max_bounces);
 

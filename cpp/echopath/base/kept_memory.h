@@ -27,8 +27,8 @@ class KeptMemory {
   static KeptMemory& of_process();
 
   // The smallest of this type that has so many bytes; where none has, the largest, which is to make room, so that there are
-  // never more of them than were in use at once; a new one, which has no bytes, where there is none at all. Of equal ones the one
-  // that was left last: it may still be in the cache.
+  // never more of them than were in use at once; a new one, which has no bytes, where there is none at all. Of equal ones
+  // the one that was left last: it may still be in the cache.
   template <class T>
   std::unique_ptr<T> take(size_t num_bytes = std::numeric_limits<size_t>::max()) {
     Memory found = take(typeid(T), num_bytes);

@@ -6,6 +6,8 @@
 namespace echopath {
 
 // Thread-safe: whoever asks first makes the value, all others wait for it. Where making it throws, the next one makes it.
+// What makes it must neither ask the same value nor run a parallel loop: a thread that waits in the loop may take up a task
+// that asks it.
 template <class T>
 class Lazy {
  public:

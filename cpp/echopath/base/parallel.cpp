@@ -75,8 +75,8 @@ void run_pair(const std::function<void()>& first, const std::function<void()>& s
   run_steps(2, [&](int64_t i) { i == 0 ? first() : second(); });
 }
 #else
-// Each loop enters the arena anew, those inside others, too: its tasks stand apart from what surrounds it. Else an exception of one
-// side of run_pair would cancel the loops of the other, which would stop half-way and return as if they had ended.
+// Each loop enters the arena anew, those inside others, too: its tasks stand apart from what surrounds it. Else an exception
+// of one side of run_pair would cancel the loops of the other, which would stop half-way and return as if they had ended.
 void run_steps(int64_t count, const std::function<void(int64_t)>& step) {
   const auto run_range = [&](const tbb::blocked_range<int64_t>& range) {
     for (int64_t i = range.begin(); i != range.end(); ++i) step(i);

@@ -16,9 +16,9 @@ int num_threads();
 // a body is rethrown here after all tasks ended. With a job: each i advances it by one, and cancelling raises Cancelled.
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job = nullptr);
 
-// Calls both, side by side where there are threads; their own parallel loops share these. An exception of either is rethrown here
-// after what has begun has ended; the other may not have begun then. Neither may wait for the other, nor hold a lock across a
-// parallel loop that the other takes: who waits for tasks helps with any.
+// Calls both, side by side where there are threads; their own parallel loops share these. An exception of either is rethrown
+// here after what has begun has ended; the other may not have begun then. Neither may wait for the other, nor hold a lock
+// across a parallel loop that the other takes: who waits for tasks helps with any.
 void run_both(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace echopath

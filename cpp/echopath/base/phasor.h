@@ -21,8 +21,8 @@ using Phasor = ComplexOf<double>;
 // How far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
 enum class PhasorError { kRounding, k1em12, k7em6 };
 
-// e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At kRounding
-// off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
+// e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At
+// kRounding off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
 template <PhasorError kError = PhasorError::kRounding, class Real>
 ECHOPATH_INLINE ComplexOf<Real> phasor_of_half_turns(Real x) {
   const Real y = x * x;

@@ -21,18 +21,26 @@ class RecentResults {
     if (std::optional<Result> found = find(key)) return *std::move(found);
     Result made = make();
     const std::lock_guard lock(mutex_);
-    kept_.emplace_front(key, made);
+    if (place_of(key) == kept_.end()) kept_.emplace_front(key, made);
     if (kept_.size() > most_) kept_.pop_back();
     return made;
+  }
+  size_t size() {
+    const std::lock_guard lock(mutex_);
+    return kept_.size();
   }
 
  private:
   std::optional<Result> find(const Key& key) {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& entry) { return entry.first == key; });
+    const auto found = place_of(key);
     if (found == kept_.end()) return std::nullopt;
     kept_.splice(kept_.begin(), kept_, found);
     return found->second;
+  }
+
+  auto place_of(const Key& key) {
+    return std::find_if(kept_.begin(), kept_.end(), [&](const auto& entry) { return entry.first == key; });
   }
 
   const size_t most_;

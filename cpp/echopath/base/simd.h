@@ -30,8 +30,9 @@ namespace echopath {
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
-// The best that machine and compiler have, or what the environment variable ECHOPATH_INSTRUCTION_SET names: baseline, avx2 or
-// avx512. Fixed at the first call. Raises invalid_argument where the variable names another, or one that the machine lacks.
+// The best that machine and compiler have, or what the environment variable ECHOPATH_INSTRUCTION_SET names: baseline, avx2
+// or avx512. Fixed at the first call. Raises invalid_argument where the variable names another, or one that the machine
+// lacks.
 InstructionSet instruction_set();
 const char* name_of(InstructionSet set);
 

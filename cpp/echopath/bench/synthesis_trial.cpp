@@ -9,7 +9,7 @@
 namespace echopath {
 namespace {
 
-FrameNodes nodes_of(const ChirpSequence& waveform, int num_nodes) {
+FrameNodes trial_nodes(const ChirpSequence& waveform, int num_nodes) {
   Radar radar;
   radar.waveform = waveform;
   radar.transmitters.resize(1);
@@ -21,7 +21,7 @@ FrameNodes nodes_of(const ChirpSequence& waveform, int num_nodes) {
 
 std::vector<double> trial_node_times(const ChirpSequence& waveform, int num_nodes) {
   require(num_nodes >= 1, "num_nodes", "must be at least 1", num_nodes);
-  return nodes_of(waveform, num_nodes).times;
+  return trial_nodes(waveform, num_nodes).times;
 }
 
 Echoes trial_echoes(const ChirpSequence& waveform, int num_nodes, std::vector<double> delay,
@@ -29,7 +29,7 @@ Echoes trial_echoes(const ChirpSequence& waveform, int num_nodes, std::vector<do
   require(num_nodes >= 1 && std::ssize(delay) % num_nodes == 0, "delays", "must have one row a node, rows", num_nodes);
   require(amplitude.size() == delay.size(), "amplitudes", "must have the shape of delays, values", amplitude.size());
   Echoes echoes;
-  echoes.sampling = nodes_of(waveform, num_nodes).sampling.front();
+  echoes.sampling = trial_nodes(waveform, num_nodes).sampling.front();
   echoes.num_echoes = std::ssize(delay) / num_nodes;
   echoes.delay = std::move(delay);
   echoes.amplitude = std::move(amplitude);

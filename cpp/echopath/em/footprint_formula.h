@@ -28,8 +28,8 @@ ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf
   const double variance = spread * spread;
   const Real a11 = variance * phase.h11, a12 = variance * phase.h12, a22 = variance * phase.h22;
   const Real det = a11 * a22 - a12 * a12, trace = a11 + a22, rest = 1.0 - det;
-  // D_F = det(I + jA) = (1 - det) + j trace. The larger part of its root is taken first, which cancels no digits; the real part
-  // is the one that is not negative.
+  // D_F = det(I + jA) = (1 - det) + j trace. The larger part of its root is taken first, which cancels no digits; the real
+  // part is the one that is not negative.
   const Real m = Math::root(rest * rest + trace * trace), inverse = 1.0 / m;
   const Real larger_part = Math::root(0.5 * (m + Math::magnitude(rest)));
   const Real other_part = trace / (2.0 * larger_part);
@@ -38,8 +38,8 @@ ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf
   const Real g_squared = phase.g1 * phase.g1 + phase.g2 * phase.g2;
   const Real form = a11 * phase.g1 * phase.g1 + 2.0 * a12 * phase.g1 * phase.g2 + a22 * phase.g2 * phase.g2;
   const Real turned = trace * g_squared - form;
-  // The exponent is -variance/2 (g^2 + j turned) / D_F. Its real part is negative; behind several curved bounces cells can be so
-  // large that rounding makes it positive.
+  // The exponent is -variance/2 (g^2 + j turned) / D_F. Its real part is negative; behind several curved bounces cells can
+  // be so large that rounding makes it positive.
   const Real scale = (-0.5 * variance) * inverse * inverse;
   const Real fading = Math::smaller(scale * (g_squared * rest + turned * trace), g_squared * 0.0);
   const Real size = Math::exp(fading) * inverse;

@@ -1,5 +1,6 @@
 #include "echopath/posed/posed_scene.h"
 
+#include "echopath/base/errors.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -27,7 +28,8 @@ PosedScene::PosedScene(const Scene& scene, double time) : scene_(&scene), time_(
 
 PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
                        double time)
-    : scene_(&scene), time_(time), origin_(origin) {
+    : scene_(&scene), time_(time), is_in_patches_(true), origin_(origin) {
+  require(patches.size() == scene.meshes().size(), "patches", "must be as many as the scene has meshes", patches.size());
   const Transform world_from_radar = radar.world_from_radar(time);
   transmitters = posed_antennas(radar.transmitters, world_from_radar, origin);
   receivers = posed_antennas(radar.receivers, world_from_radar, origin);
@@ -55,7 +57,12 @@ const std::vector<Vec3>& PosedScene::local_vertices(uint32_t mesh_id) const {
   return node.deformation ? deformed_[mesh_id] : node.mesh->vertices();
 }
 
+void PosedScene::require_whole(uint32_t mesh_id) const {
+  require(!is_in_patches_ || !scene_->node_of(mesh_id).deformation, "mesh_id", "must be posed as a whole", mesh_id);
+}
+
 std::vector<Vec3> PosedScene::world_vertices(uint32_t mesh_id) const {
+  require_whole(mesh_id);
   std::vector<Vec3> vertices = local_vertices(mesh_id);
   for (Vec3& vertex : vertices) vertex = in_world(mesh_id, vertex);
   return vertices;
@@ -69,6 +76,7 @@ std::vector<Vec3> PosedScene::world_normals(uint32_t mesh_id) const {
 }
 
 std::array<Vec3, 3> PosedScene::world_triangle(uint32_t mesh_id, uint32_t triangle_id) const {
+  require_whole(mesh_id);
   const std::vector<Vec3>& vertices = local_vertices(mesh_id);
   const Triangle& triangle = scene_->node_of(mesh_id).mesh->triangles()[triangle_id];
   return {in_world(mesh_id, vertices[triangle[0]]), in_world(mesh_id, vertices[triangle[1]]),

@@ -9,14 +9,15 @@
 
 namespace echopath {
 
-// Nodes move by the rule of `moved` (motion/motion.h). A rigid mesh costs one transform, a deforming one the vertices that are
-// posed. The scene must outlive it.
+// Nodes move by the rule of `moved` (motion/motion.h). A rigid mesh costs one transform, a deforming one the vertices that
+// are posed. The scene must outlive it.
 class PosedScene {
  public:
-  // Poses all vertices and no antennas; the origin is that of the world.
+  // Poses all vertices and no antennas; the origin is that of the world. Raises invalid_argument when a motion is not
+  // defined at `time` (s).
   PosedScene(const Scene& scene, double time);
-  // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is relative
-  // counts from `origin` (m, world). Raises invalid_argument when a motion is not defined at `time` (s).
+  // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is
+  // relative counts from `origin` (m, world). Raises as the other one.
   PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
              double time);
 
@@ -35,23 +36,26 @@ class PosedScene {
 
   // Vertices in the mesh's frame, m. Where the mesh deforms and patches were given, these are the vertices of its patch.
   const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
-  // Unit normals at the vertices of the patch of a smooth deforming mesh, in its frame; right at the corners of the patch's own
-  // triangles. Empty for other meshes.
+  // Unit normals at the vertices of the patch of a smooth deforming mesh, in its frame; right at the corners of the patch's
+  // own triangles. Empty for other meshes.
   const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[mesh_id]; }
 
-  // All vertices of a mesh in the world, m; not for meshes of which only a patch is posed.
+  // Returns all vertices of a mesh in the world, m. Raises invalid_argument where only a patch of it is posed.
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
-  // Unit normals [V] in world axes of the curved surface that the mesh stands for, and its part is of (scene/smooth.h).
+  // Unit normals [V] in world axes of the curved surface that the mesh, or the whole that it is a part of, stands
+  // for (scene/mesh/smooth.h).
   std::vector<Vec3> world_normals(uint32_t mesh_id) const;
-  // Corners of a triangle in the world, m; not for meshes of which only a patch is posed.
+  // Returns the corners of a triangle in the world, m. Raises as world_vertices.
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
 
  private:
   void place_meshes();
+  void require_whole(uint32_t mesh_id) const;
   Vec3 in_world(uint32_t mesh_id, const Vec3& local) const { return linear_[mesh_id] * local + world_translation_[mesh_id]; }
 
   const Scene* scene_;
   double time_;
+  bool is_in_patches_ = false;  // of deforming meshes only patches are posed
   Vec3 origin_ = Vec3::Zero();
   // By mesh ID.
   std::vector<Mat3> linear_, normal_matrix_;

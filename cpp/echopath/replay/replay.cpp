@@ -148,11 +148,14 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.at_trace()); }
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
+  require(samples.nodes.sampling.size() == 1, "samples", "must be posed at a SampleGrid, transmitters",
+          samples.nodes.sampling.size());
   return at_nodes(indices, samples);
 }
 
 std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, const PosedGrid& chirps,
                                        std::span<const uint8_t> joined) const {
+  require(chirps.transmitter >= 0, "chirps", "must be posed at a ChirpGrid, transmitter", chirps.transmitter);
   const PosedGrid& polynomial = posed_.polynomial(index);
   const auto transmitter = static_cast<size_t>(chirps.transmitter);
   const TimeSampling sampling = derivative_sampling(radar_.waveform.num_chirps, grids_.derivatives());

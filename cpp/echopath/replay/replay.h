@@ -2,8 +2,8 @@
 // Replay computes what the recorded paths look like at other times and to other antennas, without tracing.
 //
 // Material points (diffuse hits and the physical-optics hit) move with their triangles, exactly; hits on flagged mirrors are
-// replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move with
-// the point of reflection by one Newton step (specular_slide.h).
+// replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move
+// with the point of reflection by one Newton step (specular_slide.h).
 #include <span>
 
 #include "echopath/replay/evaluate/radio_constants.h"

@@ -9,7 +9,7 @@ struct ReplaySettings {
   double amplitude_tolerance = 1e-4;  // aim for the interpolated amplitude, relative to the largest of the path
   SpecularPoints specular = SpecularPoints::kMaterial;  // where specular hits stand that are not replayed by images
   bool exact = false;                                   // evaluate in every chirp instead of interpolating
-  bool per_sample = false;                              // for signals with the delay of every sample (signal/per_sample.h)
+  bool per_sample = false;                              // for signals with the delay of every sample (per_sample.h)
 };
 
 }  // namespace echopath

@@ -13,7 +13,7 @@ constexpr size_t kBytesOfValue = sizeof(double) + sizeof(std::complex<double>);
 struct SpareEchoes {
   Echoes echoes;
 
-  // By the room for delays: their number is that of the paths that were followed.
+  // Counts the room for delays, because their number is that of the paths that were followed.
   size_t num_bytes() const { return echoes.delay.capacity() * kBytesOfValue; }
 };
 
@@ -21,8 +21,6 @@ struct SpareEchoes {
 
 Echoes take_echoes(size_t num_values) {
   Echoes echoes = std::move(KeptMemory::of_process().take<SpareEchoes>(num_values * kBytesOfValue)->echoes);
-  echoes.group.clear();
-  echoes.sampling = {};
   echoes.delay.resize(num_values);
   echoes.amplitude.resize(num_values);
   return echoes;
@@ -31,7 +29,9 @@ Echoes take_echoes(size_t num_values) {
 void leave_echoes(std::span<Echoes> echoes) {
   for (Echoes& one : echoes) {
     auto spare = std::make_unique<SpareEchoes>();
-    spare->echoes = std::move(one);
+    spare->echoes.delay = std::move(one.delay);
+    spare->echoes.amplitude = std::move(one.amplitude);
+    one = {};
     KeptMemory::of_process().leave(std::move(spare));
   }
 }

@@ -12,7 +12,7 @@ namespace {
 void check_name(const std::string& name) {
   require(!name.empty(), "name", "must not be empty", "''");
   require(name.find_first_of("/*?'\"") == std::string::npos, "name", "must be free of / * ? and quotes", name);
-  // These characters join names into keys (label/families.h, label/grouping.h).
+  // These characters join names into keys (label/objects/families.h, label/grouping.h).
   require(name.find_first_of("\x1e\x1f") == std::string::npos, "name", "must be free of the signs 0x1e and 0x1f", name);
   const std::string blanks = " \t\r\n\v\f";
   const bool bare = blanks.find(name.front()) == std::string::npos && blanks.find(name.back()) == std::string::npos;

@@ -25,7 +25,7 @@ struct Node {
   std::shared_ptr<const Deformation> deformation;  // may be null; its vertices replace the mesh's
   MaterialPtr material;                            // null where there is no mesh
   std::string material_name;                       // as the user gave it, may be empty
-  bool smooth = false;                             // the mesh stands for a curved surface (scene/smooth.h)
+  bool smooth = false;                             // the mesh stands for a curved surface (scene/mesh/smooth.h)
 };
 
 // Tells where a mesh ID stands in the tree.

@@ -35,8 +35,8 @@ struct SynthesisOptions {
 // from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
 // bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
 // chirps.
-// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and what
-// `add` says; it is left to KeptMemory for the next.
+// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and
+// what `add` says; it is left to KeptMemory for the next.
 class Synthesizer {
  public:
   // `expected_echoes` counts the echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or

@@ -42,7 +42,7 @@ struct RcsSettings {
   Footprint footprint = Footprint::kSecondOrder;
   Sampler sampler = Sampler::kLattice;
   int batches = 1;  // 1 to 64; from 2 on cross sections have standard errors
-  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/trace_to_error.h).
+  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;
 
   // Raises invalid_argument naming the field, the rule and the value.

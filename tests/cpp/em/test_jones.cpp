@@ -93,8 +93,8 @@ TEST(Jones, ComponentsAreThoseAcrossTheDirection) {
   EXPECT_EQ(transverse_components(Vec3::UnitX(), Vec3::UnitX()), Eigen::Vector2d::Zero());
 }
 
-// The horizontal axis turns round with the direction of travel and the vertical one does not, along z too: what an antenna sends
-// along a direction is what it receives from there, but for the sign of one component.
+// The horizontal axis turns round with the direction of travel and the vertical one does not, along z too: what an antenna
+// sends along a direction is what it receives from there, but for the sign of one component.
 TEST(Jones, ComponentsOfTheOppositeDirectionDifferInOneSign) {
   std::mt19937 random(6);
   for (int i = 0; i < 100; ++i) {

@@ -121,6 +121,44 @@ TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
   EXPECT_THROW(PosedScene(scene, 2.5), std::invalid_argument);
 }
 
+// Patches hold the vertices that they name, in their order, and nothing of them may be taken for the whole mesh.
+TEST(PosedScene, DeformingMeshesArePosedInPatches) {
+  Scene scene;
+  Node flag = node("flag", -1, Matrix4::Identity(), nullptr);
+  flag.mesh = triangle(), flag.material = metal();
+  std::vector<Vec3> raised = triangle()->vertices();
+  raised[1].z() = 2.0;
+  flag.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 2},
+                                                            std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
+  scene.add(flag);
+  Radar radar;
+  radar.transmitters = radar.receivers = {Antenna()};
+  SurfacePatch patch;
+  patch.original_vertex = {2, 1};
+  const PosedScene posed(scene, radar, {patch}, Vec3::Zero(), 1.0);
+  ASSERT_EQ(posed.local_vertices(0).size(), 2u);
+  EXPECT_LT((posed.local_vertices(0)[0] - triangle()->vertices()[2]).norm(), kRounding);
+  EXPECT_NEAR(posed.local_vertices(0)[1].z(), 1.0, kRounding);
+  EXPECT_THROW(posed.world_vertices(0), std::invalid_argument);
+  EXPECT_THROW(posed.world_triangle(0, 0), std::invalid_argument);
+  EXPECT_THROW(PosedScene(scene, radar, {}, Vec3::Zero(), 1.0), std::invalid_argument);
+}
+
+// A mirrored placement turns the winding, and normals with it; uneven scales tilt them as cofactors do.
+TEST(PosedScene, NormalsFollowTheWindingThroughReflectionsAndScales) {
+  Scene scene;
+  Matrix4 placement = Matrix4::Identity();
+  placement.diagonal() = Eigen::Vector4d(2.0, -1.0, 3.0, 1.0);
+  Node plate = node("plate", -1, placement, nullptr);
+  plate.mesh = triangle(), plate.material = metal();
+  scene.add(plate);
+  const PosedScene posed(scene, 0.0);
+  const auto [a, b, c] = posed.world_triangle(0, 0);
+  const std::vector<Vec3> local = triangle()->vertices();
+  const Vec3 normal = (local[1] - local[0]).cross(local[2] - local[0]).normalized();
+  EXPECT_LT(((posed.normal_matrix(0) * normal).normalized() - (b - a).cross(c - a).normalized()).norm(), kRounding);
+}
+
 // A radar that turns by 0.5 rad/s about z while it goes on: its antennas, too, stand relative to the origin.
 TEST(PosedScene, AntennasMoveAndTurnWithTheRadar) {
   Radar radar;

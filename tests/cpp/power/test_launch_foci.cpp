@@ -125,7 +125,8 @@ TEST(LaunchFoci, LeaveDiffusePowerAsItIs) {
 
 TEST(LaunchFoci, LeaveTheEchoOfASphereAsItIs) {
   const Scene scene = two_balls(false);
-  // Geometrical optics: the wave front that meets the sphere at the distance r spreads as if it came from r a/(a + 2 r) behind it.
+  // Geometrical optics: the wave front that meets the sphere at the distance r spreads as if it came from r a/(a + 2 r)
+  // behind it.
   const double wavelength = kSpeedOfLight / radar().waveform.start_frequency, radius = 0.1,
                range = std::sqrt(101.0) - radius;
   const double field = wavelength / (4.0 * kPi * range) * radius / (2.0 * (radius + range)), expected = field * field;

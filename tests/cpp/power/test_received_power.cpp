@@ -197,7 +197,8 @@ TEST(ReceivedPower, OfOneBatchHasAnInterval) {
   EXPECT_TRUE(power.resolved());
 }
 
-// A Gaussian of the phase across the cell: twice its area squares it, so that |F of half density| |no filter| = |F|^2 per path.
+// A Gaussian of the phase across the cell: twice its area squares it, so that |F of half density| |no filter| = |F|^2 per
+// path.
 TEST(ReceivedPower, HalfDensitySquaresAGaussianFilter) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const Paths paths = shot(tilted_plate(), radar, 4096, 1, 1, Footprint::kFirstOrder, 1);
@@ -269,7 +270,8 @@ TEST(ReceivedPower, OfNothingIsZero) {
   EXPECT_FALSE(power.resolved());
 }
 
-// An echo that is known to a thousandth says nothing of one whose rays are too far apart, for which the filter leaves nothing.
+// An echo that is known to a thousandth says nothing of one whose rays are too far apart, for which the filter leaves
+// nothing.
 TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
   CoherentKind known, lost;
   for (std::complex<double>& field : known.field) field = 1.0;

@@ -113,6 +113,27 @@ class ForgetfulMotion : public LinearMotion {
   mutable int num_asked_ = 0;
 };
 
+// Pieces between knots have more nodes at the same order: both kinds stand among each other by their nodes.
+TEST(MotionKnots, GridsOfBothKindsOfPiecesAreInOrder) {
+  const Radar radar = long_frame();
+  const Paths paths = record(radar);
+  const TimeGrids grids(paths, radar, {});
+  int num_analytic = 0;
+  for (int k = 1; k <= grids.num_polynomials(); ++k) {
+    const PolynomialGrid& grid = grids.polynomial(k);
+    EXPECT_LE(grid.num_nodes, grids.num_sample_nodes());
+    EXPECT_EQ(grid.num_nodes, grid.order * static_cast<int64_t>(grid.cuts.size() + 1));
+    if (k > 1) {
+      EXPECT_GE(grid.num_nodes, grids.polynomial(k - 1).num_nodes);
+    }
+    num_analytic += grid.pieces == PolynomialGrid::Pieces::kAnalytic;
+  }
+  ASSERT_GT(num_analytic, 0);
+  const int next = grids.next_polynomial(1, 1000.0);  // no order is so high: the first between knots
+  ASSERT_LE(next, grids.num_polynomials());
+  EXPECT_EQ(grids.polynomial(next).pieces, PolynomialGrid::Pieces::kAnalytic);
+}
+
 TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
   const Radar radar = long_frame();
   Scene scene = swaying_limb();  // needs a higher polynomial than what goes straight on

@@ -18,8 +18,8 @@ constexpr double kRounding = 1e-13;  // relative: sums and products of about ten
 // relative: cosines near zero are differences of products of order one; at the rim of an antenna that is dark behind, 1e-5
 // of its gain and less
 constexpr double kGrazingRounding = 3e-11;
-// relative: footprints are exponentials, and multiply the rounding of thousands of rad; cells of the plate, which rays of its own
-// graze, stretch a thousandfold; edges are three footprints
+// relative: footprints are exponentials, and multiply the rounding of thousands of rad; cells of the plate, which rays of
+// its own graze, stretch a thousandfold; edges are three footprints
 constexpr double kFilterRounding = 1e-6;
 constexpr double kFaintest = 1e-11;  // sqrt(W): flat-top footprints are differences from one, of echoes of 1e-6
 
@@ -230,7 +230,8 @@ TEST(SharedLegs, AntennasOfBothEndsMayBeTheSame) {
   }
 }
 
-// Upright antennas on a radar that turns about the vertical; others that tilt with it, one of them of horizontal polarisation.
+// Upright antennas on a radar that turns about the vertical; others that tilt with it, one of them of horizontal
+// polarisation.
 TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
   for (const bool is_upright : {true, false}) {
     Radar radar = array_of_powers();

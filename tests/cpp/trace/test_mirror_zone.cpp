@@ -113,7 +113,8 @@ TEST(MirrorZone, CoverIsTheShareOfTheZone) {
   }
 }
 
-// Born and Wolf, 8.7: sqrt(j) times the integral of exp(-j pi x^2) from -infinity to the edge; here by Simpson's rule from 0.
+// Born and Wolf, 8.7: sqrt(j) times the integral of exp(-j pi x^2) from -infinity to the edge; here by Simpson's rule from
+// 0.
 TEST(MirrorZone, TheFieldBesideAnEdgeIsFresnelsIntegral) {
   const std::complex<double> root_j(std::sqrt(0.5), std::sqrt(0.5));
   for (const double within : {0.0, 0.1, 0.5, 1.0, 1.7, 4.0}) {

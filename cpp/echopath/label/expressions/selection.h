@@ -22,7 +22,7 @@ class PathTraits {
 
   const Paths& paths() const { return paths_; }
   const std::vector<double>& power(Job* job);        // [P] W
-  const std::vector<uint64_t>& mesh_bits(Job* job);  // label/automaton.h; empty unless for_many
+  const std::vector<uint64_t>& mesh_bits(Job* job);  // label/expressions/automaton.h; empty unless for_many
 
  private:
   const Paths& paths_;
@@ -34,13 +34,14 @@ class PathTraits {
 // An immutable value, cheap to copy. It knows names only, so it serves any scene that has the meshes it names.
 class Selection {
  public:
-  // Takes text as label/selection_text.h has it. Implicit, so that text may stand wherever a selection is asked for.
+  // Takes text as label/expressions/selection_text.h has it. Implicit, so that text may stand wherever a selection is asked
+  // for.
   Selection(std::string_view text);
   Selection(const std::string& text) : Selection(std::string_view(text)) {}
   Selection(const char* text) : Selection(std::string_view(text)) {}
 
   static Selection path_expression(PathExpression expression);
-  // Takes a path expression and nothing else (label/expression.h).
+  // Takes a path expression and nothing else (label/expressions/expression.h).
   static Selection path_expression(std::string_view text) { return path_expression(parse_path_expression(text)); }
   // Takes paths with at least one hit on a mesh that the glob takes: T .* 'glob' .* R.
   static Selection touches(std::string_view glob);

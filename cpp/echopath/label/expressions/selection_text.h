@@ -3,7 +3,7 @@
 //
 //   selection   := conjunction { '|' conjunction }
 //   conjunction := operand { '&' operand }
-//   operand     := '~' operand | '(' selection ')' | power | path expression (label/expression.h), up to its R
+//   operand     := '~' operand | '(' selection ')' | power | path expression (label/expressions/expression.h), up to its R
 //   power       := 'power' ( '<' | '<=' | '>' | '>=' ) number       W, at the trace time for the first antennas
 //
 // ~ binds tightest, | weakest: T 'walker' R | ~(T . R) & T .* 'wall' .* R. White space may stand between any two symbols.

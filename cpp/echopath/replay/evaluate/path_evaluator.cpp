@@ -9,9 +9,9 @@ void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, Spec
 
 void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
                              const Wanted& wanted) {
-  chains_(*plan_, *preparer_, nodes, radio, channels);
-  direct_(*plan_, *preparer_, nodes, radio, channels, wanted);
-  if (wanted.turned) chains_.mark_turned(*plan_, wanted.turned);
+  shared_legs_(*plan_, *preparer_, nodes, radio, channels);
+  single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
+  if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
 }
 
 }  // namespace echopath

@@ -17,12 +17,12 @@ class PathEvaluator {
   void plan(std::span<const int64_t> indices) { plan_ = &planner_(indices); }
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
                 const Wanted& wanted = {});
-  size_t num_bytes() const { return chains_.num_bytes() + direct_.num_bytes(); }  // of its memory, nearly all
+  size_t num_bytes() const { return shared_legs_.num_bytes() + single_bounces_.num_bytes(); }  // of its memory, nearly all
 
  private:
   SharedLegPlanner planner_;
-  SharedLegEvaluation chains_;
-  SingleBounceEvaluation direct_;
+  SharedLegEvaluation shared_legs_;
+  SingleBounceEvaluation single_bounces_;
   const PathPreparer* preparer_ = nullptr;
   const SharedLegPlan* plan_ = nullptr;
 };

@@ -72,8 +72,8 @@ struct SharedLegPlan {
 // Makes one plan after the other and keeps its memory from record to record. It serves one thread at a time.
 class SharedLegPlanner {
  public:
-  // Sets the record whose blocks are planned from now on. All arguments must outlive this use. Where `with_single_bounces` is set,
-  // paths with one flat point on a rigid mesh are listed apart from the other chains.
+  // Sets the record whose blocks are planned from now on. All arguments must outlive this use. Where `with_single_bounces`
+  // is set, paths with one flat point on a rigid mesh are listed apart from the other chains.
   void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_single_bounces);
   // Returns the plan for the paths of these indices; it is valid until the next call.
   const SharedLegPlan& operator()(std::span<const int64_t> indices);

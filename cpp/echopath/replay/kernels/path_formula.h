@@ -15,10 +15,10 @@
 //   inner = sqrt(prod dS/dS_trace) * prod sqrt(|cos_out cos_in|/pi)/r over the legs between diffuse hits.
 //   Factors carry the signs of their cosines: a surface that is seen from opposite sides makes no echo.
 // Flagged mirrors alone: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
-// In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all coefficients.
-// Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}.
-// An antenna nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of
-// the amplitude.
+// In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all
+// coefficients. Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}. An antenna
+// nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of the
+// amplitude.
 #include "echopath/em/footprint_formula.h"
 #include "echopath/em/transverse_formula.h"
 #include "echopath/replay/kernels/cell_formula.h"

@@ -1,7 +1,7 @@
 #pragma once
-// Holds the inner loops of replay along nodes, compiled once for each instruction set from shared_leg_kernels_body.h. The headers
-// that this one includes define no functions with code: what is compiled for one instruction set must not be linked into
-// another's.
+// Holds the inner loops of replay along nodes, compiled once for each instruction set from shared_leg_kernels_body.h. The
+// headers that this one includes define no functions with code: what is compiled for one instruction set must not be linked
+// into another's.
 //
 // Pointers to constant or written doubles are the first of several rows of `stride` nodes each (node_rows.h).
 #include <cstddef>

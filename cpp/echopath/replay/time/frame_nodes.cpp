@@ -97,7 +97,7 @@ class NodeSet {
 };
 
 // Returns the nodes of all pieces, without the weights of the chirps.
-FrameNodes nodes_of(const std::vector<Piece>& pieces, int order) {
+FrameNodes lobatto_nodes(const std::vector<Piece>& pieces, int order) {
   require(order >= 2, "order", "must be >= 2", order);
   FrameNodes nodes;
   nodes.order = order;
@@ -121,14 +121,14 @@ FrameNodes static_nodes(const Radar& radar, double time) {
 FrameNodes unsampled_chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints,
                                      int order) {
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
-  return nodes_of(pieces, order);
+  return lobatto_nodes(pieces, order);
 }
 
 FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vector<double>& breakpoints, int order,
                            ChirpDerivatives derivatives) {
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
   const NodeSet set(order, derivatives);
-  FrameNodes nodes = nodes_of(pieces, order);
+  FrameNodes nodes = lobatto_nodes(pieces, order);
   for (int tx = 0; tx < radar.num_slots(); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_rows = static_cast<int>(nodes.times.size());

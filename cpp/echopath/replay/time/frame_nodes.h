@@ -10,8 +10,8 @@ namespace echopath {
 struct FrameNodes {
   std::vector<double> times;           // [num_nodes] s
   std::vector<TimeSampling> sampling;  // by transmitter
-  int order = 1;                       // nodes per piece; 1: one node for all
-  bool is_exact = false;               // nodes in every chirp
+  int order = 1;                       // nodes per piece or, where is_exact, per chirp
+  bool is_exact = false;               // every chirp has nodes; else there is one node for all where the order is 1
 
   // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: they measure what the
   // polynomial leaves out. It is empty for order 1 and for exact nodes.
@@ -37,8 +37,8 @@ FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int tra
                        ChirpDerivatives derivatives = ChirpDerivatives::kThird);
 // Returns one node in each chirp of one transmitter, at its window centre, without a sampling.
 FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter);
-// Returns the sampling of nodes that hold, for each node of centre_nodes, a value and then its derivatives: 1 for kFirst, 3
-// for kThird. The nodes of a chirp begin at chirp * (1 + derivatives).
+// Returns the sampling of rows that hold, for each node of centre_nodes, a value and then its derivatives: 1 for kFirst, 3
+// for kThird. The rows of a chirp begin at chirp * (1 + derivatives).
 TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives);
 // Returns into how many pieces the breakpoints cut the frame that starts at start_time.
 int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints);

@@ -22,8 +22,8 @@ struct PolynomialGrid {
   double longest_piece;      // s
 };
 
-// Each chirp of one transmitter has one node, in the middle of its window. How delays change within the chirp is taken from a
-// polynomial.
+// Each chirp of one transmitter has one node, in the middle of its window. How delays change within the chirp is taken from
+// a polynomial.
 struct ChirpGrid {
   int transmitter;
 };

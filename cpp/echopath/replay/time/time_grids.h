@@ -25,7 +25,7 @@ class TimeGrids {
 
   double start_time() const { return start_time_; }  // s, of the frame
   ChirpDerivatives derivatives() const { return derivatives_; }
-  // Returns the first polynomial after `index` that has at least this order, or that lies between knots where `index` does not;
+  // Returns the first polynomial after `index` that has at least this order, or whose pieces are of the other kind;
   // num_polynomials() + 1 where there is none.
   int next_polynomial(int index, double needed_order) const;
 

@@ -18,7 +18,7 @@ struct ReflectingTriangle {
   bool is_flat() const { return turn == 0.0; }
 };
 
-// `normals` are the unit vertex normals of the curved surface (scene/smooth.h). Where they fail its crease guard, the
+// `normals` are the unit vertex normals of the curved surface (scene/mesh/smooth.h). Where they fail its crease guard, the
 // triangle is flat.
 ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals);
 

@@ -7,9 +7,9 @@
 namespace echopath {
 
 // Says how a few rows of values give values at each chirp: value(chirp j) = sum_k value[j][k] * row[first_row[j] + k], and
-// the same with `slope` for the time derivative. One form holds static echoes (one row, weight 1), Chebyshev pieces (a row for
-// each of the K nodes of a piece of the frame), exact evaluation (rows for a few nodes in every chirp) and chirps that know
-// their own derivatives.
+// the same with `slope` for the time derivative. One form holds static echoes (one row, weight 1), Chebyshev pieces (a row
+// for each of the K nodes of a piece of the frame), exact evaluation (rows for a few nodes in every chirp) and chirps that
+// know their own derivatives.
 struct TimeSampling {
   int num_rows = 1;
   int order = 1;               // rows that take part in one chirp

@@ -72,8 +72,8 @@ class Nufft : public SpreadMethod {
 
   void samples(const double* row, std::complex<double>* out) const override {
     FftBuffer& grid = scratch(grid_size_);
-    // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide, but may be
-    // shorter than what pads the row behind it.
+    // Row cell i is grid cell i + 1 - width, modulo the grid, which is at least twice as long as the kernel is wide, but may
+    // be shorter than what pads the row behind it.
     const int64_t before = kernel_.width - 1, end = before + grid_size_;
     const double* imaginary = row + row_length();
     run_simd<interleave>(row + before, imaginary + before, grid_size_, reinterpret_cast<double*>(grid.data()));

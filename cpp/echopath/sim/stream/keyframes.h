@@ -42,10 +42,10 @@ int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings
 class StretchRecords {
  public:
   // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to
-  // kMaxSurfaceSearches stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look could have
-  // found become a record with phases of its own. So each piece of surface stands in one of the records, with the same
-  // material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface. Raises
-  // invalid_argument for kAlways with a selection.
+  // kMaxSurfaceSearches stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look
+  // could have found become a record with phases of its own. So each piece of surface stands in one of the records, with the
+  // same material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface.
+  // Raises invalid_argument for kAlways with a selection.
   StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
                  Job* job = nullptr);
   // Returns records, at least one, whose echoes add up to those of the stretch.

@@ -178,6 +178,7 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
       const NextGrid next = grids.next(path, polynomial);
       (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
     }
+    by_grid[static_cast<size_t>(polynomial)] = {};
   }
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
     add_chirps(by_chirp, transmitter, out);

@@ -48,9 +48,9 @@ class ReplayStream {
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
   // Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path, whatever the number of
-  // paths, chirps and channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B for
-  // each channel and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread
-  // at a time, while the next blocks are replayed. Raises Cancelled.
+  // paths, chirps and channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B
+  // for each channel and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called
+  // from one thread at a time, while the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink) const;
 
  private:

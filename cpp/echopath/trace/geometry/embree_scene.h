@@ -22,7 +22,7 @@ struct RayHit {
   double distance = 0.0;  // m, along the ray
   bool is_smooth = false;
   double stretch = 1.0;
-  Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth.h); only where smooth
+  Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/mesh/smooth.h); only where smooth
 };
 
 struct PacketFacets;  // embree_packets.cpp, as the next one

@@ -38,20 +38,21 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sa
   plan.strata.push_back(std::move(stratum));
 }
 
-// Names a focus and the aim that it is in; where `of` is the number of aims, it is in the field of view.
+// Names a focus and the target that it is in; where `of` is the number of targets, it is in the field of view.
 struct Focus {
   const LaunchFocus* asked;
   size_t of;
 };
 
 // Returns the foci that are asked for in existing strata, up to the number of strata that a record can tell apart.
-std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<RayTarget>& aims, const Stratum& field) {
-  std::map<std::string, size_t> index{{field.name, aims.size()}};
-  for (size_t k = 0; k < aims.size(); ++k) index.emplace(aims[k].stratum.name, k);
+std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<RayTarget>& targets,
+                           const Stratum& field) {
+  std::map<std::string, size_t> index{{field.name, targets.size()}};
+  for (size_t k = 0; k < targets.size(); ++k) index.emplace(targets[k].stratum.name, k);
   std::vector<Focus> foci;
   for (const LaunchFocus& one : asked) {
     const auto found = index.find(one.of);
-    if (found != index.end() && aims.size() + foci.size() + 1 < kNoStratum) foci.push_back({&one, found->second});
+    if (found != index.end() && targets.size() + foci.size() + 1 < kNoStratum) foci.push_back({&one, found->second});
   }
   return foci;
 }
@@ -70,22 +71,22 @@ Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_
 
 // Returns the shares of the rays by stratum, the field of view last: it divides them among objects that move, others, and
 // the field of view.
-std::vector<double> default_shares(const std::vector<RayTarget>& aims, bool field_owns_any) {
+std::vector<double> default_shares(const std::vector<RayTarget>& targets, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
-  for (const RayTarget& aim : aims) (aim.moves ? moving : resting) += weight_of_target(aim.stratum.num_mirrors);
-  const double aimed = aims.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
+  for (const RayTarget& target : targets) (target.moves ? moving : resting) += weight_of_target(target.stratum.num_mirrors);
+  const double aimed = targets.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
   const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
   std::vector<double> shares;
-  for (const RayTarget& aim : aims) {
-    const double of_tier = aim.moves ? moving_share / moving : (1.0 - moving_share) / resting;
-    shares.push_back(aimed * of_tier * weight_of_target(aim.stratum.num_mirrors));
+  for (const RayTarget& target : targets) {
+    const double of_tier = target.moves ? moving_share / moving : (1.0 - moving_share) / resting;
+    shares.push_back(aimed * of_tier * weight_of_target(target.stratum.num_mirrors));
   }
   shares.push_back(1.0 - aimed);
   return shares;
 }
 
 // Returns the shares of the strata in the order of the plan.
-std::vector<double> named_shares(const std::vector<RayTarget>& aims, const std::vector<Focus>& foci, const Stratum& field,
+std::vector<double> named_shares(const std::vector<RayTarget>& targets, const std::vector<Focus>& foci, const Stratum& field,
                                  const RayShares& shares) {
   double mean = 0.0;
   for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
@@ -94,7 +95,7 @@ std::vector<double> named_shares(const std::vector<RayTarget>& aims, const std::
     return found == shares.end() ? mean : found->second;
   };
   std::vector<double> out;
-  for (const RayTarget& aim : aims) out.push_back(share_of(aim.stratum.name));
+  for (const RayTarget& target : targets) out.push_back(share_of(target.stratum.name));
   for (const Focus& focus : foci) out.push_back(focus.asked->share);
   out.push_back(share_of(field.name));
   return out;
@@ -136,34 +137,34 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
       {settings.transmitter, settings.max_image_mirrors, 0.5 * field.solid_angle(), settings.sampler == Sampler::kLattice});
   const bool is_guided = !settings.guide.shares.empty();
   std::vector<Focus> foci;
-  if (is_guided) foci = foci_of(settings.guide.foci, found.aims, field);
-  const std::vector<double> shares = is_guided ? named_shares(found.aims, foci, field, settings.guide.shares)
-                                               : default_shares(found.aims, found.any_unaimed || !mirrors.empty());
+  if (is_guided) foci = foci_of(settings.guide.foci, found.targets, field);
+  const std::vector<double> shares = is_guided ? named_shares(found.targets, foci, field, settings.guide.shares)
+                                               : default_shares(found.targets, found.any_unaimed || !mirrors.empty());
   std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
   for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
-    if (foci[i].of < found.aims.size() && rays[foci[i].of] == 0)
-      rays.back() += std::exchange(rays[found.aims.size() + i], 0);
+    if (foci[i].of < found.targets.size() && rays[foci[i].of] == 0)
+      rays.back() += std::exchange(rays[found.targets.size() + i], 0);
   }
   LaunchPlan plan;
   plan.seed = settings.seed;
   plan.batches = settings.batches;
   plan.num_unaimed = found.num_left_out;
   plan.first_ray.assign(1, 0);
-  const int field_of_view = static_cast<int>(found.aims.size() + foci.size());
+  const int field_of_view = static_cast<int>(found.targets.size() + foci.size());
   plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, field_of_view);
-  for (size_t k = 0; k < found.aims.size(); ++k) {
-    add_stratum(plan, found.aims[k].stratum, rays[k], settings.sampler);
+  for (size_t k = 0; k < found.targets.size(); ++k) {
+    add_stratum(plan, found.targets[k].stratum, rays[k], settings.sampler);
     if (plan.strata[k].num_rays == 0) continue;
-    for (const MirrorSequence sequence : found.aims[k].sequences)
-      plan.owners.assign(found.aims[k].object, sequence, static_cast<int>(k));
+    for (const MirrorSequence sequence : found.targets[k].sequences)
+      plan.owners.assign(found.targets[k].object, sequence, static_cast<int>(k));
   }
   std::map<size_t, int> numbers;
   for (size_t i = 0; i < foci.size(); ++i) {
-    const bool is_in_field = foci[i].of == found.aims.size();
-    const Stratum& owner = is_in_field ? field : found.aims[foci[i].of].stratum;
+    const bool is_in_field = foci[i].of == found.targets.size();
+    const Stratum& owner = is_in_field ? field : found.targets[foci[i].of].stratum;
     const int index_of_owner = is_in_field ? field_of_view : static_cast<int>(foci[i].of);
     const Stratum cone = focus_stratum(*foci[i].asked, owner, index_of_owner, ++numbers[foci[i].of]);
-    add_stratum(plan, cone, rays[found.aims.size() + i], settings.sampler);
+    add_stratum(plan, cone, rays[found.targets.size() + i], settings.sampler);
   }
   add_stratum(plan, field, rays.back(), settings.sampler);
   plan.foci = LaunchFoci(plan.strata);

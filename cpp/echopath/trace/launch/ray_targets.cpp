@@ -9,7 +9,7 @@
 namespace echopath {
 namespace {
 
-// Largest number of aims: with the field of view they stay below kNoStratum.
+// Largest number of targets: with the field of view they stay below kNoStratum.
 constexpr size_t kMaxAims = 65000;
 // Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
@@ -42,7 +42,9 @@ class RayTargetFinder {
         frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {
   }
 
-  std::optional<RayTarget> at_object(const Target& target) const { return aim(target, target.vertices, target.name, 0); }
+  std::optional<RayTarget> at_object(const Target& target) const {
+    return target_at(target, target.vertices, target.name, 0);
+  }
 
   // RayTargets at each image that a frustum may show.
   std::vector<RayTarget> at_images(const Target& target) const {
@@ -53,7 +55,7 @@ class RayTargetFinder {
       std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
                      [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
-      std::optional<RayTarget> made = aim(target, vertices, name_over(target, frustum), num_mirrors);
+      std::optional<RayTarget> made = target_at(target, vertices, name_over(target, frustum), num_mirrors);
       if (!made) continue;
       const auto same = std::find_if(images.begin(), images.end(),
                                      [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
@@ -64,8 +66,8 @@ class RayTargetFinder {
   }
 
  private:
-  std::optional<RayTarget> aim(const Target& target, const std::vector<Vec3>& vertices, std::string name,
-                               int num_mirrors) const {
+  std::optional<RayTarget> target_at(const Target& target, const std::vector<Vec3>& vertices, std::string name,
+                                     int num_mirrors) const {
     std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
@@ -129,24 +131,24 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
                             const RayTargetSettings& settings) {
   RayTargets out;
   out.object_of_mesh.assign(scene.meshes().size(), -1);
-  const RayTargetFinder aimer(scene, geometry, mirrors, settings);
+  const RayTargetFinder finder(scene, geometry, mirrors, settings);
   std::vector<RayTarget> objects, images;
   for (const SceneObject& object : objects_of(scene)) {
     const int index = out.num_objects++;
     for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
     const Target target = target_of(scene, geometry, object, index);
-    std::optional<RayTarget> direct = aimer.at_object(target);
+    std::optional<RayTarget> direct = finder.at_object(target);
     if (!direct) {
       out.any_unaimed = true;
       continue;
     }
     objects.push_back(std::move(*direct));
-    std::vector<RayTarget> more = aimer.at_images(target);
+    std::vector<RayTarget> more = finder.at_images(target);
     std::move(more.begin(), more.end(), std::back_inserter(images));
   }
   limit(objects, images, out);
-  out.aims = std::move(objects);
-  std::move(images.begin(), images.end(), std::back_inserter(out.aims));
+  out.targets = std::move(objects);
+  std::move(images.begin(), images.end(), std::back_inserter(out.targets));
   return out;
 }
 

@@ -26,7 +26,7 @@ struct RayTargetSettings {
 };
 
 struct RayTargets {
-  std::vector<RayTarget> aims;      // objects first, then images
+  std::vector<RayTarget> targets;   // objects first, then images
   std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
   int num_objects = 0;
   bool any_unaimed = false;  // some object has no stratum

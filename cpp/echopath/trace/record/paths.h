@@ -76,7 +76,7 @@ struct TraceFrame {
   TraceStatistics statistics;
   int num_batches = 1;           // independent lattices of launch directions, which share the rays of each stratum
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
-  double error_db = 0.0;         // dB, the one that was reached (sim/trace_to_error.h); 0: not looked at
+  double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each

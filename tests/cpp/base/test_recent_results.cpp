@@ -40,6 +40,13 @@ TEST(RecentResults, AreNotKeptWhereMakingThemFails) {
   EXPECT_EQ(recent.get(1, [] { return 4; }), 4);
 }
 
+// Whoever makes the same meanwhile adds nothing: here the second is made while the first is.
+TEST(RecentResults, AreKeptOnceHoweverManyMakeThem) {
+  RecentResults<int, int> recent(3);
+  EXPECT_EQ(recent.get(1, [&] { return recent.get(1, [] { return 4; }); }), 4);
+  EXPECT_EQ(recent.size(), 1u);
+}
+
 TEST(RecentResults, AreThoseOfTheirKeysOnAnyThread) {
   RecentResults<int, int> recent(3);
   std::vector<int> wrong(4);

@@ -1,25 +1,36 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <barrier>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "echopath/base/lazy.h"
-#include "echopath/base/parallel.h"
 
 namespace echopath {
 namespace {
 
 TEST(Lazy, IsMadeOnceHoweverManyThreadsAsk) {
+  constexpr int kNumThreads = 8;
   const Lazy<int> value;
   std::atomic<int> num_made = 0, num_right = 0;
-  parallel_for(1000, [&](int64_t) {
-    num_right += value.get([&] {
-      ++num_made;
-      return 7;
-    }) == 7;
-  });
+  std::barrier all_ask(kNumThreads);
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < kNumThreads; ++i) {
+    threads.emplace_back([&] {
+      all_ask.arrive_and_wait();
+      num_right += value.get([&] {
+        ++num_made;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return 7;
+      }) == 7;
+    });
+  }
+  threads.clear();
   EXPECT_EQ(num_made, 1);
-  EXPECT_EQ(num_right, 1000);
+  EXPECT_EQ(num_right, kNumThreads);
 }
 
 TEST(Lazy, IsMadeByTheNextWhereMakingItFailed) {

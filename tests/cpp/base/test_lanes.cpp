@@ -23,7 +23,7 @@ TEST(Lanes, AreChosenOneByOne) {
   for (int i = 0; i < 4; ++i) EXPECT_EQ(positive[i], values[i] > 0 ? values[i] : 0);
 }
 
-TEST(Simd, RunsWhatWasCompiledForTheSetOfTheProcess) {
+TEST(Simd, PicksTheSetOfTheProcess) {
   const InstructionSet set = with_instruction_set([](auto picked) { return decltype(picked)::value; });
   EXPECT_EQ(set, instruction_set());
 }

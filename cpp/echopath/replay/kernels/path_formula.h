@@ -8,7 +8,7 @@
 //   sqrt(D) = unfolded length TX -> point on flat chains, else sqrt(|T_1 x T_2| cos_i density) of the launch cell,
 //   r = unfolded length point -> RX, obliquity cos_i, F the footprint filter (cell_formula.h).
 // Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:
-//   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in / r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
+//   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in/r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
 //   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert), hence
 //   |a| = |weight| sqrt(Pt/pi) lambda/(4 pi) * start * inner * end
 //   start, end = sqrt(G |cos|)/r of the legs between the antennas and the first and the last diffuse hit,

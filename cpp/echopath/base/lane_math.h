@@ -75,27 +75,40 @@ ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
 #endif
 }
 
+// Every other number of a and b in a row, from the number kFirst (0 or 1) on.
+template <int kFirst>
+ECHOPATH_INLINE Vec every_other(Vec a, Vec b) {
+  constexpr int k = kFirst;
+#if ECHOPATH_LANES == 8
+  return __builtin_shufflevector(a, b, k, k + 2, k + 4, k + 6, k + 8, k + 10, k + 12, k + 14);
+#elif ECHOPATH_LANES == 4
+  return __builtin_shufflevector(a, b, k, k + 2, k + 4, k + 6);
+#else
+  return __builtin_shufflevector(a, b, k, k + 2);
+#endif
+}
+
 // Lane i of the result is the sum of all lanes of x[i].
 ECHOPATH_INLINE Vec sums(const Vec* x) {
 #if ECHOPATH_LANES == 8
   Vec pair[4], four[2];
   for (int i = 0; i < 4; ++i) {
-    pair[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{0, 8, 2, 10, 4, 12, 6, 14}) +
-              __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{1, 9, 3, 11, 5, 13, 7, 15});
+    pair[i] = __builtin_shufflevector(x[2 * i], x[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14) +
+              __builtin_shufflevector(x[2 * i], x[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
   }
   for (int i = 0; i < 2; ++i) {
-    four[i] = __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{0, 1, 8, 9, 4, 5, 12, 13}) +
-              __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{2, 3, 10, 11, 6, 7, 14, 15});
+    four[i] = __builtin_shufflevector(pair[2 * i], pair[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13) +
+              __builtin_shufflevector(pair[2 * i], pair[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
   }
-  return __builtin_shuffle(four[0], four[1], Mask{0, 1, 2, 3, 8, 9, 10, 11}) +
-         __builtin_shuffle(four[0], four[1], Mask{4, 5, 6, 7, 12, 13, 14, 15});
+  return __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(four[0], four[1], 4, 5, 6, 7, 12, 13, 14, 15);
 #elif ECHOPATH_LANES == 4
   Vec pair[2];
   for (int i = 0; i < 2; ++i) {
-    pair[i] = __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{0, 4, 2, 6}) +
-              __builtin_shuffle(x[2 * i], x[2 * i + 1], Mask{1, 5, 3, 7});
+    pair[i] = __builtin_shufflevector(x[2 * i], x[2 * i + 1], 0, 4, 2, 6) +
+              __builtin_shufflevector(x[2 * i], x[2 * i + 1], 1, 5, 3, 7);
   }
-  return __builtin_shuffle(pair[0], pair[1], Mask{0, 1, 4, 5}) + __builtin_shuffle(pair[0], pair[1], Mask{2, 3, 6, 7});
+  return __builtin_shufflevector(pair[0], pair[1], 0, 1, 4, 5) + __builtin_shufflevector(pair[0], pair[1], 2, 3, 6, 7);
 #else
   return Vec{x[0][0], x[1][0]} + Vec{x[0][1], x[1][1]};
 #endif
@@ -105,12 +118,12 @@ ECHOPATH_INLINE Vec sums(const Vec* x) {
 ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
 #if ECHOPATH_LANES == 8
   Vec pair =
-      __builtin_shuffle(a, b, Mask{0, 8, 2, 10, 4, 12, 6, 14}) + __builtin_shuffle(a, b, Mask{1, 9, 3, 11, 5, 13, 7, 15});
-  pair = pair + __builtin_shuffle(pair, Mask{4, 5, 6, 7, 0, 1, 2, 3});
-  return pair + __builtin_shuffle(pair, Mask{2, 3, 0, 1, 6, 7, 4, 5});
+      __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) + __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  pair = pair + __builtin_shufflevector(pair, pair, 4, 5, 6, 7, 0, 1, 2, 3);
+  return pair + __builtin_shufflevector(pair, pair, 2, 3, 0, 1, 6, 7, 4, 5);
 #elif ECHOPATH_LANES == 4
-  const Vec pair = __builtin_shuffle(a, b, Mask{0, 4, 2, 6}) + __builtin_shuffle(a, b, Mask{1, 5, 3, 7});
-  return pair + __builtin_shuffle(pair, Mask{2, 3, 0, 1});
+  const Vec pair = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  return pair + __builtin_shufflevector(pair, pair, 2, 3, 0, 1);
 #else
   return Vec{a[0], b[0]} + Vec{a[1], b[1]};
 #endif

@@ -57,10 +57,8 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
 
 void modulate(const CarrierModel& model, const EchoStates& states, int count, Carriers& out) {
   for (int p = 0; p < count; p += kLanes) {
-    Mask even;
-    for (int lane = 0; lane < kLanes; ++lane) even[lane] = 2 * lane;
     const Vec first = load(states.amplitude + 2 * p), second = load(states.amplitude + 2 * p + kLanes);
-    const Vec re = __builtin_shuffle(first, second, even), im = __builtin_shuffle(first, second, even + 1);
+    const Vec re = every_other<0>(first, second), im = every_other<1>(first, second);
     const States<1> here{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}};
     const Tones<1> tones = tones_of<PhasorError::kRounding>(model, here);
     store(out.frequency + p, tones.frequency.of[0]);

@@ -179,7 +179,9 @@ std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int ind
   return echoes;
 }
 
-int64_t Replayer::num_rows_by_chirp() const { return int64_t{radar_.waveform.num_chirps} * (settings_.per_sample ? 4 : 2); }
+int64_t Replayer::num_rows_by_chirp() const {
+  return int64_t{radar_.waveform.num_chirps} * rows_of_chirp(grids_.derivatives());
+}
 
 std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index,
                                            std::vector<UnfollowedPath>& unfollowed) const {

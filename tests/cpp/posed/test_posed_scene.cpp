@@ -106,15 +106,21 @@ TEST(PosedScene, TrianglesVerticesAndSingleMeshesAgree) {
   }
 }
 
-TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
+// A triangle whose second corner rises by 1 m/s, up to 2 s.
+Scene scene_of_flag(const Matrix4& placement, std::shared_ptr<const Motion> motion = nullptr) {
   Scene scene;
-  Node flag = node("flag", -1, shift(0, 0, 4) * turn_z(kPi / 2), std::make_shared<const LinearMotion>(Vec3(1, 0, 0)));
+  Node flag = node("flag", -1, placement, std::move(motion));
   flag.mesh = triangle(), flag.material = metal();
   std::vector<Vec3> raised = triangle()->vertices();
   raised[1].z() = 2.0;
   flag.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 2},
                                                             std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
   scene.add(flag);
+  return scene;
+}
+
+TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
+  const Scene scene = scene_of_flag(shift(0, 0, 4) * turn_z(kPi / 2), std::make_shared<const LinearMotion>(Vec3(1, 0, 0)));
   const Vec3 expected = (shift(1, 0, 0) * shift(0, 0, 4) * turn_z(kPi / 2) * Eigen::Vector4d(1, 0, 1, 1)).head<3>();
   EXPECT_LT((PosedScene(scene, 1.0).world_vertices(0)[1] - expected).norm(), kRounding);
   EXPECT_LT((world_vertices(scene, 0, 1.0)[1] - expected).norm(), kRounding);
@@ -123,14 +129,7 @@ TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
 
 // Patches hold the vertices that they name, in their order, and nothing of them may be taken for the whole mesh.
 TEST(PosedScene, DeformingMeshesArePosedInPatches) {
-  Scene scene;
-  Node flag = node("flag", -1, Matrix4::Identity(), nullptr);
-  flag.mesh = triangle(), flag.material = metal();
-  std::vector<Vec3> raised = triangle()->vertices();
-  raised[1].z() = 2.0;
-  flag.deformation = std::make_shared<const VertexSequence>(std::vector<double>{0, 2},
-                                                            std::vector<std::vector<Vec3>>{triangle()->vertices(), raised});
-  scene.add(flag);
+  const Scene scene = scene_of_flag(Matrix4::Identity());
   Radar radar;
   radar.transmitters = radar.receivers = {Antenna()};
   SurfacePatch patch;

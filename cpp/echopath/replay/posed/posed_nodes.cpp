@@ -49,6 +49,14 @@ void store_polarizations(const PosedScenes& scenes, bool of_receivers, PosedNode
 
 }  // namespace
 
+std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches,
+                                     const Vec3& origin, std::span<const double> times) {
+  auto scenes = std::make_shared<PosedScenes>();
+  scenes->reserve(times.size());
+  for (const double time : times) scenes->emplace_back(scene, radar, patches, origin, time);
+  return scenes;
+}
+
 PosedNodes::PosedNodes(std::shared_ptr<const PosedScenes> at_nodes) : scenes(std::move(at_nodes)) {
   store_meshes(*scenes, meshes);
   for (const bool of_receivers : {false, true}) {

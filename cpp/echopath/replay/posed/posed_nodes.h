@@ -2,6 +2,7 @@
 // Holds the scene and the radar at all nodes of a time grid: one PosedScene for each node, and the same values in rows for
 // loops along the nodes.
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
@@ -11,6 +12,10 @@
 namespace echopath {
 
 using PosedScenes = std::vector<PosedScene>;  // by node
+
+// Poses scene and radar at each of the times (s), as PosedScene does.
+std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches,
+                                     const Vec3& origin, std::span<const double> times);
 
 struct PosedNodes {
   PosedNodes() = default;

@@ -170,7 +170,7 @@ FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter) 
 
 TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   TimeSampling sampling;
-  sampling.order = derivatives == ChirpDerivatives::kThird ? 4 : 2;
+  sampling.order = rows_of_chirp(derivatives);
   sampling.num_rows = num_chirps * sampling.order;
   sampling.holds_derivatives = true;
   std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative,

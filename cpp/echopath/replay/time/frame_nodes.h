@@ -21,6 +21,8 @@ struct FrameNodes {
 
 // Says which derivatives inside a chirp are wanted: the slope, or the second and the third too (TimeSampling).
 enum class ChirpDerivatives { kFirst, kThird };
+// Returns how many rows a chirp has that holds its value and these derivatives.
+constexpr int rows_of_chirp(ChirpDerivatives derivatives) { return derivatives == ChirpDerivatives::kThird ? 4 : 2; }
 
 // Returns one node, at `time` (s).
 FrameNodes static_nodes(const Radar& radar, double time);

@@ -10,12 +10,9 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
 
 // Poses only this `transmitter`, or all where it is -1.
 std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times, int transmitter) const {
-  auto scenes = std::make_shared<PosedScenes>();
-  scenes->reserve(times.size());
-  for (const double time : times) {
-    PosedScene& posed = scenes->emplace_back(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, time);
-    if (transmitter >= 0) posed.transmitters = {posed.transmitters[static_cast<size_t>(transmitter)]};
-  }
+  std::shared_ptr<PosedScenes> scenes = pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
+  if (transmitter < 0) return scenes;
+  for (PosedScene& posed : *scenes) posed.transmitters = {posed.transmitters[static_cast<size_t>(transmitter)]};
   return scenes;
 }
 

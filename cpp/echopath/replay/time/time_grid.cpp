@@ -1,27 +1,15 @@
 #include "echopath/replay/time/time_grid.h"
 
 namespace echopath {
-namespace {
-
-template <class... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-
-}  // namespace
 
 FrameNodes nodes_of(const TimeGrid& grid, const Radar& radar, double start_time, ChirpDerivatives derivatives) {
-  return std::visit(Overloaded{
-                        [&](const StillGrid& still) { return static_nodes(radar, still.time); },
-                        [&](const PolynomialGrid& polynomial) {
-    return chebyshev_nodes(radar, start_time, polynomial.cuts, polynomial.order, derivatives);
-  },
-                        [&](const ChirpGrid& chirps) { return centre_nodes(radar, start_time, chirps.transmitter); },
-                        [&](const SampleGrid& samples) {
-    return exact_nodes(radar, start_time, samples.order, samples.transmitter, derivatives);
-  },
-                    },
-                    grid);
+  if (const auto* still = std::get_if<StillGrid>(&grid)) return static_nodes(radar, still->time);
+  if (const auto* chirps = std::get_if<ChirpGrid>(&grid)) return centre_nodes(radar, start_time, chirps->transmitter);
+  if (const auto* samples = std::get_if<SampleGrid>(&grid)) {
+    return exact_nodes(radar, start_time, samples->order, samples->transmitter, derivatives);
+  }
+  const auto& polynomial = std::get<PolynomialGrid>(grid);
+  return chebyshev_nodes(radar, start_time, polynomial.cuts, polynomial.order, derivatives);
 }
 
 int transmitter_of(const TimeGrid& grid) {

@@ -55,9 +55,9 @@ struct FrameCheck::View {
   PosedScene rim;
   FrameProbe probe;
 
-  View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> posed, double time)
-      : geometry(std::move(posed)), pose(*check.paths_.scene, time),
-        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.patches(), check.origin_, time),
+  View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> geometry_there, PosedScene whole)
+      : geometry(std::move(geometry_there)), pose(std::move(whole)),
+        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.patches(), check.origin_, pose.time()),
         probe(check.preparer_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
@@ -78,7 +78,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
   const PosedScene pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
   traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
-  trace_view_ = std::make_unique<const View>(*this, traced_, paths.frame.trace_time);
+  trace_view_ = std::make_unique<const View>(*this, traced_, pose);
   traced_nodes_ = posed_nodes({&paths.frame.trace_time, 1});
   find_sweeps();
 }
@@ -130,30 +130,27 @@ int FrameCheck::times_of(const LocalPath& path) const {
   return needed;
 }
 
-std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, double time, Job* job) {
+std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, const PosedScene& pose, Job* job) {
   const Scene& scene = *paths_.scene;
   if (index == geometries_.size()) {
-    geometries_.push_back(std::make_shared<EmbreeScene>(scene, PosedScene(scene, time), origin_, job));
+    geometries_.push_back(std::make_shared<EmbreeScene>(scene, pose, origin_, job));
   } else {
-    geometries_[index]->update(scene, PosedScene(scene, time), origin_, job);
+    geometries_[index]->update(scene, pose, origin_, job);
   }
   return geometries_[index];
 }
 
 PosedNodes FrameCheck::posed_nodes(std::span<const double> times) const {
-  auto scenes = std::make_shared<PosedScenes>();
-  for (const double time : times) {
-    scenes->emplace_back(*paths_.scene, first_radar_, preparer_.patches(), paths_.frame.transmitter, time);
-  }
-  return PosedNodes(std::move(scenes));
+  return PosedNodes(pose_at(*paths_.scene, first_radar_, preparer_.patches(), paths_.frame.transmitter, times));
 }
 
 void FrameCheck::pose(size_t first, size_t count, Job* job) {
   views_.clear();
   first_posed_ = first;
   for (size_t i = 0; i < count && first + i < times_.times.size(); ++i) {
-    const double time = times_.times[first + i];
-    views_.push_back(std::make_unique<const View>(*this, is_geometry_still_ ? traced_ : posed_geometry(i, time, job), time));
+    PosedScene pose(*paths_.scene, times_.times[first + i]);
+    std::shared_ptr<const EmbreeScene> geometry = is_geometry_still_ ? traced_ : posed_geometry(i, pose, job);
+    views_.push_back(std::make_unique<const View>(*this, std::move(geometry), std::move(pose)));
   }
   posed_nodes_ = {};
   if (!views_.empty()) posed_nodes_ = posed_nodes({times_.times.data() + first, views_.size()});

@@ -76,7 +76,7 @@ class FrameCheck {
   std::vector<Echo> echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const;
   void find_sweeps();
   // Returns the geometry at one of the posed times, updated from the time that stood in its place.
-  std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, double time, Job* job);
+  std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, const PosedScene& pose, Job* job);
 
   const Paths& paths_;
   CheckTimes times_;

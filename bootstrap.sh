@@ -109,12 +109,22 @@ wants_viewer() {
 
 has_viewer_tests() { compgen -G 'tests/viewer/test_*.py' >/dev/null; }
 
+# The viewer's tests wait for windows, so that they run alone; all others on all processors, files as a whole, since the tests
+# of a file share what is slow to make. No test that OPTIONS select is no fault.
 run_pytest() {
-  if has_viewer_tests; then
-    QT_API=pyside6 xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/python tests/viewer "$@"
-  else
-    "$python" -m pytest tests/python "$@"
-  fi
+  local name=$1 status=0
+  shift
+  "$@" 2>&1 | tee "$build_dir/pytest_$name.log" || status=$?
+  [ "$status" -ne 5 ] || status=0
+  return "$status"
+}
+
+run_python_tests() {
+  local status=0
+  run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile tests/python "$@" || status=$?
+  has_viewer_tests || return "$status"
+  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@" || status=$?
+  return "$status"
 }
 
 run_ctest() {
@@ -131,6 +141,7 @@ run_sanitized() {
 }
 
 closing_line() { grep 'tests passed' "$1/ctest.log"; }
+pytest_line() { tail -n 1 "$build_dir/pytest_$1.log" | sed 's/^=* *//; s/ *=*$//'; }
 
 lint() {
   local status=0
@@ -156,15 +167,16 @@ run_tests() {
   say "building the C++ tests"
   cmake --build "$build_dir" --parallel "$(nproc)"
   say "C++ tests"
-  run_ctest "$build_dir" || cpp_status=$?
+  run_ctest "$build_dir" --parallel "$(nproc)" || cpp_status=$?
   say "C++ tests under the address and undefined-behaviour sanitizers"
   run_sanitized || sanitized_status=$?
   say "Python tests"
-  run_pytest "$@" 2>&1 | tee "$build_dir/pytest.log" || python_status=$?
+  run_python_tests "$@" || python_status=$?
   say "results"
   printf 'ctest, sanitized: %s\n' "$(closing_line "$sanitized_dir" || echo "ended with $sanitized_status")"
   printf 'ctest:  %s\n' "$(closing_line "$build_dir" || echo "ended with $cpp_status")"
-  printf 'pytest: %s\n' "$(tail -n 1 "$build_dir/pytest.log" | sed 's/^=* *//; s/ *=*$//')"
+  printf 'pytest: %s\n' "$(pytest_line python)"
+  ! has_viewer_tests || printf 'pytest, viewer: %s\n' "$(pytest_line viewer)"
   [ "$lint_status" -eq 0 ] || fail "ruff or clang-format found what is to be mended, see above under linting"
   [ "$cpp_status" -eq 0 ] && [ "$sanitized_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
 }

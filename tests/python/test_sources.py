@@ -35,3 +35,11 @@ def test_comments_are_as_narrow_as_the_code():
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
             if len(line) > MOST_COLUMNS and re.match(r"\s*// ", line)]
     assert not wide
+
+
+def test_each_test_file_has_a_namespace_of_its_own():
+    """Files of a module are compiled as one: what they name for themselves must not meet."""
+    tests = [path for path in SOURCES if path.parent.parent == ROOT / "tests" / "cpp" and path.suffix == ".cpp"]
+    wrong = [path.relative_to(ROOT).as_posix() for path in tests
+             if f"namespace echopath::{path.stem} {{\n" not in path.read_text(encoding="utf-8")]
+    assert len(tests) > 90 and not wrong

@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kOnePlace = 1e-9;  // m
+constexpr double kNoExtent = 1e-9;  // m: an axis along which no antenna is farther from another
 constexpr double kTie = 1e-9;       // of the extents: nearer than this, the antenna of lower index counts
 
 // Returns positions along their principal axes, each scaled to -1 to 1; axes without extent are 0.
@@ -22,7 +22,7 @@ std::vector<Vec3> normalised(const std::vector<Antenna>& antennas) {
   std::vector<Vec3> positions;
   for (const Antenna& antenna : antennas) {
     Vec3 at = axes.transpose() * (antenna.position - mean) - box.center();
-    for (int axis = 0; axis < 3; ++axis) at[axis] = box.sizes()[axis] > kOnePlace ? 2.0 * at[axis] / box.sizes()[axis] : 0.0;
+    for (int axis = 0; axis < 3; ++axis) at[axis] = box.sizes()[axis] > kNoExtent ? 2.0 * at[axis] / box.sizes()[axis] : 0.0;
     positions.push_back(at);
   }
   return positions;

@@ -4,7 +4,7 @@
 
 #include "echopath/base/constants.h"
 
-namespace echopath {
+namespace echopath::test_errors {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -54,4 +54,4 @@ TEST(Constants, VacuumImpedanceFollowsFromThem) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_errors

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace echopath {
+namespace echopath::test_kept_memory {
 namespace {
 
 // Memory of so many bytes, in name only. Kinds are types of their own.
@@ -155,4 +155,4 @@ TEST(KeptMemory, BelongsToOneThreadAtATime) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_kept_memory

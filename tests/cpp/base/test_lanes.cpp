@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace echopath {
+namespace echopath::test_lanes {
 namespace {
 
 TEST(Lanes, AreLoadedAndStoredFromAnywhere) {
@@ -40,4 +40,4 @@ TEST(Simd, LoopsGetTheirArguments) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_lanes

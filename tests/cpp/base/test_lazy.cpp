@@ -9,7 +9,7 @@
 
 #include "echopath/base/lazy.h"
 
-namespace echopath {
+namespace echopath::test_lazy {
 namespace {
 
 TEST(Lazy, IsMadeOnceHoweverManyThreadsAsk) {
@@ -42,4 +42,4 @@ TEST(Lazy, IsMadeByTheNextWhereMakingItFailed) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_lazy

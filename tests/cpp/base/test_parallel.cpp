@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace echopath {
+namespace echopath::test_parallel {
 namespace {
 
 constexpr int64_t kCount = 10000;
@@ -193,4 +193,4 @@ TEST(NumThreads, RefusesNegativeNumbers) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_parallel

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace echopath {
+namespace echopath::test_phasor {
 namespace {
 
 constexpr double kTolerance = 5e-15;  // 5e-16 of the polynomial, and roundings of the rest of a turn, each up to 2^-53 turns
@@ -34,4 +34,4 @@ TEST(PhasorOfProduct, IsThatOfLongDoubleForUpToATrillionTurns) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_phasor

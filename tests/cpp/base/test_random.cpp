@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace echopath {
+namespace echopath::test_random {
 namespace {
 
 using Counter = std::array<uint32_t, 4>;
@@ -65,4 +65,4 @@ TEST(Uniform, EverySeedStreamIndexAndDimensionGivesOtherNumbers) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_random

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace echopath {
+namespace echopath::test_recent_results {
 namespace {
 
 struct Squares {
@@ -64,4 +64,4 @@ TEST(RecentResults, AreThoseOfTheirKeysOnAnyThread) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_recent_results

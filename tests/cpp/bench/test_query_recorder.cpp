@@ -10,7 +10,7 @@
 #include "echopath/trace/tracer.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_query_recorder {
 namespace {
 
 using namespace testing;
@@ -112,4 +112,4 @@ TEST(QueryRecorder, WritesNothingOnceItHasEnded) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_query_recorder

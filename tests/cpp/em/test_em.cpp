@@ -6,7 +6,7 @@
 #include "echopath/em/fresnel.h"
 #include "echopath/em/surface_response.h"
 
-namespace echopath {
+namespace echopath::test_em {
 namespace {
 
 using Complex = std::complex<double>;
@@ -141,4 +141,4 @@ TEST(Material, BadValuesAreNamed) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_em

@@ -7,7 +7,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/em/footprint.h"
 
-namespace echopath {
+namespace echopath::test_footprint {
 namespace {
 
 constexpr double kSum = 1e-12;        // of a sum of 1.6e5 terms, which is exact to rounding
@@ -190,4 +190,4 @@ TEST(Footprint, NothingIsBetweenRaysThatFollowThePhase) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_footprint

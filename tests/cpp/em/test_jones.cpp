@@ -8,7 +8,7 @@
 #include "echopath/em/fresnel.h"
 #include "echopath/em/jones.h"
 
-namespace echopath {
+namespace echopath::test_jones {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -183,4 +183,4 @@ TEST(Scattering, MeanPowersAreThoseOfSurfacesWithoutAxis) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_jones

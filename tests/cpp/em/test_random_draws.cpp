@@ -10,7 +10,7 @@
 #include "echopath/em/jones.h"
 #include "echopath/em/surface_response.h"
 
-namespace echopath {
+namespace echopath::test_random_draws {
 namespace {
 
 constexpr uint64_t kDraws = 10'000'000;
@@ -49,4 +49,4 @@ TEST(RandomDraws, FootprintsAreFiniteAndNoGain) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_random_draws

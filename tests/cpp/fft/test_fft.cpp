@@ -7,7 +7,7 @@
 
 #include "echopath/fft/fft.h"
 
-namespace echopath {
+namespace echopath::test_fft {
 namespace {
 
 constexpr double kRounding = 1e-13;  // relative to the sum of magnitudes, eps log2(size) with room
@@ -75,4 +75,4 @@ TEST(Fft, FastSizesHaveSmallFactors) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_fft

@@ -12,7 +12,7 @@
 #include "echopath/spectrum/range_doppler.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_chain {
 namespace {
 
 using namespace testing;
@@ -157,4 +157,4 @@ TEST(Chain, CancellingStopsSynthesis) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_chain

@@ -8,7 +8,7 @@
 #include "echopath/sim/rays/ray_allocation.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_glints {
 namespace {
 
 using namespace testing;
@@ -111,4 +111,4 @@ TEST(GuideRays, AddUpAndDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_glints

@@ -10,7 +10,7 @@
 #include "echopath/label/expressions/automaton.h"
 #include "echopath/label/expressions/expression.h"
 
-namespace echopath {
+namespace echopath::test_automaton {
 namespace {
 
 using testing::HandMadeHit;
@@ -280,4 +280,4 @@ TEST(Automaton, NumberOfThreadsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_automaton

@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace echopath {
+namespace echopath::test_cell_errors {
 namespace {
 
 using Complex = std::complex<double>;
@@ -173,4 +173,4 @@ TEST(CellErrors, OneBatchTellsNothing) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_cell_errors

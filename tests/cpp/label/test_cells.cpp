@@ -8,7 +8,7 @@
 
 #include "echopath/base/parallel.h"
 
-namespace echopath {
+namespace echopath::test_cells {
 namespace {
 
 constexpr double kRounding = 1e-12;  // relative, sums of a few numbers
@@ -135,4 +135,4 @@ TEST(Cells, TheNumberOfThreadsChangesNoBit) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_cells

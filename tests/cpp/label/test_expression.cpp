@@ -5,7 +5,7 @@
 
 #include "echopath/label/expressions/expression.h"
 
-namespace echopath {
+namespace echopath::test_expression {
 namespace {
 
 std::string error_of(const std::string& text) {
@@ -116,4 +116,4 @@ TEST(PathExpressionSyntax, DeepNestingIsAnErrorAndNotACrash) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_expression

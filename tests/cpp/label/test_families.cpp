@@ -11,7 +11,7 @@
 #include "echopath/label/grouping.h"
 #include "echopath/label/objects/families.h"
 
-namespace echopath {
+namespace echopath::test_families {
 namespace {
 
 using namespace testing;
@@ -149,4 +149,4 @@ TEST(Grouping, ByAllIsTheCombinationsThatOccur) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_families

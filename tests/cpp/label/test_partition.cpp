@@ -8,7 +8,7 @@
 #include "cpp/label/hand_made_paths.h"
 #include "echopath/label/partition.h"
 
-namespace echopath {
+namespace echopath::test_partition {
 namespace {
 
 using namespace testing;
@@ -165,4 +165,4 @@ TEST(CombinedPartition, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_partition

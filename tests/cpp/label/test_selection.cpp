@@ -7,7 +7,7 @@
 #include "cpp/label/hand_made_paths.h"
 #include "echopath/label/expressions/selection.h"
 
-namespace echopath {
+namespace echopath::test_selection {
 namespace {
 
 using namespace testing;
@@ -148,4 +148,4 @@ TEST(Selection, BadInputNamesTheArgument) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_selection

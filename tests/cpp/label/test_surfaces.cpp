@@ -8,7 +8,7 @@
 #include "echopath/label/objects/surfaces.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_surfaces {
 namespace {
 
 using namespace testing;
@@ -91,4 +91,4 @@ TEST(SurfaceMap, BadObjectsAreErrors) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_surfaces

@@ -10,7 +10,7 @@
 #include "echopath/label/objects/visibility.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_visibility {
 namespace {
 
 using namespace testing;
@@ -229,4 +229,4 @@ TEST(Visibility, BadSettingsAreErrors) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_visibility

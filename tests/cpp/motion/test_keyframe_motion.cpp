@@ -7,7 +7,7 @@
 #include "echopath/motion/motion.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_keyframe_motion {
 namespace {
 
 using test::expect_error;
@@ -180,4 +180,4 @@ TEST(KeyframeMotion, RefusesBadInputByName) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_keyframe_motion

@@ -6,7 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/motion/motion.h"
 
-namespace echopath {
+namespace echopath::test_linear_motion {
 namespace {
 
 constexpr double kRounding = 1e-14;  // a few units in the last place of numbers near 1
@@ -45,4 +45,4 @@ TEST(LinearMotion, RefusesWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_linear_motion

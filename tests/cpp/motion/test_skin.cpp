@@ -7,7 +7,7 @@
 #include "echopath/motion/skin.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_skin {
 namespace {
 
 using test::expect_error;
@@ -148,4 +148,4 @@ TEST(Skin, RefusesBadInputByName) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_skin

@@ -8,7 +8,7 @@
 #include "echopath/motion/deformation.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_vertex_sequence {
 namespace {
 
 using test::expect_error;
@@ -112,4 +112,4 @@ TEST(VertexSequence, RefusesBadInputByName) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_vertex_sequence

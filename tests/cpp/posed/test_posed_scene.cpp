@@ -5,7 +5,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/posed/posed_scene.h"
 
-namespace echopath {
+namespace echopath::test_posed_scene {
 namespace {
 
 constexpr double kRounding = 1e-13;  // of products of a few transforms with entries of order 10
@@ -187,4 +187,4 @@ TEST(PosedScene, AntennasMoveAndTurnWithTheRadar) {
 TEST(PosedScene, AnEmptySceneHasOne) { EXPECT_EQ(PosedScene(Scene(), 3.0).time(), 3.0); }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_posed_scene

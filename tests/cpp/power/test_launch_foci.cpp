@@ -10,7 +10,7 @@
 #include "echopath/trace/launch/launch_focus.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_launch_foci {
 namespace {
 
 using namespace testing;
@@ -211,4 +211,4 @@ TEST(LaunchFoci, OfNoStratumOrOfNoSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_launch_foci

@@ -9,7 +9,7 @@
 #include "support/sanitized.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_received_power {
 namespace {
 
 using namespace testing;
@@ -304,4 +304,4 @@ TEST(PowerInterval, KindsThatCancelAreKnownAsWellAsOneByOne) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_received_power

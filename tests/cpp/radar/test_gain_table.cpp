@@ -9,7 +9,7 @@
 #include "echopath/radar/radar.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_gain_table {
 namespace {
 
 using test::expect_error;
@@ -161,4 +161,4 @@ TEST(AntennaPattern, KnowsItsEfficiency) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_gain_table

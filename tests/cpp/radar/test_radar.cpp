@@ -6,7 +6,7 @@
 
 #include "echopath/radar/radar.h"
 
-namespace echopath {
+namespace echopath::test_radar {
 namespace {
 
 constexpr double kRounding = 1e-12;      // relative, a handful of double operations
@@ -154,4 +154,4 @@ TEST(Radar, MotionCarriesTheRadar) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_radar

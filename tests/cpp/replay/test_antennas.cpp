@@ -5,7 +5,7 @@
 
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_antennas {
 namespace {
 
 using namespace testing;
@@ -140,4 +140,4 @@ TEST(AntennaTable, RaysFillTheHalfSpaceWhereThereIsNoGainBehind) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_antennas

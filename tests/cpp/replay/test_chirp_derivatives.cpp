@@ -6,7 +6,7 @@
 #include "echopath/replay/time/chirp_derivatives.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_chirp_derivatives {
 namespace {
 
 using namespace testing;
@@ -59,4 +59,4 @@ TEST(ChirpDerivatives, HaveTheSameBitsAtAnyPlaceAmongAnyNumberOfEchoes) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_chirp_derivatives

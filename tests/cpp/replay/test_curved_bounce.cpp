@@ -7,7 +7,7 @@
 #include "echopath/trace/record/record_writer.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_curved_bounce {
 namespace {
 
 using namespace testing;
@@ -117,4 +117,4 @@ TEST(CurvedBounce, SphereThenPlateHasItsLevel) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_curved_bounce

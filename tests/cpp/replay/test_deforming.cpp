@@ -7,7 +7,7 @@
 #include "echopath/motion/skin.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_deforming {
 namespace {
 
 using namespace testing;
@@ -240,4 +240,4 @@ TEST(Deforming, RigidMotionKeepsTheWeightOfEveryHit) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_deforming

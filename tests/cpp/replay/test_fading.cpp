@@ -9,7 +9,7 @@
 #include "echopath/signal/echoes/echo_states.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_fading {
 namespace {
 
 using namespace testing;
@@ -156,4 +156,4 @@ TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_fading

@@ -6,7 +6,7 @@
 #include "echopath/replay/time/frame_nodes.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_frame_nodes {
 namespace {
 
 using namespace testing;
@@ -132,4 +132,4 @@ TEST(StaticNodes, OneNodeServesAllChirps) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_frame_nodes

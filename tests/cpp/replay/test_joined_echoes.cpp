@@ -6,7 +6,7 @@
 #include "echopath/replay/posed/hit_patches.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_joined_echoes {
 namespace {
 
 using namespace testing;
@@ -169,4 +169,4 @@ TEST(JoinedEchoes, OfTheChirpsAreThoseOfTheirPaths) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_joined_echoes

@@ -5,7 +5,7 @@
 #include "echopath/signal/echoes/echo_states.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_knots {
 namespace {
 
 using namespace testing;
@@ -146,4 +146,4 @@ TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_knots

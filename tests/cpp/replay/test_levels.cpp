@@ -3,7 +3,7 @@
 
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_levels {
 namespace {
 
 using namespace testing;
@@ -213,4 +213,4 @@ TEST(Furnace, DiffusePowerIsConserved) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_levels

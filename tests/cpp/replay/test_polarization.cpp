@@ -3,7 +3,7 @@
 
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_polarization {
 namespace {
 
 using namespace testing;
@@ -124,4 +124,4 @@ TEST(Polarization, ScalarTraceKeepsNoMatrix) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_polarization

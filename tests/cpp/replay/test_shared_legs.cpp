@@ -9,7 +9,7 @@
 #include "support/path_by_path.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_shared_legs {
 namespace {
 
 using namespace testing;
@@ -318,4 +318,4 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_shared_legs

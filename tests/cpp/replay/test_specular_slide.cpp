@@ -5,7 +5,7 @@
 
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_specular_slide {
 namespace {
 
 using namespace testing;
@@ -193,4 +193,4 @@ TEST(SurfacePoint, LiesOnItsSphere) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_specular_slide

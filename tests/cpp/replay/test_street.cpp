@@ -7,7 +7,7 @@
 
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_street {
 namespace {
 
 using namespace testing;
@@ -145,4 +145,4 @@ TEST_P(Street, FamiliesOverTwoMirrorsALegHaveTheirLevels) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_street

@@ -6,7 +6,7 @@
 #include "echopath/replay/time/time_grids.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_time_grids {
 namespace {
 
 using namespace testing;
@@ -89,4 +89,4 @@ TEST(TimeGrids, NoPolynomialCostsMoreThanEveryChirpAndExactReplayHasNone) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_time_grids

@@ -10,7 +10,7 @@
 #include "echopath/trace/sbr/sbr.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_weight_rules {
 namespace {
 
 using namespace testing;
@@ -138,4 +138,4 @@ TEST(WeightRules, HalfDiffuseDihedralLosesSixDecibelsForAnyBranching) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_weight_rules

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace echopath {
+namespace echopath::test_adjacency {
 namespace {
 
 TEST(Adjacency, TrianglesOfASquareMeetAtItsDiagonalAlone) {
@@ -38,4 +38,4 @@ TEST(Adjacency, EdgeOfThreeTrianglesLeadsNowhere) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_adjacency

@@ -11,7 +11,7 @@
 #include "echopath/scene/overlap/coplanar.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_coplanar {
 namespace {
 
 using test::expect_error;
@@ -282,4 +282,4 @@ TEST(Coplanar, TreesHearCancellation) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_coplanar

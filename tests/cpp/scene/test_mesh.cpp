@@ -9,7 +9,7 @@
 #include "echopath/scene/mesh/mesh.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_mesh {
 namespace {
 
 using test::expect_error;
@@ -195,4 +195,4 @@ TEST(Mesh, RefusesBadInputByName) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_mesh

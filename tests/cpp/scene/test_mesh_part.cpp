@@ -9,7 +9,7 @@
 #include "echopath/scene/scene.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_mesh_part {
 namespace {
 
 using test::expect_error;
@@ -156,4 +156,4 @@ TEST(PartsByJoint, EveryTriangleIsInOnePart) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_mesh_part

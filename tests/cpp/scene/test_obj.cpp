@@ -8,7 +8,7 @@
 #include "support/expect_error.h"
 #include "temporary_file.h"
 
-namespace echopath {
+namespace echopath::test_obj {
 namespace {
 
 using test::expect_error;
@@ -137,4 +137,4 @@ TEST(Readers, RefuseWhatIsNoMeshFile) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_obj

@@ -10,7 +10,7 @@
 #include "support/expect_error.h"
 #include "temporary_file.h"
 
-namespace echopath {
+namespace echopath::test_ply {
 namespace {
 
 using test::expect_error;
@@ -164,4 +164,4 @@ TEST(Ply, RefusesContentThatDoesNotFitItsHeader) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_ply

@@ -6,7 +6,7 @@
 #include "echopath/scene/mesh/reflection_point.h"
 #include "echopath/scene/mesh/smooth.h"
 
-namespace echopath {
+namespace echopath::test_reflection_point {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -74,4 +74,4 @@ TEST(ReflectionPoint, OfACreaseIsThatOfItsFacet) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_reflection_point

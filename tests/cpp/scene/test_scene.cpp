@@ -7,7 +7,7 @@
 #include "echopath/scene/scene.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_scene {
 namespace {
 
 using test::expect_error;
@@ -177,4 +177,4 @@ TEST(Scene, JoinsBreakpointsAndNamesTheMotionThatIsTooShort) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_scene

@@ -5,7 +5,7 @@
 
 #include "echopath/scene/mesh/smooth.h"
 
-namespace echopath {
+namespace echopath::test_smooth {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -72,4 +72,4 @@ TEST(SmoothPoint, CreaseGuardRefusesABox) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_smooth

@@ -3,7 +3,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/signal/kernels/carrier.h"
 
-namespace echopath {
+namespace echopath::test_carrier {
 namespace {
 
 // Of a phase of 1e5 turns: the roundings of its fraction alone.
@@ -34,4 +34,4 @@ TEST(Carrier, StartPhaseIsThatOfExtendedPrecision) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_carrier

@@ -9,7 +9,7 @@
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/kernels/nufft_kernel.h"
 
-namespace echopath {
+namespace echopath::test_kernels {
 namespace {
 
 constexpr double kRounding = 1e-13;  // of sums of a thousand numbers in another order
@@ -78,4 +78,4 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_kernels

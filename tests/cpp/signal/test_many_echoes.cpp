@@ -4,7 +4,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/base/parallel.h"
 
-namespace echopath {
+namespace echopath::test_many_echoes {
 namespace {
 
 using testing::Complex;
@@ -256,4 +256,4 @@ TEST(ManyEchoes, SameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_many_echoes

@@ -3,7 +3,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/signal/methods/method.h"
 
-namespace echopath {
+namespace echopath::test_methods {
 namespace {
 
 using testing::Complex;
@@ -172,4 +172,4 @@ TEST(Methods, WeakToneBesideAStrongOneIsKept) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_methods

@@ -6,7 +6,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/signal/noise.h"
 
-namespace echopath {
+namespace echopath::test_noise {
 namespace {
 
 using testing::Complex;
@@ -98,4 +98,4 @@ TEST(Noise, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_noise

@@ -5,7 +5,7 @@
 
 #include "cpp/signal/slow_sum.h"
 
-namespace echopath {
+namespace echopath::test_per_sample {
 namespace {
 
 using testing::Complex;
@@ -84,4 +84,4 @@ TEST(PerSample, EchoesAtRestKeepTheMethodAndFarOnesAreFiltered) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_per_sample

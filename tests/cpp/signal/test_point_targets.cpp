@@ -5,7 +5,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/signal/noise.h"
 
-namespace echopath {
+namespace echopath::test_point_targets {
 namespace {
 
 using testing::Complex;
@@ -267,4 +267,4 @@ TEST(Sampling, OneAndTwoTimes) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_point_targets

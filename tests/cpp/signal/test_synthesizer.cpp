@@ -6,7 +6,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "echopath/base/parallel.h"
 
-namespace echopath {
+namespace echopath::test_synthesizer {
 namespace {
 
 using testing::Complex;
@@ -288,4 +288,4 @@ TEST(Synthesizer, JobCountsEchoesAndCancels) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_synthesizer

@@ -8,7 +8,7 @@
 #include "echopath/spectrum/array/virtual_array.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_angle_fft {
 namespace {
 
 using testing::Complex;
@@ -200,4 +200,4 @@ TEST(AngleFft, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_angle_fft

@@ -7,7 +7,7 @@
 #include "echopath/spectrum/angle/beamform.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_beamform {
 namespace {
 
 using testing::Complex;
@@ -308,4 +308,4 @@ TEST(Beamform, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_beamform

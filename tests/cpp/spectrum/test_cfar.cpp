@@ -14,7 +14,7 @@
 #include "support/expect_error.h"
 #include "support/sanitized.h"
 
-namespace echopath {
+namespace echopath::test_cfar {
 namespace {
 
 using testing::Complex;
@@ -376,4 +376,4 @@ TEST(Cfar, BadInputNamesTheArgument) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_cfar

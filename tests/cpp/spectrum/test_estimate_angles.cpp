@@ -5,7 +5,7 @@
 #include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_estimate_angles {
 namespace {
 
 using testing::Complex;
@@ -131,4 +131,4 @@ TEST(EstimateAngles, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_estimate_angles

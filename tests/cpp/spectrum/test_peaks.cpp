@@ -10,7 +10,7 @@
 #include "echopath/spectrum/cfar/peaks.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_peaks {
 namespace {
 
 using testing::Complex;
@@ -160,4 +160,4 @@ TEST(Peaks, NothingFoundGivesNoPeaksAndAnotherMapIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_peaks

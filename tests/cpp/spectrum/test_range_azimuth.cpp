@@ -7,7 +7,7 @@
 #include "echopath/spectrum/angle/range_azimuth.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_range_azimuth {
 namespace {
 
 using testing::Complex;
@@ -153,4 +153,4 @@ TEST(RangeAzimuth, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_range_azimuth

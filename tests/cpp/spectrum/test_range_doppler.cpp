@@ -6,7 +6,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/spectrum/range_doppler.h"
 
-namespace echopath {
+namespace echopath::test_range_doppler {
 namespace {
 
 using Complex = std::complex<double>;
@@ -158,4 +158,4 @@ TEST(RangeDoppler, RefusesMapsThatNoTransformCanIndex) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_range_doppler

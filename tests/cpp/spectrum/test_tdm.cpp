@@ -3,7 +3,7 @@
 #include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_tdm {
 namespace {
 
 using testing::Complex;
@@ -55,4 +55,4 @@ TEST(Tdm, BadInputIsAnError) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_tdm

@@ -5,7 +5,7 @@
 #include "echopath/spectrum/array/virtual_array.h"
 #include "plane_waves.h"
 
-namespace echopath {
+namespace echopath::test_virtual_array {
 namespace {
 
 using testing::line;
@@ -158,4 +158,4 @@ TEST(DefaultAngles, CoverWhatTheArrayTellsApart) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_virtual_array

@@ -6,7 +6,7 @@
 
 #include "echopath/spectrum/window.h"
 
-namespace echopath {
+namespace echopath::test_window {
 namespace {
 
 constexpr double kPrinted = 1e-4;    // of figures printed with four decimals
@@ -90,4 +90,4 @@ TEST(Window, BadValuesAreErrorsThatNameTheNearest) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_window

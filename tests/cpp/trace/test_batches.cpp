@@ -9,7 +9,7 @@
 #include "echopath/trace/launch/launch_lattice.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_batches {
 namespace {
 
 using namespace testing;
@@ -115,4 +115,4 @@ TEST(Batches, BadNumbersAreNamed) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_batches

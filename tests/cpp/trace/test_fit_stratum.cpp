@@ -7,7 +7,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/trace/launch/fit_stratum.h"
 
-namespace echopath {
+namespace echopath::test_fit_stratum {
 namespace {
 
 std::vector<Vec3> box(const Vec3& low, const Vec3& high) {
@@ -106,4 +106,4 @@ TEST(FitStratum, SamplersForDiscsGetCones) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_fit_stratum

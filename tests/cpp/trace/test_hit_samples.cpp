@@ -8,7 +8,7 @@
 #include "echopath/trace/scatter/hit_samples.h"
 #include "echopath/trace/scatter/scatter_points.h"
 
-namespace echopath {
+namespace echopath::test_hit_samples {
 namespace {
 
 constexpr double kRounding = 1e-15;  // of instruction sets with and without fused products
@@ -99,4 +99,4 @@ TEST(HitSamples, LobeIsThatOfLambert) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_hit_samples

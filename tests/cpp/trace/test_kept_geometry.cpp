@@ -13,7 +13,7 @@
 #include "support/sanitized.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_kept_geometry {
 namespace {
 
 using namespace testing;
@@ -254,4 +254,4 @@ TEST(KeptGeometry, AThousandMovesTakeNoMemory) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_kept_geometry

@@ -4,7 +4,7 @@
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
 
-namespace echopath {
+namespace echopath::test_launch_directions {
 namespace {
 
 constexpr double kRounding = 1e-15;  // of unit vectors: a root and some products
@@ -80,4 +80,4 @@ TEST(LaunchPlan, RaysInARowAreThoseOneByOne) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_launch_directions

@@ -6,7 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/trace/launch/launch_lattice.h"
 
-namespace echopath {
+namespace echopath::test_launch_lattice {
 namespace {
 
 constexpr double kRim = 1e-12;     // points at the rim, but for rounding
@@ -66,4 +66,4 @@ TEST(LaunchLattice, FillsRectanglesEvenly) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_launch_lattice

@@ -5,7 +5,7 @@
 
 #include "echopath/trace/scatter/lobe_probabilities.h"
 
-namespace echopath {
+namespace echopath::test_lobe_probabilities {
 namespace {
 
 constexpr double kFrequency = 77e9, kCosine = 0.8;
@@ -62,4 +62,4 @@ TEST(SurvivalProbability, LetsNoLobeGainWeight) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_lobe_probabilities

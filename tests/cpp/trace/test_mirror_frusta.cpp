@@ -7,7 +7,7 @@
 #include "echopath/base/random.h"
 #include "echopath/trace/mirrors/mirror_frusta.h"
 
-namespace echopath {
+namespace echopath::test_mirror_frusta {
 namespace {
 
 constexpr int kMaxMirrors = 3;
@@ -125,4 +125,4 @@ TEST(MirrorFrusta, AnAntennaOnAPlaneHasNoImageInIt) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_mirror_frusta

@@ -12,7 +12,7 @@
 #include "support/scenes.h"
 #include "support/slow_images.h"
 
-namespace echopath {
+namespace echopath::test_mirror_paths {
 namespace {
 
 using testing::MirrorRectangle;
@@ -264,4 +264,4 @@ TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_mirror_paths

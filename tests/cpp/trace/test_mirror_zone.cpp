@@ -8,7 +8,7 @@
 #include "echopath/trace/mirrors/mirror_zone.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_mirror_zone {
 namespace {
 
 constexpr double kGap = 2e-4;          // m
@@ -129,4 +129,4 @@ TEST(MirrorZone, TheFieldBesideAnEdgeIsFresnelsIntegral) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_mirror_zone

@@ -9,7 +9,7 @@
 #include "echopath/trace/trace.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_packets {
 namespace {
 
 using namespace testing;
@@ -128,4 +128,4 @@ TEST(Trace, PacketsDropWhatLiesAtAnAntenna) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_packets

@@ -3,7 +3,7 @@
 
 #include "records.h"
 
-namespace echopath {
+namespace echopath::test_path_block {
 namespace {
 
 using Complex = std::complex<double>;
@@ -185,4 +185,4 @@ TEST(PathBlock, ClearedBlockIsEmpty) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_path_block

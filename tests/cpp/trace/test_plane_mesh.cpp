@@ -5,7 +5,7 @@
 
 #include "echopath/trace/geometry/plane_mesh.h"
 
-namespace echopath {
+namespace echopath::test_plane_mesh {
 namespace {
 
 using Corners = std::vector<std::array<Vec3, 3>>;
@@ -77,4 +77,4 @@ TEST(PlaneMesh, TrianglesWithoutAreaHoldNoPoint) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_plane_mesh

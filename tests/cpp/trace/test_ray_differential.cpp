@@ -6,7 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/trace/sbr/ray_differential.h"
 
-namespace echopath {
+namespace echopath::test_ray_differential {
 namespace {
 
 constexpr double kTubeTolerance = 1e-7;  // relative; a finite-difference ray tracing agrees with the closed form to that
@@ -78,4 +78,4 @@ TEST(RayDifferential, ConcaveMirrorHasTwoCaustics) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_ray_differential

@@ -6,7 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/trace/launch/sampler.h"
 
-namespace echopath {
+namespace echopath::test_sampler {
 namespace {
 
 constexpr int64_t kCount = 20000;
@@ -79,4 +79,4 @@ INSTANTIATE_TEST_SUITE_P(All, EverySampler,
                          ::testing::Values(Sampler::kLattice, Sampler::kFibonacci, Sampler::kR2, Sampler::kRandom));
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_sampler

@@ -7,7 +7,7 @@
 
 #include "echopath/trace/scatter/scatter_points.h"
 
-namespace echopath {
+namespace echopath::test_scatter_points {
 namespace {
 
 TEST(ScatterPoints, NeighboursShareTheSquare) {
@@ -63,4 +63,4 @@ TEST(ScatterPoints, GroupsAreIndependent) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_scatter_points

@@ -12,7 +12,7 @@
 #include "echopath/trace/launch/launch_lattice.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_trace {
 namespace {
 
 using namespace testing;
@@ -282,4 +282,4 @@ TEST(Paths, SelectionSharesTheHits) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_trace

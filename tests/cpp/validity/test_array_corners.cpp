@@ -3,7 +3,7 @@
 
 #include "echopath/validity/array_corners.h"
 
-namespace echopath {
+namespace echopath::test_array_corners {
 namespace {
 
 std::vector<Antenna> antennas(const std::vector<Vec3>& positions) {
@@ -24,4 +24,4 @@ TEST(ArrayCorners, AreTheEndsOfALineAndTheCornersOfARectangle) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_array_corners

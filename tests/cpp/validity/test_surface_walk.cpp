@@ -5,7 +5,7 @@
 #include "echopath/scene/mesh/smooth.h"
 #include "support/scenes.h"
 
-namespace echopath {
+namespace echopath::test_surface_walk {
 namespace {
 
 using namespace testing;
@@ -108,4 +108,4 @@ TEST(SurfaceWalk, FindsPointsOfTheSphereAboveEdgesAndVertices) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_surface_walk

@@ -5,7 +5,7 @@
 
 #include "echopath/validity/validity.h"
 
-namespace echopath {
+namespace echopath::test_validity {
 namespace {
 
 TEST(Validity, AdvisesAWholeNumberOfKeyframesHoweverFastThingsMove) {
@@ -18,4 +18,4 @@ TEST(Validity, AdvisesAWholeNumberOfKeyframesHoweverFastThingsMove) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_validity

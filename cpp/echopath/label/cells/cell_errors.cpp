@@ -11,7 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kCellsPerTask = 1 << 11;
+constexpr int64_t kCellsPerErrorTask = 1 << 11;
 constexpr double kStandardErrorsOfLead = 2.0;
 
 void check(const std::vector<BatchPowers>& parts, int num_batches, size_t num_cells) {
@@ -147,9 +147,9 @@ ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches,
     errors.certain[i] = dominant[i] >= 0 && !cell.is_dark() && cell.leads(static_cast<size_t>(dominant[i]));
   };
   const auto count = static_cast<int64_t>(num_cells);
-  parallel_for((count + kCellsPerTask - 1) / kCellsPerTask, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kCellsPerTask, count);
-    for (int64_t i = task * kCellsPerTask; i < end; ++i) label(static_cast<size_t>(i));
+  parallel_for((count + kCellsPerErrorTask - 1) / kCellsPerErrorTask, [&](int64_t task) {
+    const int64_t end = std::min((task + 1) * kCellsPerErrorTask, count);
+    for (int64_t i = task * kCellsPerErrorTask; i < end; ++i) label(static_cast<size_t>(i));
   }, job);
   return errors;
 }

@@ -7,15 +7,14 @@
 namespace echopath {
 namespace {
 
-constexpr int kMaxNesting = 100;  // parentheses; bounds the recursion of parser and compiler
 const std::string kExpectHit = "expected a hit (. 'mesh' S D [...])";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_continuation_byte(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }  // UTF-8
 
-class Parser {
+class ExpressionParser {
  public:
-  Parser(std::string_view text, size_t at) : text_(text), at_(at) {}
+  ExpressionParser(std::string_view text, size_t at) : text_(text), at_(at) {}
 
   // Parses from T to R; position() is then behind it.
   Syntax parse() {
@@ -176,7 +175,7 @@ void move_globs(Syntax& syntax, size_t begin) {
 }  // namespace
 
 PathExpression parse_path_expression(std::string_view text) {
-  Parser parser(text, 0);
+  ExpressionParser parser(text, 0);
   Syntax body = parser.parse();
   parser.expect_end();
   return {std::string(text), std::move(body)};
@@ -184,7 +183,7 @@ PathExpression parse_path_expression(std::string_view text) {
 
 PathExpression read_path_expression(std::string_view text, size_t& position) {
   const size_t begin = position;
-  Parser parser(text, begin);
+  ExpressionParser parser(text, begin);
   Syntax body = parser.parse();
   position = parser.position();
   move_globs(body, begin);

@@ -24,6 +24,7 @@
 namespace echopath {
 
 constexpr int kMaxRepeatCount = 64;  // the longest path that a trace makes
+constexpr int kMaxNesting = 100;  // of parentheses and ~; bounds the recursion of parsers, of the compiler and of Selection
 constexpr int kNoLimit = -1;
 
 // Describes what one hit must be.

@@ -10,13 +10,12 @@
 namespace echopath {
 namespace {
 
-constexpr int kMaxNesting = 100;  // parentheses and ~; bounds the recursion here and in Selection
 constexpr std::string_view kPower = "power";
 
 // Parses by recursive descent; at_ is the next byte.
-class Parser {
+class SelectionParser {
  public:
-  explicit Parser(std::string_view text) : text_(text) {}
+  explicit SelectionParser(std::string_view text) : text_(text) {}
 
   Selection parse() {
     Selection selection = parse_alternatives();
@@ -109,6 +108,6 @@ class Parser {
 
 }  // namespace
 
-Selection parse_selection(std::string_view text) { return Parser(text).parse(); }
+Selection parse_selection(std::string_view text) { return SelectionParser(text).parse(); }
 
 }  // namespace echopath

@@ -13,7 +13,7 @@ enum class Combine { kSum, kPeak };  // sum or largest of the powers of several 
 // Forms beams that receive plane waves: steering^H times a vector over the elements.
 class BeamKernel {
  public:
-  static constexpr int kColumns = 32;  // handled together
+  static constexpr int64_t kColumns = 32;  // handled together
 
   explicit BeamKernel(const Eigen::MatrixXcd& steering);  // [elements, directions]
   int64_t num_directions() const { return steering_.cols(); }

@@ -10,7 +10,6 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
 constexpr int kMaxNeighbours = 64;
 constexpr double kMinLoading = 1e-9, kMaxLoading = 1e3;
 
@@ -23,8 +22,8 @@ std::vector<Strip> strips_of(const RangeDoppler& map) {
   std::vector<Strip> strips;
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
   for (int64_t v = 0; v < static_cast<int64_t>(map.velocity.size()); ++v) {
-    for (int64_t first = 0; first < num_ranges; first += kRangesPerTask) {
-      strips.push_back({v, first, std::min(kRangesPerTask, num_ranges - first), v * num_ranges + first});
+    for (int64_t first = 0; first < num_ranges; first += BeamKernel::kColumns) {
+      strips.push_back({v, first, std::min(BeamKernel::kColumns, num_ranges - first), v * num_ranges + first});
     }
   }
   return strips;
@@ -36,19 +35,19 @@ std::vector<Strip> strips_of(const std::vector<Cell>& cells) {
   return strips;
 }
 
-using Powers = std::vector<double>;  // [directions, kRangesPerTask]
+using Powers = std::vector<double>;  // [directions, BeamKernel::kColumns]
 
 Powers bartlett_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip) {
-  Powers power(beams.num_directions() * kRangesPerTask);
+  Powers power(beams.num_directions() * BeamKernel::kColumns);
   beams.add_squares(source.weighted(strip.velocity, strip.first, strip.count), Combine::kSum, power);
   return power;
 }
 
 Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip, const Job* job) {
-  Powers power(beams.num_directions() * kRangesPerTask);
+  Powers power(beams.num_directions() * BeamKernel::kColumns);
   for (int64_t i = 0; i < strip.count; ++i) {
     const Eigen::VectorXd values = source.cell(strip.velocity, strip.first + i).power(beams, Combine::kSum, job);
-    for (int64_t d = 0; d < values.size(); ++d) power[d * kRangesPerTask + i] = values[d];
+    for (int64_t d = 0; d < values.size(); ++d) power[d * BeamKernel::kColumns + i] = values[d];
   }
   return power;
 }
@@ -64,7 +63,7 @@ std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, Be
     const bool is_bartlett = method == BeamMethod::kBartlett;
     const Powers values = is_bartlett ? bartlett_strip(source, beams, strip) : capon_strip(source, beams, strip, job);
     for (int64_t d = 0; d < beams.num_directions(); ++d) {
-      std::copy_n(values.data() + d * kRangesPerTask, strip.count, power.data() + d * num_cells + strip.out);
+      std::copy_n(values.data() + d * BeamKernel::kColumns, strip.count, power.data() + d * num_cells + strip.out);
     }
   }, job);
   return power;

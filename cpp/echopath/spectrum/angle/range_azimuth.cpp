@@ -10,8 +10,6 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kRangesPerTask = BeamKernel::kColumns;
-
 // Returns the ratio of a point's power to its sum over the velocities.
 double share_of_sum(const RangeDoppler& map, int num_chirps) {
   const double bandwidth = equivalent_noise_bandwidth(window_samples(map.window, num_chirps));
@@ -30,7 +28,7 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   return nearest - map.velocity.begin();
 }
 
-using Powers = std::vector<double>;  // [directions, kRangesPerTask]
+using Powers = std::vector<double>;  // [directions, BeamKernel::kColumns]
 
 // Computes the map of one choice of velocities, by strips of ranges.
 struct Picture {
@@ -41,7 +39,7 @@ struct Picture {
   const Job* job;
 
   Powers bartlett(int64_t first, int64_t count) const {
-    Powers power(beams.num_directions() * kRangesPerTask);
+    Powers power(beams.num_directions() * BeamKernel::kColumns);
     const int64_t begin = velocity.value_or(0), end = velocity ? begin + 1 : source.num_velocities();
     for (int64_t v = begin; v < end; ++v) {
       if (job) job->throw_if_cancelled();
@@ -51,11 +49,11 @@ struct Picture {
   }
 
   Powers capon(int64_t first, int64_t count) const {
-    Powers power(beams.num_directions() * kRangesPerTask);
+    Powers power(beams.num_directions() * BeamKernel::kColumns);
     for (int64_t i = 0; i < count; ++i) {
       const CellBeam beam = velocity ? source.cell(*velocity, first + i) : source.all_velocities(first + i);
       const Eigen::VectorXd values = beam.power(beams, combine, job);
-      for (int64_t d = 0; d < values.size(); ++d) power[d * kRangesPerTask + i] = values[d];
+      for (int64_t d = 0; d < values.size(); ++d) power[d * BeamKernel::kColumns + i] = values[d];
     }
     return power;
   }
@@ -81,15 +79,15 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   const int64_t num_azimuths = static_cast<int64_t>(angles.azimuth.size());
   result.power.assign(num_azimuths * num_ranges, 0.0);
 
-  const int64_t num_tasks = (num_ranges + kRangesPerTask - 1) / kRangesPerTask;
+  const int64_t num_tasks = (num_ranges + BeamKernel::kColumns - 1) / BeamKernel::kColumns;
   if (job) job->start(num_tasks);
   parallel_for(num_tasks, [&](int64_t task) {
-    const int64_t first = task * kRangesPerTask, count = std::min(kRangesPerTask, num_ranges - first);
+    const int64_t first = task * BeamKernel::kColumns, count = std::min(BeamKernel::kColumns, num_ranges - first);
     const bool is_bartlett = options.method == BeamMethod::kBartlett;
     const Powers power = is_bartlett ? picture.bartlett(first, count) : picture.capon(first, count);
     for (int64_t d = 0; d < beams.num_directions(); ++d) {
       double* out = result.power.data() + d % num_azimuths * num_ranges + first;
-      for (int64_t i = 0; i < count; ++i) out[i] = std::max(out[i], scale * power[d * kRangesPerTask + i]);
+      for (int64_t i = 0; i < count; ++i) out[i] = std::max(out[i], scale * power[d * BeamKernel::kColumns + i]);
     }
   }, job);
   return result;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "echopath/base/errors.h"
+#include "shown.h"
 
 namespace echopath::bindings {
 namespace {
@@ -34,16 +35,6 @@ bool fits(const py::array& array, const Shape& shape) {
   for (size_t k = 0; k < shape.size(); ++k)
     if (shape[k] != kAnySize && shape[k] != array.shape(static_cast<py::ssize_t>(k))) return false;
   return true;
-}
-
-// What came: "float64 [5, 2]", or the type of what is no array at all.
-std::string description(py::handle value, const py::array& array) {
-  if (!array || array.ndim() == 0) return Py_TYPE(value.ptr())->tp_name;
-  std::ostringstream text;
-  text << std::string(py::str(array.dtype())) << " [";
-  for (py::ssize_t k = 0; k < array.ndim(); ++k) text << (k ? ", " : "") << array.shape(k);
-  text << ']';
-  return text.str();
 }
 
 std::string rule(std::string_view argument, std::string_view shape, std::string_view what) {
@@ -98,12 +89,13 @@ py::array array_of_kind(py::handle value, std::string_view argument, std::string
   const py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(rule(argument, shape, what) + description(value, array));
+    throw py::type_error(rule(argument, shape, what) + shown(array && array.ndim() > 0 ? py::handle(array) : value));
   }
   // An empty list has no kind of its own.
   if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string_view::npos)
-    throw py::type_error(rule(argument, shape, what) + description(value, array));
-  if (!fits(array, parse_shape(shape))) throw py::value_error(rule(argument, shape, what) + description(value, array));
+    throw py::type_error(rule(argument, shape, what) + shown(array && array.ndim() > 0 ? py::handle(array) : value));
+  if (!fits(array, parse_shape(shape)))
+    throw py::value_error(rule(argument, shape, what) + shown(array && array.ndim() > 0 ? py::handle(array) : value));
   return array;
 }
 

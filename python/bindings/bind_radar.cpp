@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "array.h"
-#include "choice.h"
+#include "argument.h"
+#include "define.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
 #include "keywords.h"
@@ -31,26 +31,29 @@ void make_unit(Vector& vector, const char* argument) {
   if (std::abs(norm - 1.0) > kUnitRounding) vector /= norm;
 }
 
-ChirpSequence chirp_sequence(double start_frequency, double bandwidth, int num_samples, double sampling_rate, int num_chirps,
-                             double chirp_interval, bool real, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "ChirpSequence",
-                 {"start_frequency", "bandwidth", "num_samples", "sampling_rate", "num_chirps", "chirp_interval", "real"});
-  const ChirpSequence waveform{start_frequency, bandwidth, num_samples, sampling_rate, num_chirps, chirp_interval, real};
+ChirpSequence chirp_sequence(Arg<"start_frequency", Real> start_frequency, Arg<"bandwidth", Real> bandwidth,
+                             Arg<"num_samples", Positive> num_samples, Arg<"sampling_rate", Real> sampling_rate,
+                             Arg<"num_chirps", Positive> num_chirps, Arg<"chirp_interval", Real> chirp_interval,
+                             Arg<"real", Flag> real) {
+  const ChirpSequence waveform{*start_frequency, *bandwidth,      *num_samples, *sampling_rate,
+                               *num_chirps,      *chirp_interval, *real};
   waveform.validate();
   return waveform;
 }
 
-AntennaPattern isotropic(double gain, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Isotropic", {"gain"});
-  return AntennaPattern::isotropic(gain);
+double velocity_resolution(const ChirpSequence& self, Arg<"num_slots", Positive> num_slots) {
+  return self.velocity_resolution(*num_slots);
 }
 
-AntennaPattern cosine_power(double exponent, std::optional<double> peak_gain, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "CosinePower", {"exponent", "peak_gain"});
-  if (peak_gain) {
-    require(std::isfinite(*peak_gain) && *peak_gain > 0.0, "peak_gain", "must be finite and positive, or None", *peak_gain);
-  }
-  return AntennaPattern::cosine_power(exponent, peak_gain.value_or(0.0));
+double max_velocity(const ChirpSequence& self, Arg<"num_slots", Positive> num_slots) {
+  return self.max_velocity(*num_slots);
+}
+
+AntennaPattern isotropic(Arg<"gain", Real> gain) { return AntennaPattern::isotropic(*gain); }
+
+AntennaPattern cosine_power(Arg<"exponent", Real> exponent, Arg<"peak_gain", Optional<Real>> peak_gain) {
+  require(!*peak_gain || **peak_gain > 0.0, "peak_gain", "must be positive, or None", peak_gain->value_or(0.0));
+  return AntennaPattern::cosine_power(*exponent, peak_gain->value_or(0.0));
 }
 
 AntennaPattern gain_table(const py::object& azimuth, const py::object& elevation, const py::object& gain,
@@ -156,7 +159,7 @@ std::string text_of(const Radar& r) {
 }
 
 void bind_waveform(py::module_& m) {
-  py::class_<ChirpSequence>(m, "ChirpSequence", R"(A frame of linear up-chirps.
+  py::class_<ChirpSequence> type(m, "ChirpSequence", R"(A frame of linear up-chirps.
 
 start_frequency: Hz, at the first sample
 bandwidth: Hz, swept by the samples of a chirp
@@ -165,10 +168,10 @@ sampling_rate: Hz
 num_chirps: per transmitter
 chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
 real: real IF samples instead of complex ones
-Raises ValueError naming the argument.)")
-      .def(py::init(&chirp_sequence), py::kw_only(), py::arg("start_frequency") = 77e9, py::arg("bandwidth") = 1e9,
-           py::arg("num_samples") = 512, py::arg("sampling_rate") = 20e6, py::arg("num_chirps") = 128,
-           py::arg("chirp_interval") = 60e-6, py::arg("real") = false)
+Raises TypeError or ValueError naming the argument.)");
+  define_init(type, &chirp_sequence, py::kw_only(), py::arg("start_frequency") = 77e9, py::arg("bandwidth") = 1e9,
+              py::arg("num_samples") = 512, py::arg("sampling_rate") = 20e6, py::arg("num_chirps") = 128,
+              py::arg("chirp_interval") = 60e-6, py::arg("real") = false)
       .def_readonly("start_frequency", &ChirpSequence::start_frequency, "Hz, at the first sample")
       .def_readonly("bandwidth", &ChirpSequence::bandwidth, "Hz, sampled")
       .def_readonly("num_samples", &ChirpSequence::num_samples, "of a chirp")
@@ -183,11 +186,11 @@ Raises ValueError naming the argument.)")
       .def_property_readonly("wavelength", &ChirpSequence::wavelength, "m, at the centre frequency")
       .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 bandwidth)")
       .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")
-      .def("velocity_resolution", &ChirpSequence::velocity_resolution, py::arg("num_slots") = 1,
-           "m/s, when `num_slots` transmitters take turns")
-      .def("max_velocity", &ChirpSequence::max_velocity, py::arg("num_slots") = 1,
-           "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns")
       .def("__repr__", [](const ChirpSequence& self) { return text_of(self); });
+  define(type, "velocity_resolution", &velocity_resolution, py::arg("num_slots") = 1,
+         "m/s, when `num_slots` transmitters take turns");
+  define(type, "max_velocity", &max_velocity, py::arg("num_slots") = 1,
+         "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns");
 }
 
 void bind_antenna(py::module_& m) {
@@ -214,10 +217,10 @@ void bind_antenna(py::module_& m) {
           "table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
           "[E, A] rad of a table with phases, else None")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
-  m.def("Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
-  m.def("CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
-        "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
-        "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)");
+  define(m, "Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
+  define(m, "CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
+         "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
+         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)");
   m.def("GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
         py::arg("phase") = py::none(), R"(Gain sampled over direction; there is none outside the table.
 

@@ -2,6 +2,7 @@
 // Enums that Python knows by name: the look-up, and the names of those that several binding files take.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -20,10 +21,14 @@ struct Choice {
   const char* argument;
   std::array<const char*, N> names;
 
+  std::optional<Enum> find(std::string_view name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? std::nullopt : std::optional<Enum>(static_cast<Enum>(found - names.begin()));
+  }
+
   // Raises invalid_argument that lists the names.
   Enum value_of(std::string_view name) const {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<Enum>(found - names.begin());
+    if (const auto found = find(name)) return *found;
     throw std::invalid_argument(std::string(argument) + ": must be " + listed() + ", got '" + std::string(name) + "'");
   }
 

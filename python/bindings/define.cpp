@@ -1,0 +1,95 @@
+#include "define.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "echopath/base/errors.h"
+
+namespace echopath::bindings::detail {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const Parameter& each : parameters) names.push_back(each.name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// The parameters that may be given without their names.
+std::vector<Parameter> by_place(const std::vector<Parameter>& parameters) {
+  std::vector<Parameter> found;
+  std::copy_if(parameters.begin(), parameters.end(), std::back_inserter(found),
+               [](const Parameter& each) { return !each.is_keyword_only; });
+  return found;
+}
+
+// What is wrong with a call that does not fit the parameters.
+std::string complaint(const std::vector<Parameter>& parameters, const py::args& values, const py::kwargs& keywords) {
+  const std::vector<std::string> names = names_of(parameters);
+  for (const auto& [key, value] : keywords) {
+    const std::string word = escaped(key);
+    if (std::find(names.begin(), names.end(), word) != names.end()) continue;
+    if (names.empty()) return "unknown keyword '" + word + "', it takes no arguments";
+    return "unknown keyword '" + word + "', the nearest right one is '" + nearest_names(word, names, 1).front() + "'";
+  }
+  const std::vector<Parameter> placed = by_place(parameters);
+  if (values.size() > placed.size()) {
+    const std::string count = std::to_string(placed.size()) + (placed.size() == 1 ? " argument" : " arguments");
+    const std::string rule = placed.empty() ? "takes no arguments without their names"
+                                            : "takes at most " + count + " without names (" + joined(names_of(placed)) + ")";
+    const std::string all = names.size() > placed.size() ? "; its arguments are " + joined(names) : "";
+    return rule + ", got " + std::to_string(values.size()) + all;
+  }
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& each = parameters[i];
+    const bool has_value = i < values.size(), has_keyword = keywords.contains(each.name.c_str());
+    if (has_value && has_keyword) return "argument '" + each.name + "' is given twice, by its place and by its name";
+    if (each.is_required && !has_value && !has_keyword) return "argument '" + each.name + "' is missing";
+  }
+  return "is called on an object of another class";
+}
+
+PyCFunctionObject* function_of(py::handle scope, const char* name) {
+  py::object bound = scope.attr("__dict__")[name];
+  if (PyInstanceMethod_Check(bound.ptr()))
+    bound = py::reinterpret_borrow<py::object>(PyInstanceMethod_GET_FUNCTION(bound.ptr()));
+  return reinterpret_cast<PyCFunctionObject*>(bound.ptr());
+}
+
+}  // namespace
+
+void define_refusal(py::handle scope, const char* name, const Parameters& parameters, bool is_method) {
+  PyCFunctionObject* function = function_of(scope, name);
+  const std::string doc = function->m_ml->ml_doc ? function->m_ml->ml_doc : "";
+  const bool is_init = std::strcmp(name, "__init__") == 0;
+  const std::string callee = is_init ? py::cast<std::string>(scope.attr("__name__")) : name;
+  const auto refuse = [callee, list = parameters.list()](const py::args& values, const py::kwargs& keywords) {
+    throw py::type_error(callee + ": " + complaint(list, values, keywords));
+  };
+  // pybind11 tries the functions of one name in turn, so this one is asked only where the right one does not fit.
+  const py::name named(name);
+  const py::scope within(scope);
+  const py::sibling first(py::getattr(scope, name));
+  if (is_init) {
+    py::cpp_function([refuse](py::detail::value_and_holder&, const py::args& values,
+                              const py::kwargs& keywords) { refuse(values, keywords); },
+                     named, py::is_method(scope), first, py::detail::is_new_style_constructor());
+  } else if (is_method) {
+    py::cpp_function(
+        [refuse](const py::object&, const py::args& values, const py::kwargs& keywords) { refuse(values, keywords); }, named,
+        py::is_method(scope), first);
+  } else {
+    py::cpp_function(refuse, named, within, first);
+  }
+  // pybind11 owns this text and frees it.
+  std::free(const_cast<char*>(function->m_ml->ml_doc));
+  function->m_ml->ml_doc = strdup(doc.c_str());
+}
+
+}  // namespace echopath::bindings::detail

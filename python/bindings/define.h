@@ -1,0 +1,82 @@
+#pragma once
+// Binds functions and constructors whose arguments are of argument.h, so that every call that does not fit is refused by
+// name: an unknown keyword (with the nearest right one), a missing argument, one given twice, too many.
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "argument.h"
+
+namespace echopath::bindings {
+
+namespace detail {
+
+struct Parameter {
+  std::string name;
+  bool is_required;
+  bool is_keyword_only;
+};
+
+// Gathers the parameters among what is handed to `def`.
+class Parameters {
+ public:
+  template <class... Extra>
+  explicit Parameters(const Extra&... extra) {
+    (add(extra), ...);
+  }
+  const std::vector<Parameter>& list() const { return list_; }
+
+ private:
+  void add(const py::arg& one) { list_.push_back({one.name, true, keyword_only_}); }
+  void add(const py::arg_v& one) { list_.push_back({one.name, false, keyword_only_}); }
+  void add(const py::kw_only&) { keyword_only_ = true; }
+  template <class Other>
+  void add(const Other&) {}
+
+  std::vector<Parameter> list_;
+  bool keyword_only_ = false;
+};
+
+template <class T>
+struct IsArg : std::is_base_of<py::object, T> {};
+template <Literal kName, class Kind>
+struct IsArg<Arg<kName, Kind>> : std::true_type {};
+
+// Whether all arguments behind the first `skipped` ones are of argument.h, or any object. Others would answer wrong values
+// with a list of signatures, and would be refused where pybind11 tries a call without conversions first.
+template <size_t skipped, class Return, class... Arguments>
+consteval bool all_checked(Return (*)(Arguments...)) {
+  size_t place = 0;
+  return ((place++ < skipped || IsArg<std::decay_t<Arguments>>::value) && ...);
+}
+
+// Binds what `name` of `scope` answers where the arguments do not fit: an error. help() keeps showing the one signature.
+void define_refusal(py::handle scope, const char* name, const Parameters& parameters, bool is_method);
+
+}  // namespace detail
+
+// scope: a module, or a class, whose function then takes the object first; extra: py::arg, py::kw_only and the docstring
+template <class Scope, class Function, class... Extra>
+Scope& define(Scope& scope, const char* name, Function&& function, const Extra&... extra) {
+  constexpr bool is_method = !std::is_same_v<Scope, py::module_>;
+  using Signature = py::detail::function_signature_t<Function>;
+  static_assert(detail::all_checked<is_method ? 1 : 0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
+  scope.def(name, std::forward<Function>(function), extra...);
+  detail::define_refusal(scope, name, detail::Parameters(extra...), is_method);
+  return scope;
+}
+
+// make: a function that returns the new object
+template <class Class, class Make, class... Extra>
+Class& define_init(Class& type, Make make, const Extra&... extra) {
+  using Signature = py::detail::function_signature_t<Make>;
+  static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
+  type.def(py::init(make), extra...);
+  detail::define_refusal(type, "__init__", detail::Parameters(extra...), true);
+  return type;
+}
+
+}  // namespace echopath::bindings

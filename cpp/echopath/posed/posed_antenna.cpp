@@ -1,11 +1,14 @@
 #include "echopath/posed/posed_antenna.h"
 
+#include "echopath/base/range_of_coordinates.h"
+
 namespace echopath {
 
 std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,
                                          const Vec3& origin) {
   std::vector<PosedAntenna> out;
   for (const Antenna& antenna : antennas) {
+    require_in_range(world_from_radar * antenna.position, "radar", "antennas");
     const Mat3 world_from_antenna = world_from_radar.linear() * antenna.orientation.toRotationMatrix();
     out.push_back({world_from_radar * antenna.position - origin,
                    (world_from_radar.linear() * (antenna.orientation * Vec3::UnitX())).normalized(),

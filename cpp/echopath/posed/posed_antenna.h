@@ -20,7 +20,8 @@ struct PosedAntenna {
   }
 };
 
-// Poses antennas, which must outlive the result; positions count from `origin` (m, world).
+// Poses antennas, which must outlive the result; positions count from `origin` (m, world). Raises invalid_argument for an
+// antenna out of the range of coordinates (base/range_of_coordinates.h).
 std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,
                                          const Vec3& origin);
 

@@ -1,6 +1,7 @@
 #include "echopath/posed/posed_scene.h"
 
 #include "echopath/base/errors.h"
+#include "echopath/base/range_of_coordinates.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -43,7 +44,11 @@ PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector
 }
 
 void PosedScene::place_meshes() {
+  require_time(time_, "time");
   for (const Transform& world_from_mesh : world_from_meshes(*scene_, time_)) {
+    const std::string& name = scene_->node_of(num_meshes()).name;
+    require(world_from_mesh.linear().allFinite(), "scene", "motions must turn by finite angles, time", time_);
+    require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
     linear_.push_back(world_from_mesh.linear());
     normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));
     world_translation_.push_back(world_from_mesh.translation());

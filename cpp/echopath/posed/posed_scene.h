@@ -14,7 +14,7 @@ namespace echopath {
 class PosedScene {
  public:
   // Poses all vertices and no antennas; the origin is that of the world. Raises invalid_argument when a motion is not
-  // defined at `time` (s).
+  // defined at `time` (s), or takes something out of the range of coordinates (base/range_of_coordinates.h).
   PosedScene(const Scene& scene, double time);
   // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is
   // relative counts from `origin` (m, world). Raises as the other one.

@@ -6,6 +6,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/range_of_coordinates.h"
 
 namespace echopath {
 namespace {
@@ -123,7 +124,9 @@ bool AntennaPattern::is_dark_behind() const {
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
   Vec3 sum = Vec3::Zero();
   for (const Antenna& antenna : antennas) sum += world_from_radar * antenna.position;
-  return sum / static_cast<double>(antennas.size());
+  const Vec3 mean = sum / static_cast<double>(antennas.size());
+  require_in_range(mean, "radar", "antennas");
+  return mean;
 }
 
 void Radar::validate() const {

@@ -64,7 +64,8 @@ struct Antenna {
   Vec3 polarization = Vec3::UnitZ();  // in the antenna's frame, unit
 };
 
-// Returns the mean position of at least one antenna in the world, m.
+// Returns the mean position of at least one antenna in the world, m. Raises invalid_argument where it is out of the range of
+// coordinates (base/range_of_coordinates.h).
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
 enum class Multiplexing { kTdm };  // one transmitter per slot

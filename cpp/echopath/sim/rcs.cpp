@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/range_of_coordinates.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/power/received_power.h"
 
@@ -37,9 +38,17 @@ Target target_of(const Scene& scene) {
 }
 
 // A wave front of radius R lags by k r^2 / 2R at the rim of the target, once on the way out and once on the way back.
+// Larger targets need a far field in which double precision does not resolve the phase.
 double far_distance(const Target& target, double wavenumber) {
   const double flat = wavenumber * target.radius * target.radius / kPhaseError;
-  return std::max({flat, target.radius / kAmplitudeError, kTwoPi / wavenumber});
+  const double distance = std::max({flat, target.radius / kAmplitudeError, kTwoPi / wavenumber});
+  if (distance <= kFarthest) return distance;
+  const double largest = std::min(std::sqrt(kFarthest * kPhaseError / wavenumber), kFarthest * kAmplitudeError);
+  std::ostringstream rule;
+  rule << "must fit into a sphere of radius " << largest
+       << " m at this frequency (are its vertices in metres?), radius in m";
+  require(false, "scene", rule.str(), target.radius);
+  return distance;
 }
 
 // Returns a unit vector across the line of sight; the unit vector `toward` points to the antenna.

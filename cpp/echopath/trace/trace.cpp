@@ -1,7 +1,6 @@
 #include "echopath/trace/trace.h"
 
-#include <cmath>
-
+#include "echopath/base/range_of_coordinates.h"
 #include "echopath/trace/tracer.h"
 
 namespace echopath {
@@ -9,7 +8,7 @@ namespace echopath {
 void TraceSettings::validate() const {
   require(num_rays >= 1, "num_rays", "must be >= 1", num_rays);
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
-  require(std::isfinite(start_time), "start_time", "must be finite", start_time);
+  require_time(start_time, "start_time");
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
   guide.validate();
 }

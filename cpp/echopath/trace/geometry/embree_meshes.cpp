@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "echopath/base/range_of_coordinates.h"
+
 namespace echopath {
 
 bool EmbreeMeshes::Source::is_same(const Source& other) const {
@@ -16,17 +18,19 @@ EmbreeMeshes::Source EmbreeMeshes::source_of(const Scene& scene, const PosedScen
   return {node.mesh, node.deformation, time, pose.linear(mesh_id), pose.world_translation(mesh_id), node.smooth};
 }
 
-void EmbreeMeshes::place(Posed& posed, const PosedScene& pose, uint32_t mesh_id) const {
+void EmbreeMeshes::place(Posed& posed, const PosedScene& pose, uint32_t mesh_id, const std::string& name) const {
   posed.vertices = pose.world_vertices(mesh_id);
   posed.box.setEmpty();
   for (Vec3& vertex : posed.vertices) {
     vertex -= origin_;
+    if (!is_in_range(vertex)) require_in_range(vertex, "scene", "from the radar, vertices of mesh '" + name + "'");
     posed.box.extend(vertex);
   }
   posed.normals = posed.source.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>();
 }
 
 std::vector<uint32_t> EmbreeMeshes::update(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
+  require_in_range(origin, "scene", "what is next to the radar");
   if (origin != origin_ || meshes_.size() != scene.meshes().size()) meshes_.clear();
   origin_ = origin;
   meshes_.resize(scene.meshes().size());
@@ -36,7 +40,7 @@ std::vector<uint32_t> EmbreeMeshes::update(const Scene& scene, const PosedScene&
     Source source = source_of(scene, pose, mesh_id);
     if (source.is_same(posed.source)) continue;
     posed.source = std::move(source);
-    place(posed, pose, mesh_id);
+    place(posed, pose, mesh_id, scene.node_of(mesh_id).name);
     changed.push_back(mesh_id);
   }
   return changed;

@@ -2,6 +2,7 @@
 // Holds what Embree reads: the vertices of all meshes at one time, relative to an origin. An update to another time computes
 // only those anew that differ.
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
@@ -11,7 +12,8 @@ namespace echopath {
 class EmbreeMeshes {
  public:
   // Returns the IDs of the meshes that differ from those of the last call, ascending: all meshes where the origin (m, world)
-  // or the number of meshes has changed, none where nothing moves.
+  // or the number of meshes has changed, none where nothing moves. Raises invalid_argument naming the mesh that is out of the
+  // range of coordinates (base/range_of_coordinates.h) about the origin; after that it may only be destroyed.
   std::vector<uint32_t> update(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
   uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }
@@ -40,7 +42,7 @@ class EmbreeMeshes {
     Eigen::AlignedBox3d box;
   };
   static Source source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id);
-  void place(Posed& posed, const PosedScene& pose, uint32_t mesh_id) const;
+  void place(Posed& posed, const PosedScene& pose, uint32_t mesh_id, const std::string& name) const;
 
   Vec3 origin_ = Vec3::Zero();
   std::vector<Posed> meshes_;  // by mesh ID

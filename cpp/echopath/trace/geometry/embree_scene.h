@@ -37,7 +37,8 @@ struct Segment {
 // outside the scene is first moved up to it in double precision. Queries are thread-safe.
 class EmbreeScene {
  public:
-  // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build.
+  // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build, and invalid_argument where
+  // coordinates relative to the origin are out of their range (base/range_of_coordinates.h).
   EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;

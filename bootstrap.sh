@@ -23,6 +23,7 @@ usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> o
        ./bootstrap.sh demo --view      likewise, then the viewer, which shows which rays made which cell
        ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest), those in C++
                                        once more under the address and undefined-behaviour sanitizers
+       ./bootstrap.sh docs             install, build, then the documentation site with its gallery -> out/docs/index.html
        ./bootstrap.sh tidy             install, then clang-tidy over the core and its bindings (.clang-tidy lists the checks)
 TEXT
 }
@@ -160,6 +161,14 @@ run_tidy() {
   "$python" .venv/bin/run-clang-tidy.py -quiet -p "$tidy_dir" -clang-tidy-binary .venv/bin/clang-tidy -j "$(nproc)"
 }
 
+# The examples and notebooks are executed; whatever Sphinx or an example warns of is an error.
+build_docs() {
+  say "the documentation site"
+  rm -rf out/docs python/docs/generated
+  "$python" -m sphinx --fail-on-warning --keep-going --builder html python/docs out/docs
+  say "out/docs/index.html"
+}
+
 run_tests() {
   local cpp_status=0 sanitized_status=0 python_status=0 lint_status=0
   say "linting"
@@ -197,6 +206,10 @@ case $verb in
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"
+    ;;
+  docs)
+    prepare docs "${packages[@]}"
+    build_docs
     ;;
   tidy)
     install_packages "${packages[@]}"

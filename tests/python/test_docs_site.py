@@ -1,0 +1,132 @@
+"""The documentation site: no public name is missing, pages run, notebooks carry no outputs, the gallery is whole."""
+from __future__ import annotations
+
+import ast
+import json
+import re
+import runpy
+import warnings
+from pathlib import Path
+
+import matplotlib
+import matplotlib.pyplot as plt
+import pytest
+from matplotlib.figure import Figure
+
+import echopath as ep
+
+matplotlib.use("agg")
+ROOT = Path(__file__).parents[2]
+DOCS, EXAMPLES = ROOT / "python" / "docs", ROOT / "python" / "examples"
+PAGES = sorted((DOCS / "how_do_i").glob("*.md"))
+SCRIPTS = sorted(EXAMPLES.glob("*/*.py"))
+NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
+TASKS = ("own_mesh", "car_with_speed", "antenna_pattern", "angle_map", "spectrogram", "arms_only", "rcs_over_angle", "snr",
+         "label_masks", "detections", "ego_motion", "several_processes")
+LARGEST_FILE = 200_000  # bytes
+
+
+def documented_names(text: str) -> list[str]:
+    """The names that the summaries of a reference page list."""
+    blocks = re.findall(r"\.\. autosummary::\n(?: +:.*\n)*\n((?: +\S+\n)+)", text)
+    return [name for block in blocks for name in block.split()]
+
+
+def titles_and_labels(figure) -> list[str]:
+    """What a person reads about a figure and its axes, but for numbers."""
+    texts = [figure.get_suptitle()]
+    for axes in figure.get_axes():
+        legend = axes.get_legend()
+        texts += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
+        texts += [text.get_text() for text in legend.get_texts()] if legend else []
+    return [text for text in texts if text]
+
+
+def code_of(page: Path) -> str:
+    """The Python lines of a page in Markdown."""
+    return "\n".join(re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE))
+
+
+def wanted_names() -> set[str]:
+    bodies = {f"actors.{name}" for name in ep.actors.__all__ if name[0].islower()}
+    return {name for name in ep.__all__ if name != "actors"} | bodies
+
+
+def test_names_of_a_summary_are_found():
+    text = ".. autosummary::\n   :toctree: x\n   :nosignatures:\n\n   Scene\n   actors.wall\n\nText\n"
+    assert documented_names(text) == ["Scene", "actors.wall"]
+
+
+def test_reference_lists_every_public_name_once():
+    pages = [page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.rst")]
+    listed = [name for page in pages for name in documented_names(page)]
+    assert sorted(listed) == sorted(set(listed))
+    assert wanted_names() - set(listed) == set()
+    assert set(listed) - wanted_names() == set()
+
+
+def test_docstrings_become_lists_and_paragraphs():
+    converter = runpy.run_path(str(DOCS / "_extensions" / "house_docstrings.py"))
+    lines = ["Adds noise.", "", "cube: [tx, rx] in sqrt(W),", "or a part of it", "seed: as in `add`", "    \"a\": first",
+             "Returns a*b.", "Raises ValueError."]
+    assert [line for line in converter["as_rst"](lines) if line] == [
+        "Adds noise.", "* **cube**: [tx, rx] in sqrt(W), or a part of it", "* **seed**: as in ``add``", '  * ``"a"``: first',
+        r"Returns a\*b.", "Raises ValueError."]
+
+
+def test_every_task_has_a_page():
+    assert {page.stem for page in PAGES} == {*TASKS, "index"}
+    contents = (DOCS / "how_do_i" / "index.md").read_text(encoding="utf-8")
+    assert all(re.search(rf"^{task}$", contents, re.MULTILINE) for task in TASKS)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_lines_of_a_page_run(task, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    corners = "v 0 0 0\nv 4000 0 0\nv 0 2000 0\nv 0 0 1500\n"
+    Path("car.obj").write_text(corners + "g body\nf 1 2 3\nf 1 2 4\ng roof\nf 2 3 4\n", encoding="utf-8")
+    names = {"__name__": "a_page"}
+    exec(compile(code_of(DOCS / "how_do_i" / "index.md"), "index.md", "exec"), names)
+    exec(compile(code_of(DOCS / "how_do_i" / f"{task}.md"), f"{task}.md", "exec"), names)
+    if task == "several_processes":  # a worker of its own would need the page as a file
+        assert ep.load_frame(names["one_frame"](0.1)).paths.frame.start_time == 0.1
+
+
+def test_the_gallery_has_its_pages():
+    assert len(SCRIPTS) >= 20
+    for script in SCRIPTS:
+        text = script.read_text(encoding="utf-8")
+        title, underline = ast.get_docstring(ast.parse(text)).splitlines()[:2]
+        assert underline == "=" * len(title), script
+        assert 15 <= len([line for line in text.splitlines() if line.strip()]) <= 65, script
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_scripts_of_the_gallery_run_without_a_warning_and_draw(script, monkeypatch):
+    monkeypatch.setattr(plt, "show", lambda: None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        names = runpy.run_path(str(script))
+    figures = [value for value in names.values() if isinstance(value, Figure)]
+    assert figures
+    assert all(len(titles_and_labels(figure)) >= 2 for figure in figures)
+    plt.close("all")
+
+
+def test_sections_of_the_gallery_are_those_of_its_configuration():
+    configuration = (DOCS / "conf.py").read_text(encoding="utf-8")
+    sections = ast.literal_eval(re.search(r"^SECTIONS = (\(.*?\))", configuration, re.MULTILINE)[1])
+    assert sorted(sections) == sorted({script.parent.name for script in SCRIPTS})
+
+
+def test_no_file_of_the_site_is_large():
+    files = [path for folder in (DOCS, EXAMPLES) for path in folder.rglob("*")
+             if path.is_file() and "generated" not in path.parts]
+    assert [path for path in files if path.stat().st_size > LARGEST_FILE] == []
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_kept_without_outputs(notebook):
+    cells = [cell for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 5
+    assert [cell for cell in cells if cell["outputs"] or cell["execution_count"] is not None] == []

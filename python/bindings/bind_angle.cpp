@@ -12,7 +12,6 @@
 #include "echopath/spectrum/angle/estimate_angles.h"
 #include "echopath/spectrum/angle/range_azimuth.h"
 #include "echopath/spectrum/array/tdm.h"
-#include "keywords.h"
 #include "run_job.h"
 #include "window_name.h"
 
@@ -44,78 +43,6 @@ std::vector<Cell> as_cells(const py::object& value) {
   return cells;
 }
 
-constexpr const char* kTdmDoc = R"(A map without the phase that motion adds between transmit slots (TDM).
-
-Transmitter m sends m chirp intervals after the first: a cell of velocity v (receding positive) is turned by
-e^{-j 2 pi (2 v / wavelength) m chirp_interval}. M transmitters divide the unambiguous velocity by M; an echo of
-v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`.
-spectrum: RangeDoppler of that radar, with values [tx, rx, velocity, range]
-fold: whole number; the velocities of the result are those assumed, v + 2 fold v_max in m/s
-Returns a RangeDoppler. The functions of angles do this themselves unless it is done. Raises ValueError.)";
-
-constexpr const char* kAngleFftDoc = R"(Angle spectra of a uniform array: a Fourier transform over its rows and columns.
-
-spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-window: as in range_doppler, over rows and columns; here symmetric and nowhere zero
-zero_pad: 1 to 64, transforms of so many times the rows and columns
-overlaps: "average" of channels at one position, or the "first" of them; gaps count as zeros
-compensate: take out the phase between transmit slots (compensate_tdm)
-progress: callable(stage, fraction) or None
-Returns an AngleSpectrum with values [elevation, azimuth, velocity, range] in sqrt(W). |value|^2 of a far point at its
-direction is its received power in W, averaged over channels; noise falls to 1/N for N elements without a window.
-Raises ValueError where the array is no grid of equal steps (beamform takes any) or the map is not the radar's.)";
-
-// What all beams have in common: stands for @@ in the texts below.
-constexpr const char* kBeamKeywordsDoc =
-    R"(method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
-    resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
-window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
-overlaps: "average" of channels at one position, or the "first" of them
-compensate: take out the phase between transmit slots (compensate_tdm)
-diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
-velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
-forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
-progress: callable(stage, fraction) or None
-)";
-
-constexpr const char* kBeamformDoc = R"(Power that beams toward a grid of directions pass, for any array.
-
-Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency. An echo from
-the steered direction passes unchanged: a far point gives its received power in W, averaged over channels.
-spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
-elevation: [E] or one in rad, up from the xy-plane; None likewise
-cells: [N, 2] (velocity, range) indices, or None: all
-@@Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
-Raises ValueError or IndexError naming the argument.)";
-
-constexpr const char* kRangeAzimuthDoc = R"(Received power by range and azimuth.
-
-spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
-elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
-velocity: m/s, of the cells to take; None: all velocities
-combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
-    case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
-    about ln(num_chirps) times that of a cell.
-@@Returns a RangeAzimuth with power [azimuth, range] in W. Raises ValueError naming the argument.)";
-
-constexpr const char* kEstimateDoc = R"(Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
-
-spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
-elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
-cells: [N, 2] (velocity, range) indices
-max_peaks: of a cell, the strongest; peak_range_db: dB below the strongest of the cell, within which others count
-folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
-    tell apart; less than half the number of transmitters
-@@Returns AngleEstimates, arrays [M]: none for a cell without power. Raises ValueError or IndexError naming the argument.)";
-
-// The keywords that all beams have.
-const std::vector<std::string> kBeamKeywords = {
-    "spectrum",   "radar",    "azimuth",          "elevation",           "method",           "window",          "overlaps",
-    "compensate", "progress", "diagonal_loading", "velocity_neighbours", "range_neighbours", "forward_backward"};
-
 BeamformOptions beams_of(const std::string& method, const py::object& window, const std::string& overlaps, bool compensate,
                          double diagonal_loading, int velocity_neighbours, int range_neighbours, bool forward_backward) {
   return {as_beam_method(method), as_window(window),   as_overlaps(overlaps), compensate,
@@ -124,18 +51,14 @@ BeamformOptions beams_of(const std::string& method, const py::object& window, co
 
 // Binds call(map, radar, angles, beams, progress, extra...) with the arguments of all beams around its own.
 template <class Result, class... Extra, class... Names>
-void def_beams(py::module_& m, const char* name, const py::object& elevation, double step, std::string doc,
+void def_beams(py::module_& m, const char* name, const py::object& elevation, double step,
                Result (*call)(const RangeDoppler&, const Radar&, const AngleGrid&, const BeamformOptions&, const py::object&,
                               Extra...),
                Names... names) {
-  doc.replace(doc.find("@@"), 2, kBeamKeywordsDoc);
-  std::vector<std::string> known = kBeamKeywords;
-  (known.push_back(names.name), ...);
   const auto bound = [=](const RangeDoppler& map, const Radar& radar, const py::object& left, const py::object& up,
                          Extra... extra, const std::string& method, const py::object& window, const std::string& overlaps,
                          bool compensate, double loading, int velocities, int ranges, bool forward_backward,
-                         const py::object& progress, const py::kwargs& unknown) {
-    refuse_unknown(unknown, name, known);
+                         const py::object& progress) {
     const AngleGrid standard = default_angles(virtual_array(radar), step);
     const AngleGrid angles{as_angles(left, "azimuth", standard.azimuth), as_angles(up, "elevation", standard.elevation)};
     const BeamformOptions beams =
@@ -143,12 +66,13 @@ void def_beams(py::module_& m, const char* name, const py::object& elevation, do
     return call(map, radar, angles, beams, progress, extra...);
   };
   const BeamformOptions standard;
-  m.def(
-      name, bound, py::arg("spectrum"), py::arg("radar"), py::arg("azimuth") = py::none(), py::arg("elevation") = elevation,
-      py::kw_only(), names..., py::arg("method") = "bartlett", py::arg("window") = "rect", py::arg("overlaps") = "average",
-      py::arg("compensate") = standard.compensate, py::arg("diagonal_loading") = standard.diagonal_loading,
-      py::arg("velocity_neighbours") = standard.velocity_neighbours, py::arg("range_neighbours") = standard.range_neighbours,
-      py::arg("forward_backward") = standard.forward_backward, py::arg("progress") = py::none(), doc.c_str());
+  m.def(name, bound, py::arg("spectrum"), py::arg("radar"), py::arg("azimuth") = py::none(),
+        py::arg("elevation") = elevation, py::kw_only(), names..., py::arg("method") = "bartlett",
+        py::arg("window") = "rect", py::arg("overlaps") = "average", py::arg("compensate") = standard.compensate,
+        py::arg("diagonal_loading") = standard.diagonal_loading,
+        py::arg("velocity_neighbours") = standard.velocity_neighbours,
+        py::arg("range_neighbours") = standard.range_neighbours, py::arg("forward_backward") = standard.forward_backward,
+        py::arg("progress") = py::none(), "What the function of that name in ep calls.");
 }
 
 BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
@@ -187,9 +111,7 @@ AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const Angl
 }
 
 AngleSpectrum angle_spectrum(const RangeDoppler& map, const Radar& radar, const py::object& window, int zero_pad,
-                             const std::string& overlaps, bool compensate, const py::object& progress,
-                             const py::kwargs& unknown) {
-  refuse_unknown(unknown, "angle_fft", {"spectrum", "radar", "window", "zero_pad", "overlaps", "compensate", "progress"});
+                             const std::string& overlaps, bool compensate, const py::object& progress) {
   const AngleFftOptions options{as_window(window), zero_pad, as_overlaps(overlaps), compensate};
   return run_job("angle_fft", progress, [&](Job& job) { return angle_fft(map, radar, options, &job); });
 }
@@ -201,15 +123,16 @@ RangeDoppler compensated(const RangeDoppler& map, const Radar& radar, int fold) 
 }  // namespace
 
 void bind_angle(py::module_& m) {
-  m.def("compensate_tdm", &compensated, py::arg("spectrum"), py::arg("radar"), py::arg("fold") = 0, kTdmDoc);
+  m.def("compensate_tdm", &compensated, py::arg("spectrum"), py::arg("radar"), py::arg("fold") = 0,
+        "What ep.compensate_tdm calls.");
   m.def("angle_fft", &angle_spectrum, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("window") = "hann",
         py::arg("zero_pad") = 4, py::arg("overlaps") = "average", py::arg("compensate") = true,
-        py::arg("progress") = py::none(), kAngleFftDoc);
-  def_beams(m, "beamform", py::float_(0.0), kPictureStep, kBeamformDoc, &beam_power, py::arg("cells") = py::none());
-  def_beams(m, "range_azimuth", py::float_(0.0), kPictureStep, kRangeAzimuthDoc, &range_azimuth_map,
-            py::arg("velocity") = py::none(), py::arg("combine") = "sum");
+        py::arg("progress") = py::none(), "What ep.angle_fft calls.");
+  def_beams(m, "beamform", py::float_(0.0), kPictureStep, &beam_power, py::arg("cells") = py::none());
+  def_beams(m, "range_azimuth", py::float_(0.0), kPictureStep, &range_azimuth_map, py::arg("velocity") = py::none(),
+            py::arg("combine") = "sum");
   const EstimateOptions standard;
-  def_beams(m, "estimate_angles", py::none(), kSearchStep, kEstimateDoc, &estimates, py::arg("cells"),
+  def_beams(m, "estimate_angles", py::none(), kSearchStep, &estimates, py::arg("cells"),
             py::arg("max_peaks") = standard.max_peaks, py::arg("peak_range_db") = standard.peak_range_db,
             py::arg("folds") = standard.folds);
 }

@@ -39,10 +39,7 @@ void bind_base(py::module_& m) {
 
   m.def("looks_for_signals", &looks_for_signals,
         "Whether work of the core is looking for signals right now: an exception that a handler raises then ends it.");
-  m.def("set_num_threads", &set_num_threads, py::arg("num_threads"),
-        "Number of threads of all parallel loops from now on.\n\n"
-        "num_threads: 0 (one per core) or more. Results do not depend on it, not by a bit.\n"
-        "Raises ValueError if negative.");
+  m.def("set_num_threads", &set_num_threads, py::arg("num_threads"), "What ep.set_num_threads calls.");
   m.def("num_threads", &num_threads, "Number of threads of the parallel loops.");
   m.def(
       "instruction_set", [] { return name_of(instruction_set()); },

@@ -10,7 +10,6 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/spectrum/cfar/peaks.h"
-#include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -18,32 +17,9 @@ namespace {
 
 constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
 
-constexpr const char* kCfarDoc =
-    R"(Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
-
-A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
-right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
-channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
-spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
-false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
-guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
-    the window's main lobe; None: just that
-training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the map
-    is small
-rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
-progress: callable(stage, fraction) or None
-Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each side,
-"os" several times that; Ctrl-C is heard.
-Returns a CfarResult. Raises ValueError naming the argument, also for windows of more than 2000 cells, counted without
-padding.)";
-
 CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
                    std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
-                   std::optional<int> training_range, double rank, const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "cfar",
-                 {"spectrum", "radar", "method", "false_alarm_rate", "guard_velocity", "guard_range", "training_velocity",
-                  "training_range", "rank", "progress"});
+                   std::optional<int> training_range, double rank, const py::object& progress) {
   const CfarOptions options{
       kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank};
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
@@ -139,7 +115,8 @@ void bind_cfar(py::module_& m) {
   m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
-        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(), kCfarDoc);
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(),
+        "What ep.cfar calls.");
   m.def("check_cfar", &check_cfar, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),

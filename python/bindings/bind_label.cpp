@@ -96,15 +96,9 @@ the fault; matching raises one when a glob takes no mesh of the scene.)");
       .def("__str__", &Selection::text)
       .def("__repr__", [](const Selection& self) { return "<Selection " + self.text() + ">"; });
   py::detail::get_type_info(typeid(Selection))->implicit_conversions.push_back(&selection_of_text);
-  m.def(
-      "hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"),
-      "Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.");
-  m.def(
-      "first", [](const std::string& glob) { return Selection::first(glob); }, py::arg("glob"),
-      "Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.");
-  m.def(
-      "last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"),
-      "Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.");
+  m.def("hits", [](const std::string& glob) { return Selection::touches(glob); }, py::arg("glob"), "What ep.hits calls.");
+  m.def("first", [](const std::string& glob) { return Selection::first(glob); }, py::arg("glob"), "What ep.first calls.");
+  m.def("last", [](const std::string& glob) { return Selection::last(glob); }, py::arg("glob"), "What ep.last calls.");
 }
 
 void bind_num_bounces(py::module_& m) {

@@ -85,20 +85,9 @@ and are NaN for one batch.)")
           "that is more than half the power")
       .def("__repr__", &power_text);
   m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
-        py::arg("progress") = py::none(),
-        R"(Mean received power of paths with its interval, for the whole of a trace or any selection of it.
-
-paths: of a trace, with batches for standard errors; progress: callable(stage, fraction) or None
-tx, rx: indices of the antennas
-Returns a ReceivedPower, in W. Raises IndexError for antennas that are not there, KeyboardInterrupt on Ctrl-C.)");
+        py::arg("progress") = py::none(), "What ep.received_power calls.");
   m.def("received_powers", &powers_of, py::arg("paths"), py::arg("group_of_path"), py::arg("num_groups"), py::kw_only(),
-        py::arg("tx") = 0, py::arg("rx") = 0, py::arg("progress") = py::none(),
-        R"(The same of groups of paths in one pass, each as `received_power` of its paths alone.
-
-paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the antennas
-progress: callable(stage, fraction) or None
-Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
-are not there, KeyboardInterrupt on Ctrl-C.)");
+        py::arg("tx") = 0, py::arg("rx") = 0, py::arg("progress") = py::none(), "What ep.received_powers calls.");
   m.def("received_powers_of_sortings", &powers_of_sortings, py::arg("paths"), py::arg("sortings"),
         py::arg("progress") = py::none(),
         "received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.");

@@ -10,15 +10,10 @@
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"
 #include "error_target.h"
-#include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
-
-const std::vector<std::string> kCrossSectionKeywords = {
-    "frequency", "incidence", "observation", "polarization",    "num_rays", "max_bounces", "seed",         "model",
-    "footprint", "sampler",   "batches",     "target_error_db", "max_rays", "components",  "return_error", "progress"};
 
 enum class NamedChannel { kVv, kHh, kVh, kHv };  // transmitted, received
 constexpr auto kChannel = choice<NamedChannel>("polarization", "vv", "hh", "vh", "hv");
@@ -124,8 +119,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
                   const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
                   std::optional<double> target_error_db, int64_t max_rays, bool components, bool return_error,
-                  const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "rcs", kCrossSectionKeywords);
+                  const py::object& progress) {
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const Channels channels = channels_of(polarization);
@@ -165,40 +159,9 @@ void bind_rcs(py::module_& m) {
         py::arg("num_rays") = py::none(), py::arg("max_bounces") = 4, py::arg("seed") = 1,
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("components") = false,
-        py::arg("return_error") = false, py::arg("progress") = py::none(),
-        R"(Radar cross section of a scene in m^2, far field, at time 0.
-
-Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
-the mean over realisations of the roughness.
-frequency: Hz
-incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
-observation: toward the receiver, likewise; None: monostatic
-polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
-    (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of these. Of
-    a vector its part across the line of sight counts
-model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
-num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
-seed, footprint, sampler: as in trace
-batches: as in trace; 8 for return_error, else 1
-target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as trace does, until each
-    cross section, of a list of polarizations the first with each transmitter, is known that well
-components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
-return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
-    and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
-    smaller than its error
-progress: callable(stage, fraction) or None
-Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction and
-transmit polarization costs a trace of its own. Warns (RuntimeWarning) where max_rays did not do. Raises ValueError for bad
-settings, a zero direction, one along the polarization, an empty scene, and mirrors, which have no cross section.)");
+        py::arg("return_error") = false, py::arg("progress") = py::none(), "What ep.rcs calls.");
   m.def("mie_rcs", &mie_rcs_of, py::arg("radius"), py::arg("frequency"), py::arg("bistatic_angle") = 0.0,
-        py::arg("plane") = "H",
-        R"(Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.
-
-The Mie series, to 1e-9: the reference for curved metal. For ka = 2 pi radius frequency / c up to 1e6.
-radius: m; frequency: Hz
-bistatic_angle: rad in [0, pi] between the directions to transmitter and receiver, 0 is monostatic
-plane: "E" or "H": the field that the plane of both directions holds (alike in the monostatic case)
-Raises ValueError. Source: Mie 1908; Harrington, Time-Harmonic Electromagnetic Fields, 1961, section 6-9.)");
+        py::arg("plane") = "H", "What ep.mie_rcs calls.");
 }
 
 }  // namespace echopath::bindings

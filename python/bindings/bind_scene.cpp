@@ -216,17 +216,8 @@ std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double uni
 }
 
 void bind_readers(py::module_& m) {
-  m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, R"(All faces of a mesh file as one mesh.
-
-path: an OBJ or PLY file (ASCII or binary); unit: metres per file unit
-Returns a Mesh; its original_triangle counts the faces of the file from 0.
-Raises FileError naming the file, and the line where it is text.)");
-  m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, R"(The groups of a mesh file.
-
-path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file
-unit: metres per file unit
-Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
-out. Raises FileError naming the file, and the line where it is text.)");
+  m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_mesh calls.");
+  m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
 }
 
 // --- Scene ---

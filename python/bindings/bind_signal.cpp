@@ -17,21 +17,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-uint64_t as_seed(const py::object& value) {
-  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
-  if (!number) throw py::error_already_set();
-  const uint64_t seed = PyLong_AsUnsignedLongLong(number.ptr());
-  if (PyErr_Occurred()) {
-    PyErr_Clear();
-    throw std::invalid_argument("seed: must be in [0, 2^64), got " + py::str(number).cast<std::string>());
-  }
-  return seed;
-}
-
-py::array noisy_cube(const py::object& cube, const Radar& radar, const py::object& seed) {
+py::array noisy_cube(const py::object& cube, const Radar& radar, uint64_t seed, double start_time) {
   std::vector<Complex> values = as_cube(cube, radar);
-  const uint64_t number = as_seed(seed);
-  run_job("add_noise", py::none(), [&](Job& job) { add_noise(values, radar, number, &job); });
+  const uint64_t of_frame = noise_seed_of_frame(seed, start_time);
+  run_job("add_noise", py::none(), [&](Job& job) { add_noise(values, radar, of_frame, &job); });
   return numpy_take(std::move(values), cube_shape(radar));
 }
 
@@ -68,13 +57,8 @@ py::array synthesize_echoes(const ChirpSequence& waveform, const py::object& del
 }  // namespace
 
 void bind_signal(py::module_& m) {
-  m.def("add_noise", &noisy_cube, py::arg("cube"), py::arg("radar"), py::kw_only(), py::arg("seed"),
-        R"(Adds the receiver's thermal noise to a cube.
-
-Circular Gaussian of k T0 F fs per complex sample, half of it for real samples, independent between samples.
-cube: [tx, rx, chirp, sample] in sqrt(W)
-seed: 0 or more; the same seed gives the same noise
-Returns a new cube. Raises ValueError unless the cube has the shape that the radar gives it.)");
+  m.def("add_noise", &noisy_cube, py::arg("cube"), py::arg("radar"), py::kw_only(), py::arg("seed"), py::arg("start_time"),
+        "What ep.add_noise calls.");
   m.def("noise_power", &noise_power, py::arg("radar"), "Noise power of one IF sample, W.");
   m.def("noise_power_in_cell", &noise_power_in_cell, py::arg("radar"),
         "Noise power of the range-Doppler cell that all samples of a frame make with even weights, W, against the received "

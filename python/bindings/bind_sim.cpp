@@ -9,14 +9,10 @@
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
-#include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
 namespace {
-
-const std::vector<std::string> kSynthesisKeywords = {"tolerance", "method",    "replay",   "evaluate", "phase_tolerance",
-                                                     "retrace",   "keyframes", "progress", "probe"};
 
 enum class Evaluation { kInterpolated, kChirps, kSamples };
 constexpr auto kEvaluation = choice<Evaluation>("evaluate", "interpolated", "chirps", "samples");
@@ -49,9 +45,7 @@ const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
                           const std::string& replay, const std::string& evaluate, double phase_tolerance,
-                          const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe,
-                          const py::kwargs& unknown) {
-  refuse_unknown(unknown, "synthesize", kSynthesisKeywords);
+                          const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe) {
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   return cube_array(run_job("synthesize", progress,
@@ -61,8 +55,7 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
 py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vector<KeyedGrouping>& views, double tolerance,
                          const std::string& method, const std::string& replay, const std::string& evaluate,
                          double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
-                         SignalProbe* probe, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "decompose", kSynthesisKeywords);
+                         SignalProbe* probe) {
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   std::vector<Grouping> rules;
@@ -88,25 +81,7 @@ void bind_sim(py::module_& m) {
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
         py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
-        py::arg("probe") = py::none(),
-        R"(The noise-free IF signal of paths.
-
-radar: another waveform, array or motion than that of the trace, or None
-tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
-method: "auto", "direct" (the reference), "recurrence" or "nufft"
-replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with their
-    triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
-evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
-    each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
-    every sample: for fast rotors, a sine and a cosine per path and sample)
-retrace: for each of `keyframes` stretches of chirps, "never" (one record serves the frame), "invalid" (shadows and points of
-    reflection are renewed, see `renew`; surface that comes into view gets paths of its own if `paths` are those of a whole
-    trace, and none if they are a selection) or "always" (the scene is traced anew with the same settings and seed; random
-    phases of rough surfaces then differ from one stretch to the next, which suits coherent echoes; not for selections)
-keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
-progress: callable(stage, fraction) or None
-probe: a SignalProbe, filled with spot checks of this signal, or None
-Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
+        py::arg("probe") = py::none(), "What ep.synthesize calls.");
   m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
         py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
         py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
@@ -116,7 +91,7 @@ Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).)");
 
 views: list of Grouping
 Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
-tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes, progress and probe are as in synthesize.)");
+The other arguments are those of ep.synthesize.)");
 }
 
 }  // namespace echopath::bindings

@@ -55,14 +55,7 @@ void bind_spectrum(py::module_& m) {
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
-        py::arg("zero_pad") = 1,
-        R"(Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
-
-cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
-window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes
-zero_pad: 1 to 64, transforms of so many times the samples and chirps
-Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
-Raises ValueError naming the argument.)");
+        py::arg("zero_pad") = 1, "What ep.range_doppler calls.");
   m.def(
       "window",
       [](const std::string& name, int n, double sidelobe_db) {

@@ -12,7 +12,6 @@
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "error_target.h"
-#include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -33,10 +32,7 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const py::object& progress, KeptGeometry* kept, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "trace",
-                 {"num_rays", "max_bounces", "seed", "start_time", "polarization", "footprint", "sampler", "batches",
-                  "target_error_db", "max_rays", "progress"});
+                     int64_t max_rays, const py::object& progress, KeptGeometry* kept) {
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
   settings.num_rays = effort.num_rays;
@@ -69,33 +65,8 @@ void bind_trace(py::module_& m) {
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
-        py::arg("kept") = py::none(),
-        R"(Shoots rays from the radar through the scene at mid-frame and records what they hit.
-
-num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away, tells how
-many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get more; up to half of
-those of each lie closer about its points of reflection (strata with focus_of). Unless given,
-and without target_error_db, there are as many as bring the echo of each object that stands above the noise to 0.3 dB (95 %
-interval of bias and chance), 1 000 000 at most; max_bounces: 1 to 64, hits on mirrors count. Between a target
-and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces
-seed: the same seed gives the same bits
-start_time: s, first sample of the frame
-polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised),
-"jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or, unless given, "auto": field vectors where the
-scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas of several
-polarisations; `paths.effects` tells which and why
-footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a flatter
-second order, for curved surfaces whose edges make the echo (a dish along its axis)
-sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
-batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
-fine as its share of the rays; 1 unless given
-target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the echo of
-each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval (`received_power`). A
-RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
-progress: callable(stage, fraction) or None
-kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for
-about 200 bytes a triangle while the scene lives
-Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.)");
+        py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+  m.attr("MAX_RAYS") = kMaxRays;
 }
 
 }  // namespace echopath::bindings

@@ -9,7 +9,6 @@
 #include "choice.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/validity.h"
-#include "keywords.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -18,8 +17,7 @@ namespace {
 using ValidityPtr = std::shared_ptr<Validity>;
 
 ValidityPtr check_validity(const Paths& paths, const Radar* radar, const std::string& replay, const py::object& times,
-                           bool arrays, const py::object& progress, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "validity", {"replay", "times", "arrays", "progress"});
+                           bool arrays, const py::object& progress) {
   ValiditySettings settings;
   if (!times.is_none()) settings.times = as_vector<double>(times, "times");
   settings.arrays = arrays;
@@ -148,9 +146,7 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
       .def("__repr__", &repr_of);
 }
 
-std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, double time, const py::object& progress,
-                                     const py::kwargs& unknown) {
-  refuse_unknown(unknown, "renew", {"time", "progress"});
+std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, double time, const py::object& progress) {
   return run_job("renew", progress, [&](Job& job) {
     return std::make_shared<Renewal>(renew(paths, radar ? *radar : paths.radar, time, &job));
   });
@@ -170,17 +166,7 @@ void bind_renewal(py::module_& m) {
                ", num_moved=" + std::to_string(self.num_moved) + ")";
       });
   m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
-        py::arg("progress") = py::none(),
-        R"(A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
-
-Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view
-has no paths here; `synthesize(retrace="invalid")` adds it.
-
-paths: of a trace
-radar: whose motion carries the antennas of the trace along, or None: that of the trace
-time: s
-progress: callable (stage, fraction) or None
-Returns a Renewal. Raises ValueError when a motion does not cover the time.)");
+        py::arg("progress") = py::none(), "What ep.renew calls.");
 }
 
 }  // namespace
@@ -190,26 +176,9 @@ void bind_validity(py::module_& m) {
   bind_shares(m);
   bind_objects(m);
   bind_report(m);
-  m.def(
-      "validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-      py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
-      py::arg("progress") = py::none(),
-      R"(Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
-
-Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two for
-each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points of
-reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene at these
-times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase
-error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256
-times would have to follow is a warning.
-
-paths: of a trace, all or a selection of them, which asks about these alone
-radar: another waveform, array or motion than that of the trace, or None
-replay: of the replay that is to be certified, as in synthesize
-times: [T] s, of the check, or None: as above
-arrays: keep what is found of each path, [P] each; then all are looked at
-progress: callable(stage, fraction) or None
-Returns a Validity. Raises ValueError for motions that do not cover the times, KeyboardInterrupt on Ctrl-C.)");
+  m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
+        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
+        py::arg("progress") = py::none(), "What ep.validity calls.");
 }
 
 }  // namespace echopath::bindings

@@ -112,12 +112,7 @@ as the array's plane allows.)")
 Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
 quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.)")
       .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
-  m.def("virtual_array", &virtual_array, py::arg("radar"), R"(The virtual array of a radar's transmitters and receivers.
-
-Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
-0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
-found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
-Returns a VirtualArray with positions [tx, rx, 3] in m.)");
+  m.def("virtual_array", &virtual_array, py::arg("radar"), "What ep.virtual_array calls.");
 }
 
 }  // namespace echopath::bindings

@@ -3,18 +3,21 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 from pathlib import Path
 
 import numpy as np
 
 from . import _core
+from .checks import checked
 
 COLUMNS = ("azimuth_deg", "elevation_deg", "gain_db", "phase_deg")
 REQUIRED = COLUMNS[:3]
 ANGLE_DIGITS = 6  # of angles in degrees: samples that agree in them belong to one row or column
 
 
-def load_antenna(path):
+@checked()
+def load_antenna(path: str | os.PathLike[str]) -> _core.AntennaPattern:
     """Reads an antenna pattern from a CSV file.
 
     path: of a text file with a line of column names and then a line for each direction, in any order: azimuth_deg and

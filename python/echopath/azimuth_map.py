@@ -6,8 +6,13 @@ import warnings
 import numpy as np
 
 from . import _core
+from .angles import range_azimuth
+from .checks import keywords, optional, real
+from .keywords import parameters_of
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
+
+_KEYWORDS = keywords("range_azimuth", parameters_of(range_azimuth)[2:])  # all but spectrum and radar
 
 
 def sees_azimuth(radar) -> bool:
@@ -18,15 +23,16 @@ def sees_azimuth(radar) -> bool:
 
 def checked_settings(radar, settings) -> dict:
     """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace."""
-    settings = dict(DEFAULTS if settings is None else settings)
-    velocity, limit = settings.get("velocity"), radar.waveform.max_velocity(len(radar.transmitters))
+    settings = dict(DEFAULTS) if settings is None else _KEYWORDS("angles", settings)
+    velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
+    limit = radar.waveform.max_velocity(len(radar.transmitters))
     if velocity is not None and abs(velocity) > limit:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
     small = _with_one_sample(radar)
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
-        _core.range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None})
+        range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None})
     return settings
 
 

@@ -2,14 +2,15 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 
 import numpy as np
 
 from . import _core
-from .keywords import known_keywords
+from .checks import checked, refused, text
 
+Objects = Mapping[str, str | Iterable[str]] | Iterable[str] | None  # {name: globs}, globs that are names, or the usual ones
 NO_OBJECT = -1  # index of the object of a path that touches none
 
 
@@ -71,8 +72,58 @@ class Families:
         return f"Families({len(self)} of {len(self.objects)} objects, paths={len(self.family_of_path)})"
 
 
-@known_keywords
-def families(paths, objects=None) -> Families:
+def named_globs(objects: Objects) -> list | None:
+    """[(name, [glob, ...]), ...] of the objects of a call; None stays None.
+
+    objects: as in `families`
+    """
+    if objects is None:
+        return None
+    found = objects if isinstance(objects, Mapping) else listed(objects)
+    if not isinstance(found, (Mapping, list)):
+        raise refused(TypeError, "objects", "a dict or a list of globs", objects)
+    pairs = found.items() if isinstance(found, Mapping) else [(glob, glob) for glob in found]
+    return list({_name(name): _globs_of(globs) for name, globs in pairs}.items())
+
+
+def objects_rule(argument: str, value: Objects) -> Objects:
+    """What `families` takes as objects, of which later calls may ask as often as they like."""
+    kept = value if value is None or isinstance(value, Mapping) else listed(value)
+    named_globs(kept)
+    return kept
+
+
+def check_objects(scene, objects) -> None:
+    """Raises what `families` would for `objects` of a scene: to know before a long trace."""
+    named = named_globs(objects)
+    if named is not None:
+        _core.check_objects(scene, named)
+
+
+def listed(value):
+    """A list of what can be iterated, the value itself where it cannot be."""
+    if isinstance(value, (str, bytes)):
+        return value
+    try:
+        return list(value)
+    except TypeError:
+        return value
+
+
+def _name(name) -> str:
+    """A name of an object; a list of globs makes them names, too."""
+    return text("objects", name)
+
+
+def _globs_of(globs) -> list:
+    found = [globs] if isinstance(globs, str) else listed(globs)
+    if not isinstance(found, list):
+        raise refused(TypeError, "objects", "a dict or a list of globs", globs)
+    return [text("objects", glob) for glob in found]
+
+
+@checked(objects=objects_rule)
+def families(paths: _core.Paths, objects: Objects = None) -> Families:
     """Which object each path belongs to, and which ghost it makes, after the Radar Ghost Dataset (Kraus et al. 2021).
 
     A path belongs to the first of the objects that it touches; what else it touches has mirrored it. Hits that follow each
@@ -87,32 +138,3 @@ def families(paths, objects=None) -> Families:
     """
     names, found, family_of_path, grouping = _core.find_families(paths, named_globs(objects))
     return Families(tuple(names), tuple(found), family_of_path, grouping)
-
-
-def named_globs(objects):
-    """[(name, [glob, ...]), ...] of the objects of a call; None stays None.
-
-    objects: as in `families`
-    """
-    if objects is None:
-        return None
-    if isinstance(objects, str):
-        raise TypeError(f"objects: must be a dict or a list of globs, got the text {objects!r}")
-    if not isinstance(objects, Iterable):
-        raise TypeError(f"objects: must be a dict or a list of globs, got {objects!r}")
-    pairs = objects.items() if isinstance(objects, dict) else [(glob, glob) for glob in objects]
-    return list(dict([(name, _globs_of(name, globs)) for name, globs in pairs]).items())
-
-
-def check_objects(scene, objects) -> None:
-    """Raises what `families` would for `objects` of a scene: to know before a long trace."""
-    named = named_globs(objects)
-    if named is not None:
-        _core.check_objects(scene, named)
-
-
-def _globs_of(name, globs) -> list:
-    found = [globs] if isinstance(globs, str) else list(globs) if isinstance(globs, Iterable) else [globs]
-    if not isinstance(name, str) or not all(isinstance(glob, str) for glob in found):
-        raise TypeError(f"objects: names and globs must be texts, got {globs!r} for {name!r}")
-    return found

@@ -3,11 +3,16 @@ from __future__ import annotations
 
 import functools
 import inspect
+from collections.abc import Callable, Iterable
+from typing import Any, ParamSpec, TypeVar
 
 from . import _core
 
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
 
-def refuse_unknown(callee: str, words, known) -> None:
+
+def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str]) -> None:
     """Raises TypeError naming the first of `words` that is not in `known`, and the nearest that is.
 
     callee: name of the function, as its caller sees it; words, known: names of keywords
@@ -15,25 +20,28 @@ def refuse_unknown(callee: str, words, known) -> None:
     known = list(known)
     for word in words:
         if word not in known:
-            nearest = _core.nearest_names(word, known, 1)[0]
-            raise TypeError(f"{callee}: unknown keyword '{word}', the nearest right one is '{nearest}'")
+            readable = str(word).encode("utf-8", "backslashreplace").decode("utf-8")
+            nearest = _core.nearest_names(readable, known, 1)
+            hint = f", the nearest right one is '{nearest[0]}'" if nearest else ""
+            raise TypeError(f"{callee}: unknown keyword '{readable}'{hint}")
 
 
-def parameters_of(function) -> tuple:
-    """Names of a function's own keywords; not those that **keywords passes on."""
-    return tuple(name for name, parameter in inspect.signature(function).parameters.items()
-                 if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY))
+def known_keywords(function: Callable[Parameters, Result], callee: str = "") -> Callable[Parameters, Result]:
+    """Decorator: the call refuses keywords that are no parameters of the function; its signature stays as it is written.
 
-
-def known_keywords(function=None, *, also=()):
-    """Decorator: the call refuses keywords that are neither parameters of the function nor in `also`."""
-    if function is None:
-        return functools.partial(known_keywords, also=also)
-    known = (*parameters_of(function), *also)
+    callee: what errors call it, "": by its name
+    """
+    known = parameters_of(function)
+    name = callee or function.__name__
 
     @functools.wraps(function)
-    def checked(*values, **keywords):
-        refuse_unknown(function.__name__, keywords, known)
+    def checked(*values: Any, **keywords: Any) -> Result:
+        refuse_unknown(name, keywords, known)
         return function(*values, **keywords)
 
     return checked
+
+
+def parameters_of(function: Callable[..., object]) -> tuple[str, ...]:
+    """Names of a function's parameters, in their order."""
+    return tuple(inspect.signature(function).parameters)

@@ -2,6 +2,9 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
+
+from .checks import ArrayLike, checked
 
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still: wider than the window's main lobe
 EXTENT_BELOW_PEAK_DB = 30.0
@@ -22,13 +25,17 @@ def in_dbm(power, least: float = 0.0):
         return 10.0 * np.log10(np.maximum(power, least) * 1e3)
 
 
-def power_by_chirp(cube, *, tx=0, rx=0):
+@checked()
+def power_by_chirp(cube: ArrayLike, *, tx: int = 0, rx: int = 0) -> NDArray[np.float64]:
     """Mean power over the samples of each chirp: the slow-time signal of a channel.
 
     cube: [tx, rx, chirp, sample] in sqrt(W); tx, rx: indices of the channel's antennas
     Returns the powers in dBm, [chirps], -2970 dBm for zeros. Raises IndexError for antennas that are not there.
     """
-    channel = np.asarray(cube)[tx, rx]
+    for argument, index, size in (("tx", tx, len(cube)), ("rx", rx, cube.shape[1])):
+        if index >= size:
+            raise IndexError(f"{argument}: must be below {size}, the number of its antennas, got {index}")
+    channel = cube[tx, rx]
     return in_dbm(np.mean(channel.real ** 2 + channel.imag ** 2, axis=-1), SMALLEST_POWER)
 
 

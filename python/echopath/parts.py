@@ -1,10 +1,17 @@
 """Signals of parts of the paths, which remember what the parts are."""
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
+
 from . import _core
 from ._core import Grouping, Selection
-from ._core import decompose as _decompose
+from .checks import Progress, checked, refused, shown, text
 from .families import Families
+from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
+from .signals import RULES
+
+View = Mapping[str, Selection | str] | Families | Grouping
+Views = View | Mapping[Hashable, View] | None
 
 ONLY_PARTITION = "parts"  # name of a partition that is the only one and has none
 
@@ -25,36 +32,63 @@ class Parts(dict):
         raise KeyError(f"no part '{name}'; there are {', '.join(map(str, self))}")
 
 
-def decompose(paths, radar=None, parts=None, **settings):
-    """The signals of parts of the paths, in one pass.
+def selection_rule(argument: str, value: Selection | str) -> Selection | str:
+    """A Selection, or the text of one, which must be free of faults."""
+    if isinstance(value, Selection):
+        return value
+    if not isinstance(value, str):
+        raise refused(TypeError, argument, "a Selection or its text", value)
+    try:
+        Selection(text(argument, value))
+    except ValueError as error:
+        told = str(error)
+        raise ValueError(told if told.startswith(f"{argument}:") else f"{argument}: {told}") from None
+    return value
 
-    paths: of `trace`; radar: another waveform, array or motion than that of the trace, or None
-    parts: {name: selection}, where the first that takes a path has it; or the Families of the paths (`families`); or {view:
-        either of them} for several views at once
-    settings: tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes and progress,
-        as in `synthesize`
-    Returns Parts, {name: cube} with "other" for the rest, or {Family: cube} with the background last, the cubes [tx, rx,
-    chirp, sample] adding up to the whole; for several views {view: Parts}. Raises ValueError for bad names and selections.
-    """
-    parts = {} if parts is None else parts
-    is_one_view = not _is_table_of_views(parts)
-    views = {"": parts} if is_one_view else parts
-    cubes = _decompose(paths, radar, [_grouping(view) for view in views.values()], **settings)
-    radar = paths.radar if radar is None else radar
-    made = {name: Parts(of_view, view if isinstance(view, dict) else None, radar)
-            for (name, view), of_view in zip(views.items(), cubes)}
-    return made[""] if is_one_view else made
+
+def _selections_rule(argument: str, group: Mapping) -> None:
+    for name, chosen in group.items():
+        selection_rule(f"{argument}.{text(argument, name)}", chosen)
+
+
+def _views_rule(argument: str, value):
+    """None, {name: selection}, Families, or {view: either of them}."""
+    value = {} if value is None else value
+    if not _is_table_of_views(value):
+        if isinstance(value, Mapping):
+            _selections_rule(argument, value)
+        return value
+    for name, view in value.items():
+        if isinstance(view, Mapping):
+            _selections_rule(f"{argument}.{name}", view)
+    return value
+
+
+def as_partitions(parts) -> dict:
+    """{name: selection} or {partition: {name: selection}} -> the latter, whose selections are free of faults."""
+    if parts is None:
+        return {}
+    if not isinstance(parts, Mapping):
+        raise refused(TypeError, "parts", "a dict of selections, or of such dicts", parts)
+    nested = [isinstance(value, Mapping) for value in parts.values()]
+    if any(nested) and not all(nested):
+        raise ValueError(f"parts: must be all selections or all tables of selections, got {shown(list(parts))}")
+    partitions = {text("parts", name): dict(group) for name, group in parts.items()} if any(nested) else {
+        ONLY_PARTITION: dict(parts)} if parts else {}
+    for name, group in partitions.items():
+        _selections_rule("parts" if name == ONLY_PARTITION else f"parts.{name}", group)
+    return partitions
 
 
 def _is_view(value) -> bool:
-    return isinstance(value, (dict, Families, Grouping))
+    return isinstance(value, (Mapping, Families, Grouping))
 
 
 def _is_table_of_views(parts) -> bool:
     """Whether all values are views; none is: one view. Raises ValueError for a mixture."""
     if not _is_view(parts):
-        raise TypeError(f"parts: must be a dict of selections or of views, or Families, got {type(parts).__name__}")
-    if not isinstance(parts, dict):
+        raise refused(TypeError, "parts", "a dict of selections or of views, or Families", parts)
+    if not isinstance(parts, Mapping):
         return False
     num_views = sum(map(_is_view, parts.values()))
     if num_views not in (0, len(parts)):
@@ -66,18 +100,6 @@ def _grouping(view) -> Grouping:
     if isinstance(view, Grouping):
         return view
     return view.grouping if isinstance(view, Families) else Grouping.selections(list(view.items()))
-
-
-def as_partitions(parts) -> dict:
-    """{name: selection} or {partition: {name: selection}} -> the latter."""
-    if not parts:
-        return {}
-    nested = [isinstance(value, dict) for value in parts.values()]
-    if all(nested):
-        return {partition: dict(group) for partition, group in parts.items()}
-    if any(nested):
-        raise ValueError(f"parts: must be all selections or all tables of selections, got {list(parts)}")
-    return {ONLY_PARTITION: dict(parts)}
 
 
 def check_partitions(partitions: dict, scene) -> None:
@@ -98,12 +120,42 @@ def check_partitions(partitions: dict, scene) -> None:
 def parts_of_options(texts) -> dict:
     """{name: Selection} of texts NAME=SELECTION, in their order. Raises ValueError where one is not of that form."""
     parts = {}
-    for text in texts or []:
-        name, equals, expression = text.partition("=")
+    for option in texts or []:
+        name, equals, expression = option.partition("=")
         name = name.strip()
         if not (name and equals):
-            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall*' .* R\", got {text}")
+            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall*' .* R\", got {option}")
         if name in parts:
             raise ValueError(f"part: must have a name of its own, got {name} twice")
         parts[name] = Selection(expression)
     return parts
+
+
+@checked({"settings": SignalSettings}, **RULES, parts=_views_rule)
+def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views = None, *,
+              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
+              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
+              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
+              keyframes: int = SignalSettings.keyframes, settings: SignalSettings | None = None,
+              probe: _core.SignalProbe | None = None, progress: Progress = None) -> Parts | dict[Hashable, Parts]:
+    """The signals of parts of the paths, in one pass.
+
+    paths: of `trace`; radar: another waveform, array or motion than that of the trace, or None
+    parts: {name: selection}, where the first that takes a path has it; or the Families of the paths (`families`); or {view:
+        either of them} for several views at once
+    tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, settings, probe, progress:
+        as in `synthesize`
+    Returns Parts, {name: cube} with "other" for the rest, or {Family: cube} with the background last, the cubes [tx, rx,
+    chirp, sample] adding up to the whole; for several views {view: Parts}. Raises TypeError or ValueError naming the
+    argument, also for bad names and selections.
+    """
+    parts = {} if parts is None else parts
+    is_one_view = not _is_table_of_views(parts)
+    views = {"": parts} if is_one_view else parts
+    cubes = _core.decompose(paths, radar, [_grouping(view) for view in views.values()], tolerance=tolerance, method=method,
+                            replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance, retrace=retrace,
+                            keyframes=keyframes, progress=progress, probe=probe)
+    radar = paths.radar if radar is None else radar
+    made = {name: Parts(of_view, view if isinstance(view, Mapping) else None, radar)
+            for (name, view), of_view in zip(views.items(), cubes)}
+    return made[""] if is_one_view else made

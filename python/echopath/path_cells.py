@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 from . import _core
+from .checks import checked, row_of_channel
 
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 
@@ -37,7 +38,8 @@ class PathCells:
         return inside & (self.range_index != OUTSIDE)
 
 
-def path_cells(paths, spectrum, *, tx=0, rx=0) -> PathCells:
+@checked()
+def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0, rx: int = 0) -> PathCells:
     """The cell of each path in a range-Doppler map of its radar.
 
     Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame. A path
@@ -46,6 +48,7 @@ def path_cells(paths, spectrum, *, tx=0, rx=0) -> PathCells:
     tx, rx: indices of the channel's antennas
     Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there.
     """
+    row_of_channel(paths, tx, rx)
     waveform = paths.radar.waveform
     length, rate = _length_and_rate(paths, tx, rx)
     delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _core
+from .checks import Progress, checked, real
+from .families import Objects, objects_rule
 from .families import families as families_of
 from .measures import in_dbm
 from .visibility import visibility_in_trace
@@ -95,7 +97,9 @@ def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
     return MeanPowers(of_families, dict(zip(groups, of_parts)))
 
 
-def unresolved(paths, objects=None, *, least_power=0.0, progress=None) -> list:
+@checked(objects=objects_rule, least_power=real(0.0, unit="W"))
+def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: float = 0.0,
+               progress: Progress = None) -> list[Unresolved]:
     """The objects, surroundings and ghost families whose mean received power the rays do not know to 0.3 dB.
 
     paths: of a trace; objects: as in `families`

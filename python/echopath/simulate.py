@@ -2,24 +2,32 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from . import _core
+from .angles import range_azimuth
 from .azimuth_map import checked_settings, sees_azimuth
-from .detections.checks import check_keywords
+from .checks import Progress, Window, anything, checked, flag, refused
+from .detections.checks import checked_keywords
 from .detections.of_frame import detect_frame
 from .effects import of_paths
-from .families import check_objects, families as find_families
+from .families import check_objects
+from .families import families as find_families
 from .guard import check_rays, check_signal, warn_of
-from .keywords import refuse_unknown
-from .labels.annotate import MAP_KEYWORDS, label_frame, make_request
+from .labels.annotate import as_label_settings, label_frame, make_request
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from .path_subset import part_of_path
 from .resolution import mean_powers, unresolved_of
+from .settings import (
+    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings,
+)
+from .signals import synthesize
 from .stages import Stage, StageClock
-from .tracing import trace
+from .tracing import trace as trace_scene
 
 _FAMILIES, _WHOLE = object(), object()  # views that have the name of no partition
 
@@ -33,7 +41,7 @@ class Frame:
     parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
-    noise_seed: of the thermal noise, None: no noise
+    noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
@@ -67,8 +75,13 @@ class Frame:
 
     @property
     def noisy_cube(self):
-        """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call."""
-        return self.cube if self.noise_seed is None else _core.add_noise(self.cube, self.radar, seed=self.noise_seed)
+        """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call.
+
+        The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
+        """
+        if self.noise_seed is None:
+            return self.cube
+        return _core.add_noise(self.cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
 
     @property
     def effects(self) -> list:
@@ -91,7 +104,7 @@ class Frame:
 
         spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction) or None
         """
-        return _core.range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
+        return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 
     @cached_property
     def mean_power(self):
@@ -128,54 +141,77 @@ class Frame:
         return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
 
 
-def simulate(scene, radar, *, num_rays=None, max_bounces=4, seed=1, start_time=0.0, polarization="auto",
-             footprint="second_order", sampler="lattice", batches=None, target_error_db=None, max_rays=2**24,
-             parts=None, tolerance=1e-7, method="auto", replay="material", evaluate="interpolated", retrace="never",
-             keyframes=0, noise_seed=1, window="hann", zero_pad=1, angles=None, labels=None, detections=None,
-             guard=True, progress=None) -> Frame:
+@checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES, parts=anything,
+         angles=anything, labels=anything, detections=anything, guard=flag)
+def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | None = TraceSettings.num_rays,
+             max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
+             start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
+             footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
+             batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
+             max_rays: int | float = TraceSettings.max_rays, parts: Mapping[str, Any] | None = None,
+             tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
+             replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
+             phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
+             keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
+             window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+             angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
+             detections: bool | Mapping[str, Any] | None = None, guard: bool = True, trace: TraceSettings | None = None,
+             signal: SignalSettings | None = None, progress: Progress = None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
+    scene: what is traced; radar: that looks at it
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
         max_rays: as in `trace`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
-    tolerance, method, replay, evaluate, retrace, keyframes: as in `synthesize`; window, zero_pad: as in `range_doppler`
-    noise_seed: of the thermal noise, which only the whole gets; None: no noise
+    tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; window, zero_pad: as
+        in `range_doppler`
+    noise_seed: of the thermal noise, which only the whole gets; None: no noise. Noise is drawn from it and start_time: frames
+        in a row have noise of their own, and each the same whether it is simulated alone or not
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
-    labels: True, or keywords of `annotate` (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in dB, errors):
-        the frame carries the labels of its map, from the same pass, with the cubes of all families in memory; {}: as True;
-        None or False: none, and nothing is spent on them
+    labels: True, LabelSettings or a dict of their keywords (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in
+        dB, errors): the frame carries the labels of its map, from the same pass, with the cubes of all families in memory;
+        {}: as True; None or False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
     guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
         other: see `Frame.checks`
+    trace, signal: TraceSettings and SignalSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction) or None
-    Returns a Frame. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning) where a check
-    disagrees by more than is promised.
+    Returns a Frame. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning)
+    where a check disagrees by more than is promised.
     """
+    tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
+                            polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
+                            target_error_db=target_error_db, max_rays=max_rays)
+    signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
+                             phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
+                             window=window, zero_pad=zero_pad)
+    return _simulated(scene, radar, tracing, signals, parts, angles, labels, detections, guard, progress)
+
+
+def _simulated(scene, radar, tracing: TraceSettings, signals: SignalSettings, parts, angles, labels, detections, guard,
+               progress) -> Frame:
     partitions, angle_settings = as_partitions(parts), checked_settings(radar, angles)
     check_partitions(partitions, scene)
-    request = _label_request(scene, radar, labels, 1 if batches is None else batches, window, zero_pad, angle_settings)
-    detect_keywords = _detect_keywords(scene, radar, detections, request, {"window": window, "zero_pad": zero_pad})
+    of_map = {"window": signals.window, "zero_pad": signals.zero_pad}
+    request = _label_request(scene, radar, as_label_settings(labels), tracing.batches or 1, of_map, angle_settings)
+    detect_keywords = _detect_keywords(scene, radar, detections, request, of_map)
     clock = StageClock()
     with clock("trace"):
-        paths = trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                      polarization=polarization, footprint=footprint, sampler=sampler,
-                      batches=batches, target_error_db=target_error_db, max_rays=max_rays, progress=progress)
+        paths = trace_scene(scene, radar, settings=tracing, progress=progress)
     with clock("synthesis"):
-        settings = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate, "retrace": retrace,
-                    "keyframes": keyframes, "progress": progress}
-        probe = _core.SignalProbe(seed=seed) if guard else None
+        settings = signals.of_replay() | {"progress": progress}
+        probe = _core.SignalProbe(seed=tracing.seed) if guard else None
         families = find_families(paths, request.objects) if request else None
         cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings | {"probe": probe})
     with clock("parts of paths"):
         group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
-                  part_of_path=group_of_path, noise_seed=noise_seed,
-                  spectrum_settings={"window": window, "zero_pad": zero_pad},
-                  angle_settings=angle_settings, replay=replay, evaluate=evaluate, retrace=retrace,
-                  keyframes=keyframes, checks=_checks(whole, probe, tolerance, paths.frame) if guard else [],
+                  part_of_path=group_of_path, noise_seed=signals.noise_seed, spectrum_settings=of_map,
+                  angle_settings=angle_settings, replay=signals.replay, evaluate=signals.evaluate, retrace=signals.retrace,
+                  keyframes=signals.keyframes, checks=_checks(whole, probe, signals, paths.frame) if guard else [],
                   stages=clock.stages)
-    warn_of(frame.checks, stacklevel=2)
+    warn_of(frame.checks, stacklevel=4)  # past _simulated, simulate and what checks its arguments
     with clock("spectra"):
         with_spectra(frame)
     if sees_azimuth(radar):
@@ -205,37 +241,34 @@ def with_spectra(frame: Frame) -> Frame:
 def _cubes(paths, radar, partitions: dict, families, settings: dict):
     """{partition: {part: cube}}, the whole, and {Family: cube} ({} without families), from one pass."""
     if not partitions and families is None:
-        return {}, _core.synthesize(paths, radar, **settings), {}
+        return {}, synthesize(paths, radar, **settings), {}
     views = partitions if families is None else {**partitions, _FAMILIES: families}
     cubes = decompose(paths, radar, views, **settings)
     whole = sum(next(iter(cubes.values())).values())
     return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
 
 
-def _checks(cube, probe, tolerance: float, trace_frame) -> list:
-    return check_signal(cube, probe, tolerance=tolerance) + check_rays(probe, trace_frame)
+def _checks(cube, probe, signals: SignalSettings, trace_frame) -> list:
+    found = check_signal(cube, probe, tolerance=signals.tolerance, phase_tolerance=signals.phase_tolerance)
+    return found + check_rays(probe, trace_frame)
 
 
-def _label_request(scene, radar, labels, num_batches: int, window, zero_pad, angles: dict):
+def _label_request(scene, radar, settings: LabelSettings | None, num_batches: int, of_map: dict, angles: dict):
     """How to label, checked; None: not at all."""
-    if labels is None or labels is False:
+    if settings is None:
         return None
-    keywords = {} if labels is True else dict(labels)
-    refuse_unknown("labels", keywords, MAP_KEYWORDS)
-    check_objects(scene, keywords.get("objects"))
-    if keywords.get("plane") == "range_azimuth":
-        keywords["angles"] = angles
-    return make_request(radar, num_batches, window=window, zero_pad=zero_pad, **keywords)
+    check_objects(scene, settings.objects)
+    return make_request(radar, num_batches, settings, **of_map, angles=angles if settings.plane == "range_azimuth" else None)
 
 
-def _detect_keywords(scene, radar, detections, request, spectrum_settings: dict):
+def _detect_keywords(scene, radar, detections, request, of_map: dict):
     """Keywords of `detect_frame`, checked before the long work; None: no detections."""
     if detections is None or detections is False:
         return None
+    if not (detections is True or isinstance(detections, Mapping)):
+        raise refused(TypeError, "detections", "True, False or a dict of keywords of detect_frame", detections)
     keywords = {} if detections is True else dict(detections)
-    keywords = ({"objects": request.objects} if request else {}) | keywords
-    check_keywords(scene, radar, spectrum_settings, keywords)
-    return keywords
+    return checked_keywords(scene, radar, of_map, ({"objects": request.objects} if request else {}) | keywords)
 
 
 def _as_text(partitions: dict) -> dict:

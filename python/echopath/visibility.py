@@ -4,8 +4,8 @@ from __future__ import annotations
 import dataclasses
 
 from . import _core
-from .families import named_globs
-from .keywords import known_keywords
+from .checks import Progress, checked, count, optional, real
+from .families import Objects, named_globs, objects_rule
 
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
@@ -77,8 +77,9 @@ class ObjectVisibility:
         return f"<ObjectVisibility {self.name}: {repr(self.worse)[7:]}"
 
 
-@known_keywords
-def visibility(scene, radar, objects=None, *, time=None, num_directions=4096, progress=None) -> list:
+@checked(objects=objects_rule, time=optional(real(unit="s")), num_directions=count(1, 2**24))
+def visibility(scene: _core.Scene, radar: _core.Radar, objects: Objects = None, *, time: float | None = None,
+               num_directions: int = 4096, progress: Progress = None) -> list[ObjectVisibility]:
     """How much of each object the radar can see, and what hides the rest, by shadow rays.
 
     Directions over the cone that holds an object: where it would be hit if it were alone, is something else nearer? Straight

@@ -35,8 +35,8 @@ def test_words_name_objects_and_ghosts(labels):
     ({"plane": "elevation"}, "plane: must be 'range_doppler' or 'range_azimuth', got 'elevation'"),
     ({"plane": "range_azimuth"}, "plane: 'range_azimuth' needs antennas side by side"),
     ({"angles": {}}, "angles: are for the plane 'range_azimuth'"),
-    ({"dynamic_range_db": -1}, "dynamic_range_db: must not be negative"),
-    ({"noise_margin_db": np.nan}, "noise_margin_db: must be finite"),
+    ({"dynamic_range_db": -1}, "dynamic_range_db: must be a finite number of at least 0 dB, got -1"),
+    ({"noise_margin_db": np.nan}, "noise_margin_db: must be a finite number from -300 to 300 dB, got nan"),
     ({"errors": True}, r"errors: need independent batches of rays, trace\(batches=8\)"),
     ({"window": "han"}, "window"),
     ({"zero_pad": 0}, "zero_pad"),
@@ -64,7 +64,7 @@ def test_unknown_keywords_name_the_nearest(plates_and_wall):
 @pytest.mark.parametrize("objects, message", [({"x": "bicycle"}, "objects: .*'bicycle'"),
                                               ({"x": "a", "y": "a"}, "objects: must each have a mesh")])
 def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkeypatch, objects, message):
-    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace", None)
+    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace_scene", None)
     with pytest.raises(ValueError, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), labels={"objects": objects})
 
@@ -87,11 +87,11 @@ def test_detections_have_the_objects_of_the_labels(plates_and_wall):
 @pytest.mark.parametrize("keywords, error, message", [
     ({"false_alarm": 1e-3}, TypeError,
      "detections: unknown keyword 'false_alarm', the nearest right one is 'false_alarm_rate'"),
-    ({"false_alarm_rate": 2.0}, ValueError, "false_alarm_rate: must be in"),
+    ({"false_alarm_rate": 2.0}, ValueError, "false_alarm_rate: must be a finite number from 1e-15 to 0.5, got 2"),
     ({"objects": ["bicycle"]}, ValueError, "bicycle"),
 ])
 def test_bad_keywords_of_detections_are_told_before_the_trace(plates_and_wall, monkeypatch, keywords, error, message):
-    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace", None)
+    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace_scene", None)
     with pytest.raises(error, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), detections=keywords)
 

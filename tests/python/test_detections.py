@@ -375,8 +375,10 @@ def test_objects_that_are_no_globs_are_named(spheres, objects):
 def test_bad_arguments_are_named(spheres):
     radar, paths, spectrum = spheres
     parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
-    with pytest.raises(ValueError, match="labels"):
-        ep.detect(spectrum, radar, parts=parts, labels=object())
+    with pytest.raises(TypeError, match="labels: must be Labels"):
+        ep.detect(spectrum, radar, labels=object())
+    with pytest.raises(ValueError, match="labels: cannot be given beside parts"):
+        ep.detect(spectrum, radar, parts=parts, labels=ep.annotate(paths, parts))
     with pytest.raises(ValueError, match="paths: must be traced with the radar"):
         other = radar_with(num_chirps=32)
         ep.detect(ep.range_doppler(np.zeros((1, 8, 32, 256), complex), other), other, paths=paths)

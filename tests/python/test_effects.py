@@ -1,6 +1,5 @@
 """The report of modelled effects: each is there exactly when the scene or the radar asks for it."""
 import inspect
-import re
 import warnings
 
 import h5py
@@ -117,8 +116,7 @@ def test_every_rule_has_a_case():
 
 
 def keywords_of(function) -> set:
-    """Of a function of the core, from the signature in its docstring."""
-    return set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
+    return set(inspect.signature(function).parameters)
 
 
 def fields_of(kind) -> set:
@@ -127,7 +125,7 @@ def fields_of(kind) -> set:
 
 PUBLIC = {"Material": fields_of(ep.Material), "Antenna": fields_of(ep.Antenna),
           "AntennaPattern": fields_of(ep.AntennaPattern), "ChirpSequence": fields_of(ep.ChirpSequence),
-          "Radar": fields_of(ep.Radar), "Node": fields_of(ep._core.Node), "trace": keywords_of(ep._core.trace),
+          "Radar": fields_of(ep.Radar), "Node": fields_of(ep._core.Node), "trace": keywords_of(ep.trace),
           "synthesize": keywords_of(ep.synthesize)}
 
 

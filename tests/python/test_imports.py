@@ -9,7 +9,7 @@ PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 
 # Imports within functions that close a circle, and why each may.
 CLOSING = {
-    ("echopath", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
+    ("echopath.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }
 
@@ -26,11 +26,11 @@ def modules_of(packages) -> dict:
 
 
 def statements(node, in_function=False):
-    """(import statement, whether it stands in a function)"""
+    """(import statement, whether it stands in a function); not those that only type checkers read."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, (ast.Import, ast.ImportFrom)):
             yield child, in_function
-        else:
+        elif not (isinstance(child, ast.If) and isinstance(child.test, ast.Name) and child.test.id == "TYPE_CHECKING"):
             yield from statements(child, in_function or isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)))
 
 
@@ -129,6 +129,7 @@ CIRCLES = {
     "under a condition": ("if 1:\n    from .b import x", "try:\n    from . import a\nfinally:\n    pass", ["p.a", "p.b"]),
     "one way": ("from .b import x", "import json", []),
     "of the extension": ("from .b import x", "from . import _core", []),
+    "of types alone": ("from .b import x", "if TYPE_CHECKING:\n    from .a import y", []),
     "in a function": ("from .b import x", "def f():\n    from .a import y", []),
 }
 

@@ -74,8 +74,8 @@ def scene_path(tmp_path_factory):
 @pytest.fixture(scope="module")
 def frame(scene_path):
     file = ep.load_scene(scene_path)
-    return ep.simulate(file.scene, file.radar, **file.trace_settings(), **file.spectrum_settings(), parts=file.partitions(),
-                       labels=file.label_settings(), detections=file.detection_settings())
+    return ep.simulate(file.scene, file.radar, trace=file.trace, signal=file.signal, parts=file.partitions(),
+                       labels=file.labels, detections=file.detection_settings())
 
 
 @pytest.fixture(scope="module")
@@ -288,12 +288,12 @@ def _num_cells(axes) -> int:
 # --- scene files and commands ---
 
 def test_labels_of_a_scene_file_are_keywords_of_annotate(scene_path, tmp_path):
-    assert ep.load_scene(scene_path).label_settings() == {
-        "plane": "range_doppler", "objects": {"truck": "van", "person": ["person", "pers*"]}, "noise": True,
-        "noise_margin_db": 6.0, "dynamic_range_db": 60.0, "errors": True}
+    assert ep.load_scene(scene_path).labels == ep.LabelSettings(
+        plane="range_doppler", objects={"truck": "van", "person": ["person", "pers*"]}, noise=True, noise_margin_db=6.0,
+        dynamic_range_db=60.0, errors=True)
     scene_path = tmp_path / "plain.toml"
     scene_path.write_text(SCENE)
-    assert ep.load_scene(scene_path).label_settings() is None and ep.load_scene(scene_path).detection_settings() is None
+    assert ep.load_scene(scene_path).labels is None and ep.load_scene(scene_path).detection_settings() is None
 
 
 @pytest.mark.parametrize("table, message", [

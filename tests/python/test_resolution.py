@@ -191,7 +191,7 @@ def test_files_from_before_load_without(frame, tmp_path):
 def test_groups_of_the_wrong_size_are_refused(frame):
     with pytest.raises(ValueError, match="group_of_path: must have one group for each path"):
         ep.received_powers(frame.paths, np.zeros(3, np.uint32), 1)
-    with pytest.raises(ValueError, match="group_of_path: must lie below the number of groups"):
+    with pytest.raises(ValueError, match="group_of_path: must be from 0 to 0, below num_groups, got 1 to 1"):
         ep.received_powers(frame.paths, np.ones(frame.paths.num_paths, np.uint32), 1)
 
 

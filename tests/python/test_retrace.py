@@ -156,7 +156,7 @@ def test_a_new_trace_refuses_selections():
 @pytest.mark.parametrize("keywords, text", [
     ({"retrace": "sometimes"}, "retrace: must be"),
     ({"retrace": "invalid", "keyframes": 17}, "keyframes: must lie in"),
-    ({"retrace": "invalid", "keyframes": -1}, "keyframes: must not be negative"),
+    ({"retrace": "invalid", "keyframes": -1}, "keyframes: must be a whole number from 0 to 2147483647, got -1"),
 ])
 def test_bad_settings_are_named(keywords, text):
     radar = radar_of(num_chirps=16)

@@ -126,11 +126,8 @@ direct = "T . R"
 [parts.body]
 quad = "T 'quad' R"
 """))
-    assert scene_file.trace_settings() == {"num_rays": 1234, "max_bounces": 4, "seed": 1, "start_time": 0.0,
-                                           "polarization": "auto", "footprint": "second_order", "sampler": "lattice",
-                                           "batches": None, "target_error_db": None,
-                                           "max_rays": 2**24}
-    assert scene_file.spectrum_settings() == {"window": ("chebyshev", 80), "zero_pad": 1}
+    assert scene_file.trace == ep.TraceSettings(num_rays=1234)
+    assert scene_file.signal == ep.SignalSettings(window=("chebyshev", 80))
     assert scene_file.partitions() == {"route": {"direct": "T . R"}, "body": {"quad": "T 'quad' R"}}
 
 
@@ -215,7 +212,7 @@ FAULTS = [
     (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {heigth = 2.0}",
      "objects[0].parameters.heigth: unknown key; did you mean 'height'?"),
     (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {height = 'tall'}",
-     "objects[0].parameters: height must be a finite number, got 'tall'"),
+     "objects[0].parameters: height: must be a finite number from 0.5 to 2.5 m, got 'tall'"),
 ]
 
 

@@ -118,7 +118,7 @@ def test_one_trace_serves_what_stands_still():
 def test_one_trace_serves_the_street():
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = ep.load_scene(path)
-    paths = ep.trace(street.scene, street.radar, **street.trace_settings() | {"num_rays": 20000})
+    paths = ep.trace(street.scene, street.radar, settings=street.trace, num_rays=20000)
     report = ep.validity(paths, street.radar)
     assert report.ok, str(report)
     assert 0 < report.objects["pedestrian"].blocked < 0.05  # the limbs of a walker do come in each other's way
@@ -292,7 +292,7 @@ def test_nothing_is_wrong_at_the_trace_time():
 def test_report_has_the_same_bits_for_any_number_of_threads():
     with as_file(data_folder("scenes") / "street.toml") as path:
         street = ep.load_scene(path)
-    paths = ep.trace(street.scene, street.radar, **street.trace_settings() | {"num_rays": 2000})
+    paths = ep.trace(street.scene, street.radar, settings=street.trace, num_rays=2000)
     texts = []
     try:
         for threads in (1, 2, 5):

@@ -69,5 +69,5 @@ def test_time_moves_what_hides():
 def test_bad_objects_are_named():
     with pytest.raises(ValueError, match="nearest names: car"):
         ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), ["cart"])
-    with pytest.raises(ValueError, match="num_directions: must be at least 1"):
+    with pytest.raises(ValueError, match="num_directions: must be a whole number from 1 to 16777216, got 0"):
         ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), num_directions=0)

@@ -14,13 +14,11 @@ from .model import Filters, PartSet, Session, Signals, ViewInput, whole_part
 from .scene_builder import SceneBuilder
 
 NUM_RAYS = 300
-_KEYWORDS = ("selection", "num_rays", "color_by", "cmap", "clim", "chirp", "tx", "rx", "view", "show_hits", "show_legend",
-             "hidden", "plotter", "off_screen", "screenshot", "window_size", "return_plotter")
 
 
 def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
               tx=0, rx=0, view="fit", show_hits=False, show_legend=True, hidden=(), plotter=None, off_screen=None,
-              screenshot=None, window_size=(1200, 800), return_plotter=False, **unknown):
+              screenshot=None, window_size=(1200, 800), return_plotter=False):
     """Draws a scene with its strongest rays.
 
     scene: that of the paths, or None; paths: of `trace`
@@ -34,7 +32,6 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     off_screen: True: without a screen; screenshot: PNG file to be written; return_plotter: instead of None
     Raises ValueError naming the argument.
     """
-    _refuse_unknown(unknown)
     _check_numbers(paths.radar, tx, rx, num_rays, chirp)
     session = _session_of(scene, paths)
     session.set_max_rays(num_rays)
@@ -83,9 +80,3 @@ def _session_of(scene, paths) -> Session:
     cube = np.zeros(shape, complex)
     signals = Signals(paths, {})
     return Session(ViewInput(paths, PartSet(whole_part(signals.map_of(cube))), signals, cube))
-
-
-def _refuse_unknown(unknown: dict) -> None:
-    for word in unknown:
-        nearest = ep._core.nearest_names(word, list(_KEYWORDS), 1)
-        raise TypeError(f"plot_rays: unknown keyword '{word}', the nearest right one is '{nearest[0] if nearest else ''}'")

@@ -1,6 +1,7 @@
 #include "echopath/signal/noise.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
@@ -33,6 +34,18 @@ double noise_power_in_cell(const Radar& radar) {
 int64_t cube_size(const Radar& radar) {
   return static_cast<int64_t>(radar.transmitters.size()) * static_cast<int64_t>(radar.receivers.size()) *
          radar.waveform.num_chirps * radar.waveform.num_samples;
+}
+
+uint64_t noise_seed_of_frame(uint64_t seed, double start_time) {
+  if (start_time == 0.0) return seed;
+  uint64_t time_bits = 0;
+  std::memcpy(&time_bits, &start_time, sizeof time_bits);
+  // The noise of samples has counters of dimension 0.
+  constexpr uint32_t kFrameDimension = 1;
+  const auto words = philox4x32({static_cast<uint32_t>(time_bits), static_cast<uint32_t>(time_bits >> 32), kFrameDimension,
+                                 static_cast<uint32_t>(Stream::kNoise)},
+                                philox_key(seed));
+  return uint64_t{words[0]} << 32 | words[1];
 }
 
 void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job) {

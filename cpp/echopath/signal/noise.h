@@ -26,6 +26,11 @@ void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint
 // Adds this noise to the `size` samples at `cube`.
 void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job = nullptr);
 
+// Returns the seed of the noise of the frame that starts at `start_time` (s): frames that start at different times have
+// independent noise of one seed, and a frame has the same noise whether it is simulated alone or among others. It is `seed`
+// itself for a frame that starts at 0.
+uint64_t noise_seed_of_frame(uint64_t seed, double start_time);
+
 // Returns the number of samples in the cube of a radar: transmitters x receivers x chirps x samples.
 int64_t cube_size(const Radar& radar);
 

@@ -2,51 +2,68 @@
 
 Targets (plate, dihedral, trihedral) look along -x: placed at (x, 0, 0) they face a radar at the origin.
 """
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 
+from .. import _core
+from ..checks import checked, count, optional, positive, real, refused
 from . import surfaces
-from .checks import edge_length, nearest_keywords, number, positive
 
 ROUND_PIECES = 12   # default pieces of an icosahedron edge of a sphere, and of a quarter turn of other round bodies
 FACE_EDGE = 1.33    # longest edge, in radii, of an icosahedron face once it is pushed out to the sphere
+MOST_SUBDIVISIONS = 1000
+
+_LENGTH = positive("m")
+_EDGE = optional(_LENGTH)
 
 
-@nearest_keywords
-def plate(width, height, *, edge=None):
+def _lengths(number: int):
+    """The rule of so many lengths in m, or one for all of them."""
+    def check(argument: str, value) -> list[float]:
+        values = [value] * number if np.ndim(value) == 0 else list(value)
+        if len(values) != number:
+            raise refused(ValueError, argument, f"one length in m or {number}", value)
+        return [_LENGTH(argument, item) for item in values]
+
+    return check
+
+
+@checked(width=_LENGTH, height=_LENGTH, edge=_EDGE)
+def plate(width: float, height: float, *, edge: float | None = None) -> _core.Mesh:
     """Flat rectangle about the origin in the plane x = 0, `width` along y and `height` along z in m, front towards -x.
 
     edge: longest side in m of the grid of triangles, None for as few as possible.
     """
-    width, height = positive("width", width), positive("height", height)
-    edge = edge_length(edge, max(width, height))
+    edge = surfaces.edge_length(edge, max(width, height))
     return _mesh(surfaces.parallelogram([0, width / 2, -height / 2], [0, -width, 0], [0, 0, height], edge))
 
 
-@nearest_keywords
-def dihedral(size, height=None, *, edge=None):
+@checked(size=_LENGTH, height=optional(_LENGTH), edge=_EDGE)
+def dihedral(size: float, height: float | None = None, *, edge: float | None = None) -> _core.Mesh:
     """Two rectangles at a right angle that open towards -x.
 
     They meet on the z axis; each is `size` wide and `height` high in m (default: square), z from -height/2 to height/2.
     Peak radar cross section 8 pi (size height / wavelength)^2 towards -x. `edge` is as in `plate`.
     """
-    size = positive("size", size)
-    height = size if height is None else positive("height", height)
-    edge = edge_length(edge, max(size, height))
+    height = size if height is None else height
+    edge = surfaces.edge_length(edge, max(size, height))
     side, up = size / np.sqrt(2.0), np.array([0.0, 0.0, height])
     left, right = np.array([-side, side, 0.0]), np.array([-side, -side, 0.0])
     return _mesh(surfaces.joined(surfaces.parallelogram(-up / 2, up, left, edge),
                                  surfaces.parallelogram(-up / 2, right, up, edge)))
 
 
-@nearest_keywords
-def trihedral(size, *, edge=None):
+@checked(size=_LENGTH, edge=_EDGE)
+def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
     """Corner reflector of three right-angled triangles, apex at the origin, that opens towards -x.
 
     `size` in m is the length of the three edges at the apex, one of which lies in the plane y = 0 and rises. Peak radar
     cross section 4 pi size^4 / (3 wavelength^2) towards -x. `edge` is as in `plate`.
     """
-    size = positive("size", size)
-    pieces = surfaces.num_pieces(np.sqrt(2.0) * size, edge_length(edge, size))
+    pieces = surfaces.num_pieces(np.sqrt(2.0) * size, surfaces.edge_length(edge, size))
     turn = np.radians([0.0, 120.0, 240.0])
     across = np.sqrt(2.0 / 3.0)
     tips = size * np.column_stack([np.full(3, -1.0 / np.sqrt(3.0)), across * np.sin(turn), across * np.cos(turn)])
@@ -55,11 +72,11 @@ def trihedral(size, *, edge=None):
     return _mesh(surfaces.joined(*faces))
 
 
-@nearest_keywords
-def box(size, *, edge=None):
+@checked(size=_lengths(3), edge=_EDGE)
+def box(size: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
     """Closed box about the origin; `size` is one length in m or three (x, y, z), `edge` as in `plate`."""
-    x, y, z = _lengths("size", size, 3)
-    edge = edge_length(edge, max(x, y, z), 12.0)
+    x, y, z = size
+    edge = surfaces.edge_length(edge, max(x, y, z), 12.0)
     low = -np.array([x, y, z]) / 2.0
     axes = np.diag([x, y, z])
     sides = []
@@ -69,64 +86,59 @@ def box(size, *, edge=None):
     return _mesh(surfaces.joined(*sides))
 
 
-@nearest_keywords
-def ground(size, *, z=0.0, edge=None):
+@checked(size=_lengths(2), z=real(unit="m"), edge=_EDGE)
+def ground(size: float | Sequence[float], *, z: float = 0.0, edge: float | None = None) -> _core.Mesh:
     """Horizontal rectangle about the z axis at the height `z`, front up.
 
     `size` is one length in m or two (x, y), `edge` as in `plate`.
     """
-    x, y = _lengths("size", size, 2)
-    edge = edge_length(edge, max(x, y))
-    return _mesh(surfaces.parallelogram([-x / 2, -y / 2, number("z", z)], [x, 0, 0], [0, y, 0], edge))
+    x, y = size
+    edge = surfaces.edge_length(edge, max(x, y))
+    return _mesh(surfaces.parallelogram([-x / 2, -y / 2, z], [x, 0, 0], [0, y, 0], edge))
 
 
-@nearest_keywords
-def wall(length, height, *, edge=None):
+@checked(length=_LENGTH, height=_LENGTH, edge=_EDGE)
+def wall(length: float, height: float, *, edge: float | None = None) -> _core.Mesh:
     """Vertical rectangle in the plane y = 0, x from -length/2 to length/2, z from 0 to height, front towards -y.
 
     So it stands on the left of a street along x; yaw = pi turns it for the right side. Lengths in m, `edge` as in `plate`.
     """
-    length, height = positive("length", length), positive("height", height)
-    edge = edge_length(edge, max(length, height))
+    edge = surfaces.edge_length(edge, max(length, height))
     return _mesh(surfaces.parallelogram([-length / 2, 0, 0], [length, 0, 0], [0, 0, height], edge))
 
 
-@nearest_keywords
-def sphere(radius, *, edge=None, subdivisions=None):
+@checked(radius=_LENGTH, edge=_EDGE, subdivisions=optional(count(1, MOST_SUBDIVISIONS)))
+def sphere(radius: float, *, edge: float | None = None, subdivisions: int | None = None) -> _core.Mesh:
     """Sphere of that `radius` in m about the origin with its vertices on the surface.
 
     Give `edge`, or `subdivisions`, the number of pieces of an icosahedron's edge (20 subdivisions^2 triangles);
     default 12.
     """
-    radius = positive("radius", radius)
     if edge is not None and subdivisions is not None:
-        raise ValueError(f"edge and subdivisions exclude each other, got {edge!r} and {subdivisions!r}")
+        raise ValueError(f"edge and subdivisions: must not be given together, got {edge!r} and {subdivisions!r}")
     if edge is not None:
-        subdivisions = surfaces.num_pieces(FACE_EDGE * radius, edge_length(edge, 2.5 * radius))
+        subdivisions = surfaces.num_pieces(FACE_EDGE * radius, surfaces.edge_length(edge, 2.5 * radius))
     pieces = ROUND_PIECES if subdivisions is None else subdivisions
-    if not isinstance(pieces, (int, np.integer)) or isinstance(pieces, bool) or not 1 <= pieces <= 1000:
-        raise ValueError(f"subdivisions must be a whole number from 1 to 1000, got {pieces!r}")
-    return _mesh(surfaces.icosphere(radius, int(pieces)))
+    return _mesh(surfaces.icosphere(radius, pieces))
 
 
-@nearest_keywords
-def ellipsoid(semi_axes, *, edge=None):
+@checked(semi_axes=_lengths(3), edge=_EDGE)
+def ellipsoid(semi_axes: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
     """Ellipsoid about the origin; `semi_axes` (x, y, z) in m, `edge` as in `plate`."""
-    a, b, c = _lengths("semi_axes", semi_axes, 3)
+    a, b, c = semi_axes
     edge = _round_edge(edge, min(a, b), max(a, b, c))
     section = surfaces.table_section([(-c, 0, 0, a, b, 2), (c, 0, 0, a, b, 2)], c, c)
     return _mesh(surfaces.swept(section, -c, c, edge))
 
 
-@nearest_keywords
-def capsule(radius, length, *, edge=None):
+@checked(radius=_LENGTH, length=_LENGTH, edge=_EDGE)
+def capsule(radius: float, length: float, *, edge: float | None = None) -> _core.Mesh:
     """Cylinder of `radius` along z with half spheres on its ends, `length` from tip to tip, about the origin.
 
     Lengths in m, `edge` as in `plate`.
     """
-    radius, length = positive("radius", radius), positive("length", length)
     if length < 2.0 * radius:
-        raise ValueError(f"length must be at least twice the radius {radius!r} m, got {length!r}")
+        raise ValueError(f"length: must be at least twice the radius {radius!r} m, got {length!r}")
     edge = _round_edge(edge, radius, length)
     section = surfaces.table_section([(-length / 2, 0, 0, radius, radius, 2), (length / 2, 0, 0, radius, radius, 2)],
                                      radius, radius)
@@ -134,8 +146,6 @@ def capsule(radius, length, *, edge=None):
 
 
 def _mesh(surface):
-    from echopath import _core
-
     return _core.Mesh(*surface)
 
 
@@ -144,14 +154,7 @@ def _facing(a, b):
     return (a, b) if np.cross(a, b)[0] < 0 else (b, a)
 
 
-def _lengths(name, value, count):
-    values = [value] * count if np.ndim(value) == 0 else list(value)
-    if len(values) != count:
-        raise ValueError(f"{name} must be one length or {count}, got {value!r}")
-    return [positive(name, item) for item in values]
-
-
 def _round_edge(edge, radius, size):
     if edge is None:
         return radius * np.pi / (2 * ROUND_PIECES)
-    return min(edge_length(edge, 3.0 * size), radius)
+    return min(surfaces.edge_length(edge, 3.0 * size), radius)

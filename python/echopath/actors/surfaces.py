@@ -10,6 +10,16 @@ RING_SAMPLES = 256       # points that the perimeter of a section is measured wi
 MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
 ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
 WELD = 1e-9              # m: vertices nearer than that are one
+MAX_TRIANGLES = 20_000_000
+
+
+def edge_length(value, size, triangles_per_square=4.0):
+    """Tessellation length in m for a surface `size` m wide; None means as few triangles as the shape needs."""
+    if value is None:
+        return np.inf
+    if triangles_per_square * (size / value) ** 2 > MAX_TRIANGLES:
+        raise ValueError(f"edge: must be long enough for less than {MAX_TRIANGLES} triangles, got {value!r} m")
+    return value
 
 
 def parallelogram(corner, u, v, edge=np.inf):

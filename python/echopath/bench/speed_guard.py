@@ -15,10 +15,10 @@ TARGET = 0.03  # of the processor time of trace and signal: the most that the gu
 def measure_guard(*, quick: bool = False) -> dict:
     """Medians of processor seconds of trace, signal without and with spot checks, and the share of the guard in the sum."""
     scene = street()
-    settings = scene.trace_settings() | {"num_rays": QUICK_RAYS if quick else RAYS}
+    settings = scene.trace.replace(num_rays=QUICK_RAYS if quick else RAYS)
     seconds = {"trace_s": [], "without_s": [], "with_s": []}
     for turn in range(QUICK_REPEATS if quick else REPEATS):
-        trace_s, paths = processor_time(lambda: ep.trace(scene.scene, scene.radar, **settings))
+        trace_s, paths = processor_time(lambda: ep.trace(scene.scene, scene.radar, settings=settings))
         seconds["trace_s"].append(trace_s)
         probes = {"without_s": None, "with_s": ep.SignalProbe(seed=turn)}
         for name in sorted(probes, reverse=turn % 2 == 1):  # whichever comes first finds the memory of the other one cold

@@ -37,17 +37,12 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     num_rays, seed, batches, labels: instead of those of the file; labels as in `ep.simulate`
     extra_parts: {partition: {part: selection}} beside those of the file.
     """
-    settings = scene_file.trace_settings()
-    if num_rays is not None:
-        settings["num_rays"] = num_rays
-    if seed is not None:
-        settings["seed"] = seed
-    if batches is not None:
-        settings["batches"] = batches
+    instead = {"num_rays": num_rays, "seed": seed, "batches": batches}
+    instead = {name: value for name, value in instead.items() if value is not None}
     parts = scene_file.partitions() | (extra_parts or {})
-    return simulate(scene_file.scene, scene_file.radar, **settings, parts=parts, noise_seed=scene_file.noise_seed,
-                    **scene_file.replay_settings(), **scene_file.spectrum_settings(), angles=scene_file.angle_settings(),
-                    labels=scene_file.label_settings() if labels is None else labels,
+    return simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace, signal=scene_file.signal, **instead,
+                    parts=parts, angles=scene_file.angle_settings(),
+                    labels=scene_file.labels if labels is None else labels,
                     detections=scene_file.detection_settings(), guard=scene_file.guard, progress=progress)
 
 

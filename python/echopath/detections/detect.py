@@ -2,23 +2,52 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from .. import _core
+from ..angles import estimate_angles
+from ..checks import Progress, an, checked, keywords, optional, refused, text
+from ..families import Objects
 from ..families import families as find_families
-from ..keywords import known_keywords
+from ..families import objects_rule
+from ..keywords import parameters_of
+from ..labels.labels import Labels
 from ..same_radar import difference
+from ..spectra import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
 from . import labelling
 from .detections import Detections, centre_of
 from .directions import directions_of
 from .echo_fields import EchoFields
 
 
-@known_keywords
-def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocity=None, guard_range=None,
-           training_velocity=None, training_range=None, rank=0.75, angles=None, paths=None, parts=None, labels=None,
-           objects=None, progress=None) -> Detections:
+def _labels(argument: str, value):
+    """Labels of a map."""
+    if not all(hasattr(value, name) for name in ("plane", "whole", "object_map", "ghost_map")):
+        raise refused(TypeError, argument, "Labels", value)
+    return value
+
+
+def _parts(argument: str, value):
+    """{name: cube or RangeDoppler} of at least one part."""
+    an(Mapping, called="a dict of cubes or RangeDoppler")(argument, value)
+    if not value:
+        raise refused(ValueError, argument, "a dict of at least one part", value)
+    return {text(argument, name): part for name, part in value.items()}
+
+
+_ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all but spectrum and radar
+
+
+@checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),
+         labels=optional(_labels), objects=objects_rule)
+def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
+           false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
+           training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
+           angles: Mapping[str, Any] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
+           labels: Labels | None = None, objects: Objects = None, progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
@@ -41,9 +70,9 @@ def detect(spectrum, radar, *, method="ca", false_alarm_rate=1e-6, guard_velocit
         raise ValueError("labels: cannot be given beside parts")
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
-    found = _core.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
-                       guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                       progress=progress)
+    found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
+                 guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
+                 progress=progress)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..angles import estimate_angles
 
 
 def toward(azimuth, elevation):
@@ -25,7 +26,7 @@ def directions_of(spectrum, radar, cells, settings: dict, progress) -> dict:
                "fold": np.zeros(count), "power": np.full(count, np.nan)}
     if count == 0 or len(azimuths) == len(elevations) == 1:
         return unknown
-    found = _core.estimate_angles(spectrum, radar, cells=cells, progress=progress, **settings)
+    found = estimate_angles(spectrum, radar, cells=cells, progress=progress, **settings)
     sees = {"azimuth": len(azimuths) > 1, "elevation": len(elevations) > 1}
     known = {"index": found.cell, "fold": found.velocity - spectrum.velocity[cells[found.cell, 0]], "power": found.power}
     known |= {name: getattr(found, name) if seen else np.full(len(found), np.nan) for name, seen in sees.items()}

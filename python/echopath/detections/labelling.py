@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..checks import array
 from ..resolution import mean_powers
 from .detections import NOISE
 
@@ -28,7 +29,8 @@ def _map_of(name: str, part, spectrum, radar):
     if isinstance(part, dict):
         raise ValueError(f"parts: must be those of one view, got several, such as {name!r}")
     if not isinstance(part, _core.RangeDoppler):
-        return _core.range_doppler(part, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
+        return _core.range_doppler(array("[T, R, C, S]", kind="complex")("parts", part), radar, window=spectrum.window,
+                                   zero_pad=spectrum.zero_pad)
     if part.values.shape != spectrum.values.shape:
         raise ValueError(f"parts: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
                          f"of {name!r}")

@@ -2,22 +2,33 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import TYPE_CHECKING
 
 from .. import _core
-from ..keywords import known_keywords
-from .checks import CFAR_KEYWORDS
+from ..checks import Progress, checked
+from ..families import Objects
+from ..labels.of_frame import frame_rule
+from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
+from .checks import RULES
 from .detect import detect
 from .detections import Detections
 
+if TYPE_CHECKING:
+    from ..simulate import Frame
 
-@known_keywords(also=CFAR_KEYWORDS)
-def detect_frame(frame, *, objects=None, max_peaks=1, progress=None, **keywords) -> Detections:
+
+@checked(**RULES, frame=frame_rule)
+def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: float = FALSE_ALARM_RATE,
+                 guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None,
+                 training_range: int | None = None, rank: float = RANK, objects: Objects = None, max_peaks: int = 1,
+                 progress: Progress = None) -> Detections:
     """Detections in a frame's map with noise, labelled by its first partition, its objects and the paths behind them.
 
-    frame: Frame of `simulate` or `load_frame`; objects: as in `families`
+    frame: Frame of `simulate` or `load_frame`
+    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
+    objects: as in `families`
     max_peaks: directions of a cell at most, of radars whose antennas tell directions apart
     progress: callable (stage, fraction) or None
-    keywords: method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range and rank, as in `cfar`
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """
@@ -25,6 +36,8 @@ def detect_frame(frame, *, objects=None, max_peaks=1, progress=None, **keywords)
         raise ValueError("frame: must have signals to detect echoes in, got a record of paths alone")
     parts = next(iter(frame.part_spectra.values()), None)
     settings = {"max_peaks": max_peaks} if len(_core.virtual_array(frame.radar).elements) > 1 else None
-    found = detect(frame.spectrum, frame.radar, paths=frame.paths, parts=parts, objects=objects, angles=settings,
-                   progress=progress, **keywords)
+    found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
+                   guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
+                   training_range=training_range, rank=rank, paths=frame.paths, parts=parts, objects=objects,
+                   angles=settings, progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)

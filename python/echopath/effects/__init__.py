@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 from .. import _core
+from ..checks import checked
+from ..settings import Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings
 from . import surfaces, motion, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
@@ -15,9 +17,12 @@ OUT_OF_SCOPE = [
 ]
 
 
-def effects(scene, radar, *, max_bounces: int = 4, footprint: str = "second_order", polarization: str = "auto",  # noqa: F811
-            sampler: str = "lattice", batches: int | None = None, target_error_db: float | None = None,
-            replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
+@checked(**TraceSettings.RULES, **SignalSettings.RULES)
+def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceSettings.max_bounces,  # noqa: F811
+            footprint: Footprint = TraceSettings.footprint, polarization: Polarization = TraceSettings.polarization,
+            sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
+            target_error_db: float | None = TraceSettings.target_error_db, replay: Replay = SignalSettings.replay,
+            evaluate: Evaluate = SignalSettings.evaluate, retrace: Retrace = SignalSettings.retrace,
             noise_seed: int | None = None) -> list[Effect]:
     """Which effects a run of `scene` with `radar` models, and why.
 

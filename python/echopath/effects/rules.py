@@ -105,8 +105,8 @@ QUANTITIES = {
                       "window_centre", "centre_frequency", "wavelength", "range_resolution", "max_range"),
     "Radar": ("waveform", "transmit_power", "frame_duration"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name"),
-    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "progress", "kept"),
-    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "progress", "probe"),
+    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress"),
+    "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "settings", "progress", "probe"),
 }
 
 

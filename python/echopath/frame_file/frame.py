@@ -3,14 +3,18 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
+from collections.abc import Mapping
 from contextlib import contextmanager
 
 import numpy as np
 
 from .. import _core
+from ..checks import an, checked, real, refused, text
 from ..files import written_whole
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
+from ..labels.labels import Labels
 from ..simulate import Frame, with_spectra
 from .detections import read_detections, write_detections
 from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
@@ -23,6 +27,13 @@ FORMAT = "echopath frame"
 SCHEMA_VERSION = 3  # grows when a reader of the old layout would misread the new one
 CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace")
+
+
+def _labels(argument: str, value) -> dict:
+    """{partition: Labels}"""
+    if not isinstance(value, Mapping) or not all(isinstance(labels, Labels) for labels in value.values()):
+        raise refused(TypeError, argument, "a dict {partition: Labels}", value)
+    return {text(argument, name): labels for name, labels in value.items()}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,8 +63,9 @@ def load_paths(path):
         return _read_record(file)
 
 
+@checked(frame=an(Frame), min_power=real(0.0, unit="W"))
 @interrupts_are_kept()
-def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
+def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
     """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `save_paths`.
 
     The cubes hold all paths, also those that the record leaves out.
@@ -72,8 +84,9 @@ def save_frame(frame: Frame, path, min_power: float = 0.0) -> LeftOut:
     return missing
 
 
+@checked()
 @interrupts_are_kept()
-def load_frame(path) -> Frame:
+def load_frame(path: str | os.PathLike[str]) -> Frame:
     """Reads the frame file at `path`: the same bits that were written. Raises ep.FileError.
 
     A file of `save_paths` gives a frame whose cube and spectrum are None.
@@ -95,8 +108,9 @@ def load_frame(path) -> Frame:
     return frame
 
 
+@checked(labels=_labels)
 @interrupts_are_kept()
-def save_labels(labels: dict, path) -> None:
+def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> None:
     """Writes labels to an HDF5 file of their own, as a frame file has them.
 
     labels: {partition: Labels}, of maps [V, R]; path: of the file, written whole or not at all. Raises ep.FileError.
@@ -105,8 +119,9 @@ def save_labels(labels: dict, path) -> None:
         write_all_labels(file.create_group("labels"), labels)
 
 
+@checked()
 @interrupts_are_kept()
-def load_labels(path) -> dict:
+def load_labels(path: str | os.PathLike[str]) -> dict[str, Labels]:
     """{partition: Labels} of a file of `save_labels` or of a frame file at `path`: the same bits. Raises ep.FileError."""
     with _our_file(path) as file:
         return read_all_labels(read_group(file, "labels"))

@@ -12,6 +12,8 @@ import math
 
 import numpy as np
 
+from .. import _core
+from ..checks import an, checked
 from .check import Check
 
 # Without batches a run gives no standard errors, and promises no more than this.
@@ -26,7 +28,8 @@ FEWEST_BATCHES = 4      # fewer say nothing of a single one
 HALVES = "halves of the rays"
 
 
-def check_rays(probe, frame) -> list[Check]:
+@checked(probe=an(_core.SignalProbe), frame=an(_core.TraceFrame))
+def check_rays(probe: _core.SignalProbe, frame: _core.TraceFrame) -> list[Check]:
     """What the shares of the rays say of each other.
 
     probe: a SignalProbe that was filled with all paths of a trace; frame: TraceFrame of these paths

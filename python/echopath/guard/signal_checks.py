@@ -3,7 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._core import AMPLITUDE_TOLERANCE, PHASE_TOLERANCE
+from .. import _core
+from .._core import AMPLITUDE_TOLERANCE
+from ..checks import ArrayLike, an, checked
+from ..settings import SignalSettings
 from .check import Check
 
 LARGEST_OF_RMS = 6.0    # how much a NUFFT may err in one sample, over its rms of all samples
@@ -11,7 +14,9 @@ ROUNDING = 1e-13        # of the sum of |amplitude|: of the direct sums
 BEYOND_TAIL = 10.0      # what a polynomial leaves out may add up to, over its last two coefficients, which the aims are for
 
 
-def check_signal(cube, probe, *, tolerance: float = 1e-7, phase_tolerance: float = PHASE_TOLERANCE) -> list[Check]:
+@checked(**SignalSettings.RULES, probe=an(_core.SignalProbe))
+def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float = SignalSettings.tolerance,
+                 phase_tolerance: float = SignalSettings.phase_tolerance) -> list[Check]:
     """What spot checks say of a signal.
 
     cube: complex [tx, rx, chirp, sample] in sqrt(W), of `synthesize` or the sum of the parts of `decompose`; probe: the

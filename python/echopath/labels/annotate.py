@@ -2,14 +2,19 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 
 import numpy as np
 
 from .. import _core, same_radar
+from ..checks import Progress, Window, an, anything, checked, optional, refused, text
+from ..families import Objects
 from ..families import families as find_families
-from ..keywords import known_keywords
+from ..keywords import refuse_unknown
+from ..parts import selection_rule
 from ..path_subset import part_of_path
 from ..resolution import interval_of, mean_powers
+from ..settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
 from ..visibility import appearing_in_frame, visibility_in_trace
 from .labels import Labels, is_occluded
 from .objects import family_cells, label_ghosts, label_objects
@@ -17,17 +22,21 @@ from .planes import make_plane
 from .powers import CubeSet, add_powers, decomposed
 from .standard_errors import require_batches, share_errors
 
-NOISE_MARGIN_DB = 10.0
-DYNAMIC_RANGE_DB = 60.0
-SIGNAL_SETTINGS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
-MAP_KEYWORDS = ("plane", "objects", "noise", "noise_margin_db", "dynamic_range_db", "errors")  # that no frame sets
 _PARTS, _FAMILIES = "parts", "families"
 
 
-@known_keywords(also=SIGNAL_SETTINGS)
-def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_doppler", window="hann", zero_pad=1, angles=None,
-             noise=True, noise_margin_db=NOISE_MARGIN_DB, dynamic_range_db=DYNAMIC_RANGE_DB, errors=False, progress=None,
-             **settings) -> Labels:
+@checked({"settings": LabelSettings, "signal": SignalSettings}, **LabelSettings.RULES, **SignalSettings.RULES,
+         radar=optional(an(_core.Radar)), parts=anything, angles=anything)
+def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Radar | None = None, *,
+             objects: Objects = LabelSettings.objects, plane: Plane = LabelSettings.plane,
+             window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, angles: Mapping | None = None,
+             noise: bool = LabelSettings.noise, noise_margin_db: float = LabelSettings.noise_margin_db,
+             dynamic_range_db: float | None = LabelSettings.dynamic_range_db, errors: bool = LabelSettings.errors,
+             tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
+             replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
+             phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
+             keyframes: int = SignalSettings.keyframes, settings: LabelSettings | None = None,
+             signal: SignalSettings | None = None, progress: Progress = None) -> Labels:
     """Labels the cells of a map: which part of the paths made each, and what the map shows of each object of the scene.
 
     Model: powers without noise; |field|^2 of each part, mean over the channels, of the one realisation of the random phases
@@ -45,26 +54,28 @@ def annotate(paths, parts=None, radar=None, *, objects=None, plane="range_dopple
         range-azimuth map, measured on noise alone). Noise alone passes 10 dB in one cell of 22 000, of one channel
     dynamic_range_db: dB below the strongest cell that the mask goes down to, None: no limit
     errors: True: standard errors too, which needs trace(batches=2 or more; 8 are good) and one more pass over the paths
+    tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; those
+        of the parts where these are given
+    settings, signal: LabelSettings and SignalSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction) or None
-    settings: tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace and keyframes, as in
-        `synthesize`; those of the parts where these are given
     Returns Labels. Memory: the cubes of all parts and families at as many receivers as 1 GiB holds, one at least, all for
     range_azimuth; and 8 bytes per cell for each part and family, with errors for each part and batch three times.
     Raises ValueError for bad input, for errors without batches, KeyboardInterrupt on Ctrl-C.
     """
     radar = _radar_of(paths, parts, radar)
-    request = make_request(radar, paths.frame.num_batches, objects=objects, plane=plane, window=window, zero_pad=zero_pad,
-                           angles=angles, noise=noise, noise_margin_db=noise_margin_db, dynamic_range_db=dynamic_range_db,
-                           errors=errors)
+    chosen = LabelSettings(objects=objects, plane=plane, noise=noise, noise_margin_db=noise_margin_db,
+                           dynamic_range_db=dynamic_range_db, errors=errors)
+    request = make_request(radar, paths.frame.num_batches, chosen, window=window, zero_pad=zero_pad, angles=angles)
     selections, cubes = _selections_and_cubes(parts, radar, paths.frame.start_time, errors)
-    settings = settings | {"progress": progress}
+    replayed = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate,
+                "phase_tolerance": phase_tolerance, "retrace": retrace, "keyframes": keyframes, "progress": progress}
     families = find_families(paths, objects)
     views = {_FAMILIES: families} if cubes else {_FAMILIES: families, _PARTS: selections}
     num_parts = len(families) + (0 if cubes else len(selections) + 1)
-    powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, settings), request.plane)
+    powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, replayed), request.plane)
     if cubes:
         powers |= add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    return label_partitions(request, paths, families, powers.pop(_FAMILIES), powers, {_PARTS: selections}, settings)[_PARTS]
+    return label_partitions(request, paths, families, powers.pop(_FAMILIES), powers, {_PARTS: selections}, replayed)[_PARTS]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,23 +100,30 @@ class Request:
         return _core.cell_masks(whole, self.noise_floor, 10.0 ** (-self.dynamic_range_db / 10.0))
 
 
-def make_request(radar, num_batches: int, *, objects=None, plane="range_doppler", window="hann", zero_pad=1, angles=None,
-                 noise=True, noise_margin_db=NOISE_MARGIN_DB, dynamic_range_db=DYNAMIC_RANGE_DB, errors=False) -> Request:
+def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSettings | None:
+    """How to label by what a caller gave as `labels`: True, or keywords of LabelSettings; None: not at all."""
+    if labels is None or labels is False:
+        return None
+    if labels is True or isinstance(labels, LabelSettings):
+        return LabelSettings() if labels is True else labels
+    if not isinstance(labels, Mapping):
+        raise refused(TypeError, "labels", "True, False, LabelSettings or a dict of their keywords", labels)
+    refuse_unknown("labels", labels, LabelSettings.RULES)
+    return LabelSettings(**labels)
+
+
+def make_request(radar, num_batches: int, settings: LabelSettings, *, window, zero_pad, angles=None) -> Request:
     """Checks what can be checked before the long work. num_batches: of the trace; the others as in `annotate`.
 
     Raises ValueError.
     """
-    dynamic_range_db = np.inf if dynamic_range_db is None else float(dynamic_range_db)
-    if not np.isfinite(noise_margin_db):
-        raise ValueError(f"noise_margin_db: must be finite, in dB, got {noise_margin_db}")
-    if not dynamic_range_db >= 0.0:
-        raise ValueError(f"dynamic_range_db: must not be negative, in dB, got {dynamic_range_db}")
-    if errors:
+    if settings.errors:
         require_batches(num_batches)
-    made = make_plane(plane, radar, window, zero_pad, angles)
-    if errors:
+    made = make_plane(settings.plane, radar, window, zero_pad, angles)
+    if settings.errors:
         made.require_errors()
-    return Request(radar, objects, made, bool(noise), float(noise_margin_db), dynamic_range_db, bool(errors))
+    dynamic_range_db = np.inf if settings.dynamic_range_db is None else settings.dynamic_range_db
+    return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
 
 
 def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict,
@@ -192,12 +210,12 @@ def _radar_of(paths, parts, radar):
 def _selections_and_cubes(parts, radar, start_time: float, errors: bool):
     """({name: selection}, {name: cube} or {}) of what the caller gave as parts."""
     parts = {} if parts is None else parts
-    if not isinstance(parts, dict):
-        raise TypeError(f"parts: must be Parts of decompose or {{name: selection}}, got {type(parts).__name__}")
-    if any(isinstance(value, dict) for value in parts.values()):
+    if not isinstance(parts, Mapping):
+        raise refused(TypeError, "parts", "Parts of decompose or {name: selection}", parts)
+    if any(isinstance(value, Mapping) for value in parts.values()):
         raise ValueError(f"parts: must be one partition, got several: {', '.join(map(str, parts))}; give one of them")
     if not any(isinstance(value, np.ndarray) for value in parts.values()):
-        return dict(parts), {}
+        return {text("parts", name): selection_rule(f"parts.{name}", value) for name, value in parts.items()}, {}
     _check_cubes(parts, radar, start_time)
     selections = getattr(parts, "selections", None) or {}  # None: of families
     if errors and [*selections, "other"] != list(parts):

@@ -3,12 +3,16 @@ from __future__ import annotations
 
 import colorsys
 import json
+import os
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
+from ..checks import an, checked, path, refused, text
 from ..files import written_whole
 from ..origin import origin_texts, png_info
+from .labels import Labels
 
 NO_LABEL = "none"                   # name of index 0
 NO_LABEL_COLOUR = (0, 0, 0)
@@ -65,7 +69,19 @@ def ghost_name(ghost) -> str:
 MAPS = {"parts": "parts", "objects": "objects", "ghosts": "ghosts"}  # and the names of their files
 
 
-def save_label_images(labels, folder, names: dict = MAPS) -> list:
+def _names(argument: str, value) -> dict:
+    """{one of MAPS: name of its files}"""
+    if not isinstance(value, Mapping):
+        raise refused(TypeError, argument, f"a dict of {', '.join(MAPS)} and names of files", value)
+    for kind, name in value.items():
+        if kind not in MAPS:
+            raise refused(ValueError, argument, f"a dict of {', '.join(MAPS)} and names of files", value)
+        text(argument, name)
+    return dict(value)
+
+
+@checked(labels=an(Labels), folder=path, names=_names)
+def save_label_images(labels: Labels, folder: str | os.PathLike[str], names: Mapping[str, str] = MAPS) -> list[Path]:
     """Writes the maps of Labels as PNG files for programs, each with a JSON file that names and colours its indices.
 
     labels: Labels of maps [V, R]; folder: where the files are written

@@ -1,41 +1,63 @@
 """Labels of a frame that was simulated or read back from a file."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from ..checks import Progress, anything, checked, refused
+from ..families import Objects
 from ..families import families as find_families
-from ..keywords import known_keywords
 from ..parts import ONLY_PARTITION, as_partitions, check_partitions
-from .annotate import MAP_KEYWORDS, label_partitions, make_request
+from ..settings import LabelSettings, Plane
+from .annotate import label_partitions, make_request
+from .labels import Labels
 from .powers import CubeSet, add_powers, decomposed
+
+if TYPE_CHECKING:
+    from ..simulate import Frame
 
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
 _FAMILIES = object()  # a view that has the name of no partition
 
 
-@known_keywords(also=MAP_KEYWORDS)
-def annotate_frame(frame, parts=None, *, progress=None, **keywords) -> dict:
+def frame_rule(argument: str, value):
+    """A Frame of `simulate` or `load_frame`."""
+    if not all(hasattr(value, name) for name in ("paths", "part_spectra", "spectrum_settings")):
+        raise refused(TypeError, argument, "a Frame", value)
+    return value
+
+
+@checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=frame_rule, parts=anything)
+def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane = LabelSettings.plane,
+                   objects: Objects = LabelSettings.objects, noise: bool = LabelSettings.noise,
+                   noise_margin_db: float = LabelSettings.noise_margin_db,
+                   dynamic_range_db: float | None = LabelSettings.dynamic_range_db, errors: bool = LabelSettings.errors,
+                   settings: LabelSettings | None = None, progress: Progress = None) -> dict[str, Labels]:
     """Labels of the cells of a frame's map, from its record and the cubes of its partitions alone.
 
     frame: Frame of `simulate` or `load_frame`, whose window, zero_pad and settings of signals are those of the labels
     parts: {name: selection} or {partition: {name: selection}} beside the partitions of the frame, None: those alone; without
         any, all paths are "other" of a partition "parts"
+    plane, objects, noise, noise_margin_db (dB), dynamic_range_db (dB), errors: as in `annotate`
+    settings: LabelSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction) or None
-    keywords: plane, objects, noise, noise_margin_db (dB), dynamic_range_db (dB) and errors, as in `annotate`
     Returns {partition: Labels}. Objects and ghosts are those of the recorded paths: of a file that leaves out weak ones,
     without these. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """
-    paths, plane = frame.paths, keywords.get("plane")
-    angles = {"angles": frame.angle_settings or None} if plane == "range_azimuth" else {}
-    request = make_request(frame.radar, paths.frame.num_batches, **frame.spectrum_settings, **angles, **keywords)
+    paths, angles = frame.paths, frame.angle_settings if plane == "range_azimuth" else None
+    asked = LabelSettings(plane=plane, objects=objects, noise=noise, noise_margin_db=noise_margin_db,
+                          dynamic_range_db=dynamic_range_db, errors=errors)
+    request = make_request(frame.radar, paths.frame.num_batches, asked, **frame.spectrum_settings, angles=angles or None)
     chosen = _as_new_partitions(parts, frame)
-    settings = {name: getattr(frame, name) for name in SIGNAL_SETTINGS} | {"progress": progress}
+    replayed = {name: getattr(frame, name) for name in SIGNAL_SETTINGS} | {"progress": progress}
     families = find_families(paths, request.objects)
     views = {_FAMILIES: families, **chosen}
     num_parts = len(families) + sum(len(group) + 1 for group in chosen.values())
-    powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, settings), request.plane)
+    powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, replayed), request.plane)
     powers |= add_powers([CubeSet(frame.radar, 1.0, frame.parts)], request.plane)
     family_powers, selections = powers.pop(_FAMILIES), frame.selections | chosen
     powers = {partition: powers[partition] for partition in selections}
-    return label_partitions(request, paths, families, family_powers, powers, selections, settings)
+    return label_partitions(request, paths, families, family_powers, powers, selections, replayed)
 
 
 def _as_new_partitions(parts, frame) -> dict:

@@ -4,7 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..angles import range_azimuth
 from ..azimuth_map import checked_settings, sees_azimuth
+from ..checks import shown
 from .labels import AzimuthBox, AzimuthPeak, Box, Peak
 
 _NOISE_SEED = 1  # of the noise whose mean in a range-azimuth map is measured
@@ -56,7 +58,7 @@ class RangeAzimuthPlane:
             raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
                              f"of a part are not those of the whole), got {self._angles['method']!r}")
         self._settings = {"window": window, "zero_pad": zero_pad}
-        noise = self._map(_core.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED), radar)
+        noise = self._map(_core.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED, start_time=0.0), radar)
         self.velocity, self.azimuth, self.range = None, noise.azimuth.copy(), noise.range.copy()
         self.noise_power = float(np.mean(noise.power))
         self._num_elevations = len(noise.elevation)
@@ -80,7 +82,7 @@ class RangeAzimuthPlane:
     make_peak, make_box = AzimuthPeak, AzimuthBox
 
     def _map(self, cube, radar):
-        return _core.range_azimuth(_core.range_doppler(cube, radar, **self._settings), radar, **self._angles)
+        return range_azimuth(_core.range_doppler(cube, radar, **self._settings), radar, **self._angles)
 
 
 def make_plane(name: str, radar, window, zero_pad, angles):
@@ -90,7 +92,7 @@ def make_plane(name: str, radar, window, zero_pad, angles):
     if name != RangeDopplerPlane.name:
         raise ValueError(f"plane: must be 'range_doppler' or 'range_azimuth', got {name!r}")
     if angles is not None:
-        raise ValueError(f"angles: are for the plane 'range_azimuth', got {angles!r} for 'range_doppler'")
+        raise ValueError(f"angles: are for the plane 'range_azimuth', got {shown(angles)} for 'range_doppler'")
     return RangeDopplerPlane(radar, window, zero_pad)
 
 

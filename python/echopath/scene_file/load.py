@@ -4,6 +4,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
+import os
 import tomllib
 import typing
 from contextlib import contextmanager
@@ -15,51 +16,37 @@ from pydantic import create_model
 from .. import _core, actors
 from ..antennas import load_antenna
 from ..azimuth_map import checked_settings
+from ..checks import checked
 from ..families import named_globs
 from ..materials import materials
 from ..parts import as_partitions, check_partitions
 from ..scene import Scene
+from ..settings import LabelSettings, SignalSettings, TraceSettings
 from .errors import validated
-from .schema import (AngleTable, DetectionsTable, LabelsTable, ObjectTable, RadarTable, ReplayTable, SceneTable,
-                     SpectrumTable,
-                     Table, TraceTable, nearest_key)
+from .schema import AngleTable, DetectionsTable, ObjectTable, RadarTable, SceneTable, Table, nearest_key
 
 
 @dataclasses.dataclass(frozen=True)
 class SceneFile:
     """What a scene file says.
 
-    path: of the file; title: one line; scene, radar: ready to trace; trace, replay, spectrum, angle: settings, as keywords
-    by `trace_settings()`, `replay_settings()`, `spectrum_settings()` and `angle_settings()`; parts: {name: expression} (one
-    partition), {name: {name: expression}} (several) or {}; noise_seed: of the thermal noise; labels, detections:
-    likewise, by `label_settings()` and `detection_settings()`, None: none are asked for; guard: of `ep.simulate`.
+    path: of the file; title: one line; scene, radar: ready to trace; parts: {name: expression} (one partition), {name: {name:
+    expression}} (several) or {}; trace: TraceSettings, signal: SignalSettings, labels: LabelSettings or None: none are asked
+    for; angle, detections: tables of the file, as keywords by `angle_settings()` and `detection_settings()`; guard: of
+    `ep.simulate`.
     """
 
     path: Path
     title: str
     scene: object
     radar: object
-    trace: TraceTable
-    replay: ReplayTable
-    spectrum: SpectrumTable
+    trace: TraceSettings
+    signal: SignalSettings
     angle: AngleTable
     parts: dict
-    noise_seed: int
-    labels: LabelsTable | None = None
+    labels: LabelSettings | None = None
     detections: DetectionsTable | None = None
     guard: bool = True
-
-    def trace_settings(self) -> dict:
-        """Keywords of `ep.trace`, all but progress."""
-        return self.trace.model_dump()
-
-    def replay_settings(self) -> dict:
-        """Keywords of `ep.synthesize`: replay, evaluate, retrace, keyframes."""
-        return self.replay.model_dump()
-
-    def spectrum_settings(self) -> dict:
-        """Keywords of `ep.range_doppler`: window, zero_pad."""
-        return {"window": _window(self.spectrum.window), "zero_pad": self.spectrum.zero_pad}
 
     def angle_settings(self) -> dict:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
@@ -70,10 +57,6 @@ class SceneFile:
             first, last, step = self.angle.azimuth_deg
             settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
         return settings
-
-    def label_settings(self) -> dict | None:
-        """`labels` of `ep.simulate`: keywords of `ep.annotate`, None: no labels."""
-        return None if self.labels is None else self.labels.model_dump()
 
     def detection_settings(self) -> dict | None:
         """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
@@ -91,7 +74,8 @@ def _window(value):
     return tuple(value) if isinstance(value, list) else value
 
 
-def load_scene(path) -> SceneFile:
+@checked()
+def load_scene(path: str | os.PathLike[str]) -> SceneFile:
     """Reads a scene file (keys and units: data/README.md).
 
     path: of the TOML file. Returns a SceneFile.
@@ -103,10 +87,9 @@ def load_scene(path) -> SceneFile:
     try:
         settings = validated(SceneTable, table)
         scene_file = SceneFile(path=path, title=settings.title, scene=_build_scene(settings, path.parent),
-                               radar=_build_radar(settings.radar, path.parent), trace=settings.trace,
-                               replay=settings.replay, spectrum=settings.spectrum, angle=settings.angle,
-                               parts=dict(settings.parts), noise_seed=settings.noise.seed, labels=settings.labels,
-                               detections=settings.detections, guard=settings.guard)
+                               radar=_build_radar(settings.radar, path.parent), trace=_trace(settings),
+                               signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
+                               labels=_labels(settings), detections=settings.detections, guard=settings.guard)
         with _blame("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)
@@ -114,6 +97,25 @@ def load_scene(path) -> SceneFile:
         return scene_file
     except ValueError as error:
         raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
+
+
+def _trace(settings: SceneTable) -> TraceSettings:
+    with _blame("trace"):
+        return TraceSettings(**settings.trace.model_dump())
+
+
+def _signal(settings: SceneTable) -> SignalSettings:
+    with _blame("replay"):
+        replayed = SignalSettings(**settings.replay.model_dump())
+    with _blame("noise"):
+        noisy = replayed.replace(noise_seed=settings.noise.seed)
+    with _blame("spectrum"):
+        return noisy.replace(window=_window(settings.spectrum.window), zero_pad=settings.spectrum.zero_pad)
+
+
+def _labels(settings: SceneTable) -> LabelSettings | None:
+    with _blame("labels"):
+        return None if settings.labels is None else LabelSettings(**settings.labels.model_dump())
 
 
 def _check_labels(scene_file: SceneFile) -> None:

@@ -7,10 +7,17 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
+
+from ..checks import WindowName
+from ..settings import (
+    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
+    SignalSettings, TraceSettings,
+)
+from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -18,7 +25,7 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Vector3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Matrix4 = Annotated[list[Quaternion], Field(min_length=4, max_length=4)]
-WINDOWS = ("rect", "hann", "hamming", "blackman_harris")
+WINDOWS = get_args(WindowName)
 
 
 def nearest_key(key: str, candidates) -> str:
@@ -209,37 +216,36 @@ class ObjectTable(Table):
 
 
 class TraceTable(Table):
-    num_rays: Annotated[int, Field(ge=1)] | None = Field(
-        None, description="a budget; none: as many as 0.3 dB for each object asks for, 1 000 000 at most")
-    max_bounces: int = Field(4, ge=1, le=64, description="hits of a path, mirrors included")
-    seed: int = Field(1, ge=0, description="of the directions and random phases")
-    start_time: Number = Field(0.0, description="s, first sample of the frame")
-    polarization: Literal["auto", "scalar", "jones"] = Field(
-        "auto", description="field vectors, one coefficient a hit, or whichever the scene asks for")
-    footprint: Literal["second_order", "edges", "first_order", "none"] = Field(
-        "second_order", description="filter of a ray's footprint")
-    sampler: Literal["lattice", "fibonacci", "r2", "random"] = Field(
-        "lattice", description="how rays are spread over the cone of an object")
-    batches: Annotated[int, Field(ge=1, le=64)] | None = Field(
-        None, description="independent parts of the rays, which give standard errors; none: 1")
+    num_rays: Annotated[int, Field(ge=1, le=MOST_RAYS)] | None = Field(
+        TraceSettings.num_rays, description="a budget; none: as many as 0.3 dB for each object asks for, 1 000 000 at most")
+    max_bounces: int = Field(TraceSettings.max_bounces, ge=1, le=MOST_BOUNCES, description="hits of a path, mirrors included")
+    seed: int = Field(TraceSettings.seed, ge=0, description="of the directions and random phases")
+    start_time: Number = Field(TraceSettings.start_time, description="s, first sample of the frame")
+    polarization: Polarization = Field(
+        TraceSettings.polarization, description="field vectors, one coefficient a hit, or whichever the scene asks for")
+    footprint: Footprint = Field(TraceSettings.footprint, description="filter of a ray's footprint")
+    sampler: Sampler = Field(TraceSettings.sampler, description="how rays are spread over the cone of an object")
+    batches: Annotated[int, Field(ge=1, le=MOST_BATCHES)] | None = Field(
+        TraceSettings.batches, description="independent parts of the rays, which give standard errors; none: 1")
     target_error_db: Positive | None = Field(
-        None, description="dB, error of each echo until which rays are added, from num_rays on")
-    max_rays: int = Field(2**24, ge=1, description="at most, with target_error_db")
+        TraceSettings.target_error_db, description="dB, error of each echo until which rays are added, from num_rays on")
+    max_rays: int = Field(TraceSettings.max_rays, ge=1, le=MOST_RAYS, description="at most, with target_error_db")
 
 
 class ReplayTable(Table):
-    replay: Literal["material", "fermat"] = Field(
-        "material", description="points of reflection on surfaces that are no mirrors: frozen, or moved by a Newton step")
-    evaluate: Literal["interpolated", "chirps", "samples"] = Field(
-        "interpolated", description="polynomials over the frame, every chirp, or every sample of fast rotors")
-    retrace: Literal["never", "invalid", "always"] = Field(
-        "never", description="what is renewed at keyframes: nothing, shadows and points of reflection, the whole trace")
-    keyframes: int = Field(0, ge=0, description="stretches of the frame; 0: as many as validity suggests")
+    replay: Replay = Field(SignalSettings.replay, description="points of reflection on surfaces that are no mirrors: frozen, "
+                                                              "or moved by a Newton step")
+    evaluate: Evaluate = Field(SignalSettings.evaluate, description="polynomials over the frame, every chirp, or every sample "
+                                                                    "of fast rotors")
+    retrace: Retrace = Field(SignalSettings.retrace, description="what is renewed at keyframes: nothing, shadows and points "
+                                                                 "of reflection, the whole trace")
+    keyframes: int = Field(SignalSettings.keyframes, ge=0, description="stretches of the frame; 0: as many as validity "
+                                                                       "suggests")
 
 
 class SpectrumTable(Table):
-    window: Window = Field("hann", description="a name, or [\"chebyshev\", sidelobe level in dB]")
-    zero_pad: int = Field(1, ge=1, description="length of the transforms over that of the data")
+    window: Window = Field(SignalSettings.window, description="a name, or [\"chebyshev\", sidelobe level in dB]")
+    zero_pad: int = Field(SignalSettings.zero_pad, ge=1, description="length of the transforms over that of the data")
 
 
 def _azimuths(value):
@@ -279,7 +285,7 @@ class AngleTable(Table):
 
 
 class NoiseTable(Table):
-    seed: int = Field(1, ge=0, description="of the thermal noise")
+    seed: int = Field(SignalSettings.noise_seed, ge=0, description="of the thermal noise, with the start time")
 
 
 def _label_objects(value):
@@ -291,24 +297,24 @@ def _label_objects(value):
 
 
 class LabelsTable(Table):
-    plane: Literal["range_doppler", "range_azimuth"] = Field("range_doppler", description="whose cells are labelled")
+    plane: Plane = Field(LabelSettings.plane, description="whose cells are labelled")
     objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
-        None, description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
-    noise: bool = Field(True, description="cells must stand out of the noise")
-    noise_margin_db: Number = Field(10.0, description="dB, by so much")
+        LabelSettings.objects, description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
+    noise: bool = Field(LabelSettings.noise, description="cells must stand out of the noise")
+    noise_margin_db: Number = Field(LabelSettings.noise_margin_db, description="dB, by so much")
     dynamic_range_db: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
-        60.0, description="dB, cells may be so far below the peak")
-    errors: bool = Field(False, description="standard errors too; needs batches")
+        LabelSettings.dynamic_range_db, description="dB, cells may be so far below the peak")
+    errors: bool = Field(LabelSettings.errors, description="standard errors too; needs batches")
 
 
 class DetectionsTable(Table):
-    method: Literal["ca", "os"] = Field("ca", description="cell averaging, or an ordered statistic")
-    false_alarm_rate: Annotated[float, Field(ge=1e-15, le=0.5)] = Field(1e-6, description="of one cell")
+    method: CfarMethod = Field("ca", description="cell averaging, or an ordered statistic")
+    false_alarm_rate: Annotated[float, Field(ge=1e-15, le=0.5)] = Field(FALSE_ALARM_RATE, description="of one cell")
     guard_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")
     guard_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")
     training_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 4 zero_pad")
     training_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 8 zero_pad")
-    rank: Annotated[float, Field(gt=0, le=1)] = Field(0.75, description="of \"os\", share of the training cells")
+    rank: Annotated[float, Field(gt=0, le=1)] = Field(RANK, description="of \"os\", share of the training cells")
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
 
 

@@ -6,7 +6,6 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.parts import as_partitions
 from echopath.path_subset import part_of_path
 from echopath.same_radar import difference
 
@@ -71,7 +70,7 @@ def _partitions(parts) -> dict:
     """{partition: Parts or dict}, with Parts kept as they are."""
     if isinstance(parts, dict) and parts and all(isinstance(group, dict) for group in parts.values()):
         return parts
-    return as_partitions(parts) and {"parts": parts}
+    return {"parts": parts} if parts else {}
 
 
 def _parts_of(partition: str, group, signals: Signals) -> list[Part]:

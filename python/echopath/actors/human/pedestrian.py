@@ -1,8 +1,12 @@
 """The pedestrian: a parametric walking person."""
+from __future__ import annotations
+
 import numpy as np
 
+from ... import _core
+from ...checks import an, checked, positive, real
 from ..actor import Actor, PartArrays
-from ..checks import edge_length, nearest_keywords, number, positive
+from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
 from .gait import Gait, relative_speed_limit
@@ -14,9 +18,17 @@ MIN_KEYFRAME_RATE = 60.0      # 1/s: fewer do not follow the landing of a foot
 SKIN_PARTS = ("head", "neck", "hand")
 
 
-@nearest_keywords
-def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0.0, edge=0.018, keyframe_rate=120.0,
-               clothing="clothing", skin="skin"):
+def _material(argument: str, value):
+    """A Material or the name of one, which `Scene.add` looks up."""
+    return an(_core.Material, str, called="a Material or the name of one")(argument, value)
+
+
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
+         phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
+         clothing=_material, skin=_material)
+def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
+               phase: float = 0.0, edge: float = 0.018, keyframe_rate: float = 120.0,
+               clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin") -> Actor:
     """A person who walks along +x, 16 closed smooth meshes that move by keyframes.
 
     Proportions after Drillis and Contini (anthropometry.py), motion after Boulic, Thalmann and Thalmann (boulic.py)
@@ -45,14 +57,13 @@ def pedestrian(*, height=1.78, speed=1.4, start_time=-0.5, duration=2.5, phase=0
 
 def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
     """The parts of a pedestrian as plain arrays: a list of PartArrays. Arguments as of pedestrian()."""
-    body = Proportions(number("height", height, *HEIGHTS, unit="m"))
-    speed = number("speed", speed, MIN_SPEED, round(relative_speed_limit(body), 3), unit="m/s")
+    body = Proportions(height)
+    real(MIN_SPEED, round(relative_speed_limit(body), 3), "m/s")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
-    number("edge", edge, 0.0, 0.05 * body.height, unit="m")
+    real(0.0, 0.05 * body.height, "m")("edge", edge)
     gait = Gait(body, speed)
-    times = keyframe_times(number("start_time", start_time), positive("duration", duration, unit="s"),
-                           number("keyframe_rate", keyframe_rate, MIN_KEYFRAME_RATE, unit="1/s"))
-    frames = gait.frames(number("phase", phase) + times / gait.cycle.duration)
+    times = keyframe_times(start_time, duration, keyframe_rate)
+    frames = gait.frames(phase + times / gait.cycle.duration)
     start = np.array([phase * gait.cycle.length, 0.0, 0.0])
     surfaces = {}
     parts = []

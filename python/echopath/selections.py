@@ -1,0 +1,35 @@
+"""Selections of paths in Python: the words that the text of a Selection has, too."""
+from __future__ import annotations
+
+from . import _core
+from ._core import num_bounces, power
+from .checks import checked, text
+
+__all__ = ["first", "hits", "last", "num_bounces", "power"]
+
+
+@checked(glob=text)
+def hits(glob: str) -> _core.Selection:
+    """Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.
+
+    glob: of mesh names. Raises TypeError or ValueError naming the argument.
+    """
+    return _core.hits(glob)
+
+
+@checked(glob=text)
+def first(glob: str) -> _core.Selection:
+    """Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.
+
+    glob: of mesh names. Raises TypeError or ValueError naming the argument.
+    """
+    return _core.first(glob)
+
+
+@checked(glob=text)
+def last(glob: str) -> _core.Selection:
+    """Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.
+
+    glob: of mesh names. Raises TypeError or ValueError naming the argument.
+    """
+    return _core.last(glob)

@@ -1,0 +1,199 @@
+"""Whatever is wrong with an argument, the error names the argument: thousands of wrong ones, for every public function.
+
+A public function needs an entry in `GOOD`, with arguments that it takes; classes join by theirs. Each argument in turn is
+replaced by each of `ODD`. Some of these are right for some arguments; the others must raise an error whose text has the
+name of the argument.
+"""
+from __future__ import annotations
+
+import decimal
+import fractions
+import inspect
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+# How many of the arguments tried must be wrong, so that the test cannot run empty.
+FEWEST_WRONG = 6000
+EXPECTED = (TypeError, ValueError, IndexError, ep.FileError)
+SURROGATE = "wall\ud800"
+
+
+class Unprintable:
+    """A value whose __repr__ raises."""
+
+    def __repr__(self):
+        raise RuntimeError("no words for it")
+
+
+# Made anew for each call: some are used up.
+ODD = {
+    "None": lambda: None, "True": lambda: True, "NaN": lambda: float("nan"), "inf": lambda: float("inf"),
+    "-inf": lambda: -float("inf"), "-1": lambda: -1, "0.5": lambda: 0.5, "-0.5": lambda: -0.5, "-1e9": lambda: -1e9,
+    "1e300": lambda: 1e300, "2**70": lambda: 2**70, "10**400": lambda: 10**400, "1j": lambda: 1j, "empty text": lambda: "",
+    "text": lambda: "nonsense", "number as text": lambda: "5", "lone surrogate": lambda: SURROGATE, "NUL": lambda: "a\0b",
+    "bytes": lambda: b"bytes", "object": object, "class": lambda: int, "lambda": lambda: (lambda: None),
+    "unprintable": Unprintable, "empty list": list, "empty tuple": tuple, "empty dict": dict, "empty set": set,
+    "ragged": lambda: [[1.0, 2.0], [3.0]], "list of None": lambda: [None], "list of text": lambda: ["5", "6"],
+    "list of surrogates": lambda: [SURROGATE], "[5]": lambda: [5.0], "wrong shape": lambda: np.zeros((2, 2, 2)),
+    "many axes": lambda: np.zeros((1,) * 9), "no rows": lambda: np.zeros((0, 7)), "NaN [3]": lambda: np.full(3, np.nan),
+    "text array": lambda: np.array(["a", "b"]), "object array": lambda: np.array([object(), None]),
+    "array of dates": lambda: np.array(["2020-01-01"], "datetime64[D]"), "date": lambda: np.datetime64("2020-01-01"),
+    "NumPy NaN": lambda: np.float32("nan"), "NumPy -1": lambda: np.int8(-1), "array -1": lambda: np.array(-1),
+    "array NaN": lambda: np.array(np.nan), "structured": lambda: np.zeros(2, "i4,f4"), "Decimal": lambda: decimal.Decimal("0.5"),
+    "Fraction": lambda: fractions.Fraction(-1, 3), "range": lambda: range(-2, 0), "generator": lambda: (n for n in "ab"),
+    "dict of numbers": lambda: {"one": 1.0}, "dict by numbers": lambda: {1: "T . R"},
+    "dict by surrogates": lambda: {SURROGATE: "T . R"}, "dict of surrogates": lambda: {"one": SURROGATE},
+    "dict of faults": lambda: {"one": "T ("}, "nested dict": lambda: {"one": {"two": {"three": "T . R"}}},
+    "set of numbers": lambda: {1, 2}, "exception": lambda: ValueError("argument"), "module": lambda: np,
+    "slice": lambda: slice(3), "ellipsis": lambda: ..., "memory": lambda: memoryview(b"ab"),
+}
+
+
+def make_radar() -> ep.Radar:
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=0.5e9, num_samples=16, sampling_rate=10e6, num_chirps=4,
+                                chirp_interval=50e-6)
+    receivers = [ep.Antenna((0.0, 0.5 * index * waveform.wavelength, 0.0)) for index in range(2)]
+    return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=receivers)
+
+
+def make_scene() -> ep.Scene:
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(5.0, 0.0, 0.0))
+    return scene
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory) -> dict:
+    """{public name: arguments that it takes}"""
+    folder = tmp_path_factory.mktemp("files")
+    scene, radar = make_scene(), make_radar()
+    frame = ep.simulate(scene, radar, num_rays=200, parts={"plate": "T 'plate' R"}, labels=True, guard=False)
+    paths, cube, spectrum, probe = frame.paths, frame.cube, frame.spectrum, ep.SignalProbe()
+    ep.synthesize(paths, probe=probe)
+    ep.save_frame(frame, folder / "frame.h5")
+    (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (folder / "antenna.csv").write_text("azimuth_deg,elevation_deg,gain_db\n" + "".join(
+        f"{azimuth},{elevation},0\n" for azimuth in (-10, 10) for elevation in (-10, 10)))
+    mesh, of_map = {"path": folder / "mesh.obj"}, {"spectrum": spectrum, "radar": radar}
+    labels = next(iter(frame.labels.values()))
+    return {
+        "add_noise": {"cube": cube, "radar": radar, "seed": 1}, "angle_fft": of_map, "beamform": of_map,
+        "annotate": {"paths": paths, "parts": {"plate": "T 'plate' R"}},
+        "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},
+        "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
+        "compensate_tdm": of_map, "decompose": {"paths": paths, "parts": {"plate": "T 'plate' R"}}, "detect": of_map,
+        "detect_frame": {"frame": frame}, "effects": {"scene": scene, "radar": radar},
+        "estimate_angles": of_map | {"cells": [[0, 1]]}, "families": {"paths": paths}, "first": {"glob": "plate"},
+        "hits": {"glob": "plate"}, "last": {"glob": "plate"}, "load_antenna": {"path": folder / "antenna.csv"},
+        "load_frame": {"path": folder / "frame.h5"}, "load_labels": {"path": folder / "frame.h5"}, "load_mesh": mesh,
+        "load_meshes": mesh, "load_scene": {"path": folder / "scene.toml"}, "mie_rcs": {"radius": 0.1, "frequency": 1e9},
+        "num_threads": {}, "path_cells": {"paths": paths, "spectrum": spectrum},
+        "plot_rays": {"scene": scene, "paths": paths}, "power_by_chirp": {"cube": cube}, "range_azimuth": of_map,
+        "range_doppler": {"cube": cube, "radar": radar},
+        "rcs": {"scene": scene, "frequency": 10e9, "incidence": (-1, 0, 0), "num_rays": 200},
+        "received_power": {"paths": paths},
+        "received_powers": {"paths": paths, "group_of_path": np.zeros(paths.num_paths, np.uint32), "num_groups": 1},
+        "renew": {"paths": paths, "time": 0.0}, "save_frame": {"frame": frame, "path": folder / "saved.h5"},
+        "save_label_images": {"labels": labels, "folder": folder / "images"},
+        "save_labels": {"labels": frame.labels, "path": folder / "labels.h5"}, "set_num_threads": {"num_threads": 0},
+        "simulate": {"scene": scene, "radar": radar, "num_rays": 200, "guard": False}, "synthesize": {"paths": paths},
+        "trace": {"scene": scene, "radar": radar, "num_rays": 200},
+        "unresolved": {"paths": paths}, "validity": {"paths": paths}, "view": {"what": scene, "paths": paths},
+        "virtual_array": {"radar": radar}, "visibility": {"scene": scene, "radar": radar, "num_directions": 16},
+        "TraceSettings": {}, "SignalSettings": {}, "LabelSettings": {},
+    }
+
+
+# Classes whose constructors are held to the same.
+CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings"]
+# Of the extension, which checks their arguments itself; and of what is converted, by the kind of it.
+APART = {"CosinePower", "GainTable", "Isotropic", "to_xarray"}
+FUNCTIONS = sorted(name for name in ep.__all__ if inspect.isroutine(getattr(ep, name)) and name not in APART)
+# Arguments that nothing is wrong for: whatever is passed on as it is.
+FREE = {("plot_rays", "cmap"), ("plot_rays", "plotter")}
+
+
+def is_named(argument: str, value, error: Exception) -> bool:
+    """Whether an error names an argument, or of what is wrong with a file, the file; in text that can be printed."""
+    message = str(error).encode("utf-8").decode("utf-8")
+    return argument in message or (isinstance(error, ep.FileError) and str(value) in message)
+
+
+def faults(name: str, arguments: dict):
+    """(argument, odd value, what is wrong with the error) of those that do not name the argument; and how many were refused."""
+    function, wrong, found = getattr(ep, name), 0, []
+    for argument in inspect.signature(function).parameters:
+        for odd, make in ODD.items():
+            value = make()
+            try:
+                function(**arguments | {argument: value})
+            except EXPECTED as error:
+                wrong += 1
+                if not is_named(argument, value, error):
+                    found.append((argument, odd, repr(error)))
+            except Exception as error:
+                wrong += 1
+                found.append((argument, odd, f"{type(error).__name__}: {error!r}"))
+    return [fault for fault in found if (name, fault[0]) not in FREE], wrong
+
+
+def test_every_public_function_is_tried(good):
+    assert sorted(good) == sorted(FUNCTIONS + CLASSES)
+
+
+def test_wrong_arguments_are_named(good, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("echopath.viewing._viewer", lambda: _NoViewer)
+    total, found = 0, {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            for name, arguments in good.items():
+                bad, wrong = faults(name, arguments)
+                total += wrong
+                found |= {name: bad} if bad else {}
+        finally:
+            ep.set_num_threads(0)
+    words = "\n".join(f"{name}({argument}={odd}): {what}" for name, bad in found.items() for argument, odd, what in bad)
+    assert not found, f"of {total} wrong arguments {sum(map(len, found.values()))} are not named:\n{words}"
+    assert total >= FEWEST_WRONG, f"only {total} of the arguments tried are wrong"
+
+
+class _NoViewer:
+    """In the place of the viewer, which would open a window for what is right."""
+
+    view = staticmethod(lambda *what, **keywords: None)
+    plot_rays = staticmethod(lambda *what, **keywords: None)
+
+
+@pytest.mark.parametrize("name", [*FUNCTIONS, *CLASSES])
+def test_signatures_are_explicit_and_annotated(name):
+    """No *arguments or **keywords, no parameter without a type."""
+    for parameter in inspect.signature(getattr(ep, name)).parameters.values():
+        assert parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD), parameter
+        assert parameter.annotation is not parameter.empty, parameter
+
+
+@pytest.mark.parametrize("name", [*FUNCTIONS, *CLASSES])
+def test_unknown_keywords_are_refused_by_name(name, good):
+    for word in ("num_rayz", SURROGATE):
+        with pytest.raises(TypeError, match="num_rayz|wall.ud800"):
+            getattr(ep, name)(**good[name], **{word: 1})
+
+
+@pytest.mark.parametrize("value", [1e2, 100.0, np.int16(100), np.float32(100), np.array(100)])
+def test_whole_floats_and_numpy_integers_are_counts(good, value):
+    traced = [ep.trace(**good["trace"] | {"num_rays": rays}) for rays in (100, value)]
+    assert np.array_equal(traced[0].weight, traced[1].weight)
+    assert ep.TraceSettings(num_rays=value).num_rays == 100
+
+
+def test_arrays_are_not_copied_by_checks():
+    from echopath.checks import array
+
+    cube = np.zeros((1, 2, 3, 4), np.complex64)
+    assert array("[T, R, C, S]", kind="complex")("cube", cube) is cube

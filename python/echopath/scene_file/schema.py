@@ -299,7 +299,8 @@ def _label_objects(value):
 class LabelsTable(Table):
     plane: Plane = Field(LabelSettings.plane, description="whose cells are labelled")
     objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
-        LabelSettings.objects, description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
+        LabelSettings.objects,
+        description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
     noise: bool = Field(LabelSettings.noise, description="cells must stand out of the noise")
     noise_margin_db: Number = Field(LabelSettings.noise_margin_db, description="dB, by so much")
     dynamic_range_db: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(

@@ -24,7 +24,7 @@ from .keywords import refuse_unknown
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 Rule = Callable[[str, Any], Any]
-Progress = Callable[[str, float], object] | None                   # (stage, fraction from 0 to 1)
+Progress = Callable[[str, float], object] | bool | None            # (stage, fraction from 0 to 1); True: bars
 WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
 Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
 
@@ -234,9 +234,9 @@ def anything(argument: str, value):
 
 
 def progress(argument: str, value):
-    """None, or a callable (stage, fraction)."""
-    if value is not None and not (callable(value) and not isinstance(value, type) and _takes(value, "stage", 0.0)):
-        raise refused(TypeError, argument, "a callable (stage, fraction) or None", value)
+    """None, a callable (stage, fraction), or True for bars."""
+    if value is not None and not isinstance(value, bool) and not (callable(value) and not isinstance(value, type) and _takes(value, "stage", 0.0)):
+        raise refused(TypeError, argument, "a callable (stage, fraction), True or None", value)
     return value
 
 

@@ -300,7 +300,7 @@ def test_a_folder_that_cannot_be_made_is_a_file_error(frame, tmp_path):
 
 
 def test_a_negative_power_is_refused(frame, tmp_path):
-    with pytest.raises(ValueError, match="min_power: must be at least 0 W, got -1.0"):
+    with pytest.raises(ValueError, match="min_power: must be a finite number of at least 0 W, got -1.0"):
         frame.paths.save(tmp_path / "frame.h5", min_power=-1.0)
     assert list(tmp_path.iterdir()) == []
 

@@ -6,9 +6,10 @@
     cube = ep.synthesize(paths, radar)                                     # [tx, rx, chirp, sample]
     parts = ep.decompose(paths, radar, {"ghosts": "T .* 'wall' .* R"})     # and "other"
 """
-from ._startup import answer_ctrl_c_while_loading
+from ._startup import answer_ctrl_c_while_loading, answer_version_before_loading
 
 answer_ctrl_c_while_loading()
+answer_version_before_loading()
 
 from . import actors, plots
 from ._core import (

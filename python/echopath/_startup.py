@@ -5,6 +5,7 @@ import sys
 import threading
 
 EXIT_INTERRUPTED = 130
+VERSION_ONLY = ["--version"]
 STOPPED = "echopath: stopped; no file was left half written"
 
 
@@ -13,6 +14,15 @@ def answer_ctrl_c_while_loading() -> None:
     if (_is_command_line() and threading.current_thread() is threading.main_thread()
             and signal.getsignal(signal.SIGINT) is signal.default_int_handler):
         signal.signal(signal.SIGINT, _stop)
+
+
+def answer_version_before_loading() -> None:
+    """Called when the package loads: the command `echopath --version` prints what the parser would and needs nothing else."""
+    if _is_command_line() and sys.orig_argv[-1:] == VERSION_ONLY and sys.orig_argv[-2].endswith("echopath"):
+        from importlib.metadata import version
+
+        print(f"echopath {version('echopath')}", flush=True)
+        raise SystemExit(0)
 
 
 def loading_is_over() -> None:

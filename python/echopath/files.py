@@ -41,6 +41,27 @@ def _written(path: Path):
             Path(temporary).unlink(missing_ok=True)
 
 
+def require_writable(folder, argument: str) -> None:
+    """Raises ep.FileError naming `argument` unless files can be written into `folder`: before long work whose end they are.
+
+    folder: need not exist yet; what is made on trial is removed again.
+    """
+    folder = Path(folder).absolute()
+    missing = [one for one in (folder, *folder.parents) if not os.path.lexists(one)]
+    made = []
+    try:
+        for one in reversed(missing):
+            one.mkdir()
+            made.append(one)
+        tempfile.TemporaryFile(dir=folder).close()
+    except (OSError, ValueError) as error:  # ValueError: NUL in the name
+        reason = getattr(error, "strerror", None) or error
+        raise _core.FileError(f"{argument}: must be a folder that can be written, got {str(folder)!r} ({reason})") from None
+    finally:
+        for one in reversed(made):
+            one.rmdir()
+
+
 def write_texts(folder, texts: dict) -> None:
     """Writes files {name: text} into `folder`, each whole or not at all. Raises ep.FileError."""
     for name, text in texts.items():

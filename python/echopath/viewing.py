@@ -1,4 +1,4 @@
-"""The viewer, where it is installed: `pip install echopath[viewer]`."""
+"""The viewer, where its packages are installed."""
 from __future__ import annotations
 
 import os
@@ -40,7 +40,7 @@ def view(what: str | os.PathLike[str] | Frame | _core.Scene | None = None, paths
          picture: str | os.PathLike[str] | None = None, block: bool = True) -> Any:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.
 
-    It comes with `pip install echopath[viewer]`.
+    It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
     what: a frame file, a Frame, or the scene of the paths (None: theirs); paths: of `trace`
     parts: of `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     window, zero_pad: of the maps of paths, as in `range_doppler`; evaluate, retrace, keyframes: of their signals, as in
@@ -86,7 +86,7 @@ def plot_rays(scene: _core.Scene | None, paths: _core.Paths, *, selection: str |
               return_plotter: bool = False) -> Any:
     """Draws a scene with its strongest rays: plot_rays(scene, paths, off_screen=True, screenshot="rays.png").
 
-    Needs no screen; comes with `pip install echopath[viewer]`.
+    Needs no screen, but the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
     scene: that of the paths, or None; paths: of `trace`
     selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, the strongest
     color_by: "bounces", "mesh", "power", "range" or "speed"; cmap, clim: colour map and (low, high) of the last three, in

@@ -1,4 +1,4 @@
-"""Maps as xarray, with named axes and units; comes with `pip install echopath[xarray]`."""
+"""Maps as xarray, with named axes and units; comes with `pip install xarray`."""
 from __future__ import annotations
 
 from . import _core
@@ -27,7 +27,7 @@ def _xarray():
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] != "xarray":
             raise
-        text = "to_xarray needs xarray, which is not installed: pip install 'echopath[xarray]'"
+        text = "to_xarray needs xarray, which is not installed: pip install xarray"
         raise ModuleNotFoundError(text, name="xarray") from None
     return xarray
 

@@ -10,6 +10,8 @@ import time
 import pytest
 
 import echopath as ep
+from echopath.cli import main
+from echopath.files import require_writable
 from echopath.scene_file import load_scene
 from support.scene_text import WAVEFORM
 
@@ -52,8 +54,36 @@ def call(*arguments):
     return subprocess.run(command(*arguments), capture_output=True, text=True, timeout=120)
 
 
-def test_version_is_that_of_the_package():
+def test_version_is_that_of_the_package(capsys):
     assert call("--version").stdout == f"echopath {ep.__version__}\n"
+    with pytest.raises(SystemExit, match="0"):
+        main(["--version"])
+    assert capsys.readouterr().out == f"echopath {ep.__version__}\n"
+
+
+def test_version_needs_nothing_that_takes_time_to_load():
+    done = subprocess.run([sys.executable, "-X", "importtime", *command("--version")[1:]], capture_output=True, text=True)
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "echopath._startup" in loaded and not loaded & {"numpy", "h5py", "pydantic", "matplotlib", "echopath._core"}
+
+
+# Each would end in files beneath a file.
+WRITERS = {"run": ["run", "plate.toml"], "demo": ["demo"], "bench": ["bench", "speed"], "labels": ["labels", "none.h5"]}
+
+
+@pytest.mark.parametrize("verb", WRITERS)
+def test_a_folder_that_cannot_be_written_is_named_before_the_work(verb, scene_path, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(ep._core, "trace", None)  # no work begins
+    (tmp_path / "file").write_text("")
+    assert main([*WRITERS[verb], "--out", "file/out"]) == 2
+    told = capsys.readouterr().err
+    assert told == f"echopath: --out: must be a folder that can be written, got '{tmp_path / 'file/out'}' (Not a directory)\n"
+
+
+def test_a_folder_that_is_tried_is_not_left_behind(tmp_path):
+    require_writable(tmp_path / "a" / "b", "--out")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):

@@ -1,4 +1,4 @@
-"""Desktop viewer of Echopath: which rays made which cell. `pip install echopath[viewer]`.
+"""Desktop viewer of Echopath: which rays made which cell. It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
 
 model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window: Qt. Each works without the next.
 """
@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
+PACKAGES = "PySide6-Essentials pyvista pyvistaqt vtk"  # the extra "viewer" of pyproject.toml
 _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
 
 
@@ -43,5 +44,5 @@ def _told_what_to_install():
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in _EXTRA:
             raise
-        text = f"the viewer needs {error.name}, which is not installed: pip install 'echopath[viewer]'"
+        text = f"the viewer needs {error.name}, which is not installed: pip install {PACKAGES}"
         raise ModuleNotFoundError(text, name=error.name) from None

@@ -4,9 +4,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from pathlib import Path
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
+from ..files import require_writable
 
 EXIT_BAD_INPUT = 2
 
@@ -165,6 +167,7 @@ def _demo(options) -> None:
     from .demo import run_demo
     from .progress import progress_bars
 
+    require_writable(options.out, "--out")
     if options.view:
         from echopath_viewer import require_window
 
@@ -180,6 +183,8 @@ def _demo(options) -> None:
 def _view(options) -> None:
     import echopath as ep
 
+    if options.picture is not None:
+        require_writable(Path(options.picture).parent, "--picture")
     ep.view(*([options.frame] if options.frame else []), state=options.state, picture=options.picture)
 
 
@@ -189,6 +194,7 @@ def _run(options) -> None:
     from .run import certify, chosen_partition, simulate_file, write_outputs
     from ..scene_file import load_scene
 
+    require_writable(options.out, "--out")
     scene_file = load_scene(options.scene)
     chosen = chosen_partition(options.part, scene_file.partitions())
     with progress_bars() as progress:
@@ -215,6 +221,7 @@ def _labels(options) -> None:
     from .labels import label_file, objects_of_options
     from .progress import progress_bars
 
+    require_writable(options.out, "--out")
     with progress_bars() as progress:
         lines = label_file(options.frame, options.out, parts=options.part, objects=objects_of_options(options.object),
                            plane=options.plane, dynamic_range_db=options.dynamic_range, noise_margin_db=options.noise_margin,
@@ -228,6 +235,7 @@ def _bench(options) -> None:
                          run_physics, run_published, run_replay, run_speed, speed)
     from .progress import progress_bars
 
+    require_writable(options.out, "--out")
     with progress_bars() as progress:
         if options.what == "physics":
             lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick,

@@ -209,9 +209,14 @@ def test_a_file_of_paths_alone_can_be_labelled(frame, labels, tmp_path):
     assert np.allclose(made["parts"].whole, labels.whole, rtol=0.0, atol=SAME_SHARES * labels.whole.max())
 
 
-def test_a_partition_that_the_frame_has_is_not_made_twice(frame):
-    with pytest.raises(ValueError, match="parts: the frame has a partition 'by' already"):
-        ep.annotate_frame(frame, {"by": {"a": "T . R"}})
+def test_other_parts_take_the_place_of_a_partition_of_the_same_name(frame):
+    again = ep.annotate_frame(frame, {"by": {"near": "T . R"}})
+    alone = ep.annotate(frame.paths, {"near": "T . R"})
+    assert list(again) == list(frame.parts) and again["by"].part_names == ["near", "other"]
+    assert np.abs(again["by"].power.sum(axis=0) - alone.power.sum(axis=0)).max() < SAME_SHARES * alone.whole.max()
+
+
+def test_parts_of_a_frame_name_meshes(frame):
     with pytest.raises(ValueError, match=r"parts.more.a: path expression: expected a glob that takes a mesh, got 'vam'"):
         ep.annotate_frame(frame, {"more": {"a": "T 'vam' R"}})
 

@@ -36,8 +36,8 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     """Labels of the cells of a frame's map, from its record and the cubes of its partitions alone.
 
     frame: Frame of `simulate` or `load_frame`, whose window, zero_pad and settings of signals are those of the labels
-    parts: {name: selection} or {partition: {name: selection}} beside the partitions of the frame, None: those alone; without
-        any, all paths are "other" of a partition "parts"
+    parts: {name: selection} (partition "parts") or {partition: {name: selection}} beside the partitions of the frame, in place
+        of one of the same name; None: those alone; without any, all paths are "other" of a partition "parts"
     plane, objects, noise, noise_margin_db (dB), dynamic_range_db (dB), errors: as in `annotate`
     settings: LabelSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction) or None
@@ -54,7 +54,8 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     views = {_FAMILIES: families, **chosen}
     num_parts = len(families) + sum(len(group) + 1 for group in chosen.values())
     powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, replayed), request.plane)
-    powers |= add_powers([CubeSet(frame.radar, 1.0, frame.parts)], request.plane)
+    kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}
+    powers |= add_powers([CubeSet(frame.radar, 1.0, kept)], request.plane)
     family_powers, selections = powers.pop(_FAMILIES), frame.selections | chosen
     powers = {partition: powers[partition] for partition in selections}
     return label_partitions(request, paths, families, family_powers, powers, selections, replayed)
@@ -62,8 +63,5 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
 
 def _as_new_partitions(parts, frame) -> dict:
     chosen = as_partitions(parts) or ({} if frame.parts else {ONLY_PARTITION: {}})
-    taken = [partition for partition in chosen if partition in frame.parts]
-    if taken:
-        raise ValueError(f"parts: the frame has a partition '{taken[0]}' already")
     check_partitions(chosen, frame.scene)
     return chosen

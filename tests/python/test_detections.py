@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -393,3 +394,28 @@ def test_bad_arguments_are_named(spheres):
         found.paths(0)
     with pytest.raises(IndexError, match="i: must be"):
         ep.detect(spectrum, radar, paths=paths).paths(99)
+
+
+def test_a_map_without_noise_is_told_of(spheres):
+    """Echoes of the three, as `synthesize` gives them; with noise there is no word."""
+    radar, paths, noisy = spheres
+    with pytest.warns(RuntimeWarning, match=r"spectrum: holds no noise of the radar .* ep.add_noise\(cube, radar\)"):
+        ep.detect(ep.range_doppler(ep.synthesize(paths, radar), radar), radar)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.detect(noisy, radar)
+        ep.detect(ep.range_doppler(ep.add_noise(np.zeros((1, 8, 64, 256)), radar, seed=3), radar, zero_pad=2), radar)
+
+
+@pytest.mark.parametrize("other", [{"chirp_interval": 60e-6}, {"num_samples": 128}, {"num_chirps": 32}])
+def test_a_map_of_other_chirps_is_refused(spheres, other):
+    with pytest.raises(ValueError, match="spectrum: must have been made with the chirps of this radar"):
+        ep.detect(spheres[2], radar_with(**other))
+
+
+def test_a_map_that_is_not_finite_is_refused():
+    radar = radar_with(receivers=1)
+    cube = np.array(ep.add_noise(np.zeros((1, 1, 64, 256)), radar, seed=3))
+    cube[0, 0, 5, 7] = np.nan
+    with pytest.raises(ValueError, match="spectrum: must have finite values, power, got nan"):
+        ep.detect(ep.range_doppler(cube, radar), radar)

@@ -21,6 +21,7 @@ from . import labelling
 from .detections import Detections, centre_of
 from .directions import directions_of
 from .echo_fields import EchoFields
+from .noise import warn_of_missing_noise
 
 
 def _labels(argument: str, value):
@@ -64,7 +65,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     objects: of `families`, with paths
     progress: callable(stage, fraction) or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
-    Ctrl-C.
+    Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
@@ -73,6 +74,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
+    warn_of_missing_noise(radar, found.power, stacklevel=4)  # of the call of detect, behind its checks
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)

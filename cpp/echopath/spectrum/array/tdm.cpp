@@ -1,5 +1,7 @@
 #include "echopath/spectrum/array/tdm.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -11,6 +13,23 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxFold = 1000;
+constexpr double kAxisRounding = 1e-9;  // relative, of the ends of an axis
+
+bool is_alike(double a, double b) { return std::abs(a - b) <= kAxisRounding * std::max(std::abs(a), std::abs(b)); }
+
+// A map that was compensated may have its velocities shifted.
+void require_axes(const RangeDoppler& map, const Radar& radar) {
+  const ChirpSequence& waveform = radar.waveform;
+  const std::vector<double> range = range_axis(waveform, waveform.num_samples * map.zero_pad);
+  const std::vector<double> velocity = velocity_axis(waveform, radar.num_slots(), waveform.num_chirps * map.zero_pad);
+  require(map.range.size() == range.size() && is_alike(map.range.back(), range.back()), "spectrum",
+          "must have been made with the chirps of this radar, whose last range is " + std::to_string(range.back()) + " m",
+          map.range.back());
+  const double span = velocity.back() - velocity.front();
+  require(map.velocity.size() == velocity.size() && is_alike(map.velocity.back() - map.velocity.front(), span), "spectrum",
+          "must have been made with the chirps of this radar, whose velocities span " + std::to_string(span) + " m/s",
+          map.velocity.back() - map.velocity.front());
+}
 
 }  // namespace
 
@@ -33,6 +52,7 @@ void require_map_of(const RangeDoppler& map, const Radar& radar) {
   const size_t size = size_t{1} * num_tx * num_rx * map.velocity.size() * map.range.size();
   require(size > 0 && map.values.size() == size, "spectrum", "must have channels x velocities x ranges values",
           map.values.size());
+  require_axes(map, radar);
 }
 
 RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold, Job* job) {

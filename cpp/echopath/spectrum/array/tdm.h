@@ -23,7 +23,7 @@ std::vector<std::complex<double>> slot_phasors(const ChirpSequence& waveform, in
 // Raises invalid_argument unless the map is the radar's, has not been compensated before, and |fold| <= 1000.
 RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold = 0, Job* job = nullptr);
 
-// Raises invalid_argument unless the map's channels are the radar's and its arrays fit each other.
+// Raises invalid_argument unless the map's channels and axes are the radar's and its arrays fit each other.
 void require_map_of(const RangeDoppler& map, const Radar& radar);
 
 }  // namespace echopath

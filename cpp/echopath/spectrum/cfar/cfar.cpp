@@ -1,6 +1,7 @@
 #include "echopath/spectrum/cfar/cfar.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "echopath/base/parallel.h"
 #include "echopath/base/recent_results.h"
@@ -130,6 +131,7 @@ CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& 
   result.num_velocities = static_cast<int64_t>(map.velocity.size());
   result.num_ranges = static_cast<int64_t>(map.range.size());
   result.power = mean_power(map, job);
+  for (const double power : result.power) require(std::isfinite(power), "spectrum", "must have finite values, power", power);
   detect(result, job);
   return result;
 }

@@ -1,0 +1,33 @@
+"""What README.md says of the program is so: its Python runs as it stands and prints what it says."""
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+TEXT = (Path(__file__).parents[2] / "README.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def blocks():
+    return re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def names():
+    return {}
+
+
+def test_the_example_prints_what_stands_below_it(blocks, names, capsys):
+    exec(blocks[0], names)
+    printed = re.search(r"```python\n.*?```\nprints\n```\n(.*?)```", TEXT, re.DOTALL)[1]
+    assert capsys.readouterr().out == printed
+
+
+def test_detections_of_the_example_are_what_the_scene_holds(blocks, names):
+    """The map has noise, so that what is found is the person or, at rest, the wall."""
+    exec(blocks[1], names)
+    points = names["points"]
+    assert len(points) > 0 and set(points.part) <= {*names["parts"], "noise"} and "direct" in points.part
+    direct = points.part == "direct"
+    assert np.all((points.range[direct] > 9.0) & (points.range[direct] < 11.0))  # m: the person stands at 10

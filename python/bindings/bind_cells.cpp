@@ -10,6 +10,7 @@
 #include "echopath/label/cells/cells.h"
 #include "echopath/signal/noise.h"
 #include "echopath/spectrum/range_doppler.h"
+#include "leaving.h"
 #include "run_job.h"
 #include "window_name.h"
 
@@ -29,7 +30,7 @@ Shape shape_of(const py::array& array) { return {array.shape(), array.shape() + 
 // What `work` gives, which must not touch Python objects; other Python threads run meanwhile.
 template <class Work>
 auto without_gil(const Work& work) {
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   return work();
 }
 

@@ -11,6 +11,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/motion/deformation.h"
 #include "keywords.h"
+#include "leaving.h"
 
 namespace echopath::bindings {
 namespace {
@@ -53,7 +54,7 @@ std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const p
   std::vector<double> seconds = as_vector<double>(times, "times");
   std::vector<std::vector<Vec3>> frames = as_frames(vertices, "vertices");
   const Interpolation kind = kInterpolation.value_of(interpolation);
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   return std::make_shared<VertexSequence>(std::move(seconds), std::move(frames), kind);
 }
 

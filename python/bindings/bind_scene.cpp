@@ -15,6 +15,7 @@
 #include "echopath/scene/readers/readers.h"
 #include "echopath/scene/scene.h"
 #include "keywords.h"
+#include "leaving.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -137,7 +138,7 @@ std::shared_ptr<Mesh> mesh(const py::object& vertices, const py::object& triangl
   std::vector<Triangle> corners = as_triangles(triangles, "triangles");
   std::vector<uint32_t> source;
   if (!original_triangle.is_none()) source = as_vector<uint32_t>(original_triangle, "original_triangle");
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   return std::make_shared<Mesh>(std::move(points), std::move(corners), std::move(source));
 }
 
@@ -202,7 +203,7 @@ whole deforms each part. Raises ValueError for none or one out of range.)")
 py::list meshes_of_file(const std::filesystem::path& path, double unit) {
   std::vector<NamedMesh> meshes;
   {
-    const py::gil_scoped_release release;
+    const WithoutGil released;
     meshes = load_meshes(path.string(), unit);
   }
   py::list result;
@@ -211,7 +212,7 @@ py::list meshes_of_file(const std::filesystem::path& path, double unit) {
 }
 
 std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double unit) {
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   return shared(load_mesh(path.string(), unit));
 }
 

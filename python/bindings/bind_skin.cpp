@@ -14,6 +14,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "keywords.h"
+#include "leaving.h"
 
 namespace echopath::bindings {
 namespace {
@@ -79,7 +80,7 @@ std::shared_ptr<Skin> skin(const py::object& vertices, const std::vector<NamedJo
   std::vector<Vec3> points = as_points(vertices, "vertices");
   std::vector<Joint> all = numbered(joints);
   const SkinWeights rows = skin_weights(weights, joint_indices, all.size());
-  const py::gil_scoped_release release;
+  const WithoutGil released;
   return std::make_shared<Skin>(std::move(points), std::move(all), rows);
 }
 
@@ -109,7 +110,7 @@ py::array_t<double> matrices(const std::vector<Transform>& transforms) {
 py::list parts_of_skin(const Skin& skin, const std::shared_ptr<Mesh>& mesh) {
   std::vector<NamedMesh> parts;
   {
-    const py::gil_scoped_release release;
+    const WithoutGil released;
     parts = parts_by_joint(mesh, skin);
   }
   py::list result;

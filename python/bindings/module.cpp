@@ -3,6 +3,8 @@
 #include <pybind11/pybind11.h>
 
 #include "errors.h"
+#include "keyword_text.h"
+#include "leaving.h"
 
 namespace echopath::bindings {
 
@@ -17,7 +19,9 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The C++ core of echopath; use it through the package.";
   m.attr("__version__") = ECHOPATH_VERSION;
   bindings::register_errors(m);
+  bindings::register_leaving();
 #define X(module) bindings::bind_##module(m);
   ECHOPATH_BIND_MODULES
 #undef X
+  bindings::refuse_keywords_without_text(m);
 }

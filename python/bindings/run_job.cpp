@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "leaving.h"
+
 namespace echopath::bindings {
 namespace {
 
@@ -75,6 +77,7 @@ void run_beside(const std::string& stage, const py::object& progress, const std:
     throw py::type_error("progress: must be None or a callable (stage, fraction), got " +
                          std::string(Py_TYPE(progress.ptr())->tp_name));
   Job job;
+  const InCore in_core(&job);
   Worker worker(work, job);
   std::exception_ptr interruption;
   while (!interruption && !worker.wait_a_little()) {
@@ -86,6 +89,10 @@ void run_beside(const std::string& stage, const py::object& progress, const std:
     }
   }
   const std::exception_ptr failure = worker.join();
+  if (is_left_behind()) {
+    PyErr_SetNone(PyExc_SystemExit);
+    throw py::error_already_set();
+  }
   if (interruption) std::rethrow_exception(interruption);
   if (failure) std::rethrow_exception(failure);
   poll(stage, progress, 1.0);

@@ -1,9 +1,14 @@
 """What lies too far away, or too late, is refused by name. Each of these once ended the process or was silently wrong."""
+import os
 import re
 import subprocess
 import sys
 
 import pytest
+
+import echopath as ep
+from support.radars import build_radar
+from support.shapes import METAL
 
 # The far things are tried in a process of their own, which a failed assertion of Embree ends.
 CASES = {
@@ -11,11 +16,11 @@ CASES = {
                                      r"\(are its vertices in metres\?\), radius in m, got 1000000"),
     "vertex": r"scene: from the radar, vertices of mesh 'far' must lie within 1e12 m, got .*1e\+19",
     "whole scene": r"scene: what is next to the radar must lie within 1e12 m, got .*1e\+19",
-    "radar": r"radar: antennas must lie within 1e12 m, got +1e\+20 0 0",
-    "velocity": r"scene: the place of mesh 'near' must lie within 1e12 m, got .*e\+35 0 0",
+    "radar": r"radar: antennas must lie within 1e12 m, got 1e\+20 +0 +0",
+    "velocity": r"scene: the place of mesh 'near' must lie within 1e12 m, got .*e\+35 +0 +0",
     "turning": r"scene: motions must turn by finite angles, time, got 0\.00\d+",
-    "start_time": r"start_time: must lie in \[-1e10, 1e10\] s, got .*e\+39",
-    "start_time without a motion": r"start_time: must lie in \[-1e10, 1e10\] s, got .*e\+39",
+    "start_time": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",
+    "start_time without a motion": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",
     "time of a renewal": r"time: must (lie in|be finite).*got nan",
     "time of a visibility": r"time: must (lie in|be finite).*got 1e\+40|time: .*e\+39",
 }
@@ -68,5 +73,25 @@ def answers(request):
 
 @pytest.mark.parametrize("case", CASES)
 def test_what_is_out_of_range_is_refused_by_name(answers, case):
-    import re
     assert re.match(CASES[case], answers.get(case, answers["the end"]))
+
+
+def test_more_rays_than_there_may_be_are_refused_at_once():
+    scene, radar = a_sphere()
+    for settings in ({"num_rays": 10**18}, {"target_error_db": 1.0, "max_rays": 10**18}):
+        with pytest.raises(ValueError, match=f"{list(settings)[-1]}: must lie in .1, 10000000000., got 1000000000000000000"):
+            ep.trace(scene, radar, **settings)
+
+
+@pytest.mark.skipif(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") > 300e9, reason="the memory would do")
+def test_rays_whose_record_the_memory_cannot_hold_are_refused_at_once():
+    """Each of them meets the sphere around the radar: at least 32 bytes of a path and 16 of a hit."""
+    scene, radar = a_sphere()
+    with pytest.raises(ValueError, match=r"num_rays: must be so few that their paths, about \d{3,4} GB, fit .*, got 10000000000$"):
+        ep.trace(scene, radar, num_rays=10**10, max_bounces=1)
+
+
+def a_sphere():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(3.0), name="around", material="concrete", position=(-3.0, 0.0, 0.0))
+    return scene, build_radar()

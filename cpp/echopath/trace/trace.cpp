@@ -6,7 +6,7 @@
 namespace echopath {
 
 void TraceSettings::validate() const {
-  require(num_rays >= 1, "num_rays", "must be >= 1", num_rays);
+  require(num_rays >= 1 && num_rays <= kMostRays, "num_rays", "must lie in [1, 10000000000]", num_rays);
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
   require_time(start_time, "start_time");
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);

@@ -8,9 +8,12 @@ namespace echopath {
 
 class KeptGeometry;  // trace/geometry/kept_geometry.h
 
+inline constexpr int64_t kMostRays = 10000000000;
+
 struct TraceSettings {
-  int64_t num_rays = 1000000;
-  int max_bounces = 4;  // 1 to 64; hits on mirrors count
+  int64_t num_rays = 1000000;    // 1 to kMostRays, and so few that the machine has memory for their record
+  int64_t num_rays_to_come = 0;  // of a trace of the same scene that this one prepares; the memory must do for it too
+  int max_bounces = 4;           // 1 to 64; hits on mirrors count
   uint64_t seed = 1;
   double start_time = 0.0;  // s, first sample of the frame
   PolarizationModel polarization = PolarizationModel::kScalar;

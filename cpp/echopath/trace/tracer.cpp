@@ -1,5 +1,8 @@
 #include "echopath/trace/tracer.h"
 
+#include <sstream>
+
+#include "echopath/base/machine_memory.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/record/record_writer.h"
@@ -53,8 +56,8 @@ Paths empty_record(const Scene& scene, const Radar& radar, const TraceSettings& 
 }  // namespace
 
 Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept)
-    : empty_(empty_record(scene, radar, settings)), pose_(*empty_.scene, empty_.frame.trace_time),
-      world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
+    : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
+      pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
       origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),
       loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
       plan_(plan_rays(settings)), sbr_(settings_of_rays(settings)),
@@ -122,6 +125,18 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
   return blocks;
 }
 
+// Raises invalid_argument where the machine has no memory for the record, or for that of the trace which this one prepares.
+void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
+  const int64_t most_rays = std::max(num_rays(), num_rays_to_come_);
+  const double needed = RecordWriter::num_bytes(ahead, (most_rays + kRaysPerBlock - 1) / kRaysPerBlock);
+  const auto there = static_cast<double>(machine_memory());
+  if (needed <= there) return;
+  std::ostringstream rule;
+  rule << "must be so few that their paths, about " << std::llround(needed / 1e9)
+       << " GB, fit into the memory of this machine, " << std::llround(there / 1e9) << " GB";
+  require(false, "num_rays", rule.str(), most_rays);
+}
+
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
 // memory.
 Paths Tracer::run(Job* job) const {
@@ -136,6 +151,7 @@ Paths Tracer::run(Job* job) const {
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;
   if (num_blocks() > std::ssize(wave)) ahead = shoot_ahead(step, job);
+  require_memory(ahead);
   record.expect(ahead, num_blocks());
   for (int64_t begin = 0; begin < num_blocks(); begin += std::ssize(wave)) {
     record.append(shoot_wave(begin, ahead, step, wave, job), job);

@@ -25,10 +25,12 @@ class Tracer {
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
+  void require_memory(const std::vector<PathBlock>& ahead) const;
   LaunchPlan plan_rays(const TraceSettings& settings);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
 
   Paths empty_;  // scene, radar and frame of the record
+  int64_t num_rays_to_come_;
   PosedScene pose_;
   Transform world_from_radar_;
   Vec3 origin_;

@@ -150,13 +150,16 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
 
 Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
   TraceSettings launch = settings;
+  settings.validate();
   launch.num_rays = settings.num_rays / kPilotDivisor;
+  launch.num_rays_to_come = settings.num_rays;
   if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays) return trace(scene, radar, settings, job, kept);
   KeptGeometry own;
   if (!kept) kept = &own;
   Job unseen(job);  // its progress is that of the trace
   const Paths pilot = trace(scene, radar, launch, &unseen, kept);
   launch.num_rays = settings.num_rays;
+  launch.num_rays_to_come = 0;
   launch.guide = guide_rays(pilot, ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), settings.num_rays, &unseen);
   return trace(scene, radar, launch, job, kept);
 }

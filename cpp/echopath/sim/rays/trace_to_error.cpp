@@ -9,7 +9,7 @@ namespace echopath {
 
 void ErrorTarget::validate() const {
   require(error_db > 0, "target_error_db", "must be positive", error_db);
-  require(max_rays >= 1, "max_rays", "must be >= 1", max_rays);
+  require(max_rays >= 1 && max_rays <= kMostRays, "max_rays", "must lie in [1, 10000000000]", max_rays);
 }
 
 Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,

@@ -46,6 +46,23 @@ bool has_matrices(const std::vector<const PathBlock*>& blocks) {
 
 }  // namespace
 
+double RecordWriter::num_bytes(const std::vector<PathBlock>& like, int64_t num_blocks) {
+  double num_paths = 0.0, num_hits = 0.0;
+  std::vector<const PathBlock*> blocks;
+  for (const PathBlock& block : like) {
+    blocks.push_back(&block);
+    num_paths += static_cast<double>(block.num_paths());
+    num_hits += static_cast<double>(block.num_hits());
+  }
+  const Paths none;
+  size_t of_path = sizeof(none.offsets[0]) + sizeof(none.num_bounces[0]) + sizeof(none.diffuse[0]) + sizeof(none.weight[0]) +
+                   sizeof(none.stratum[0]) + sizeof(none.batch[0]) + sizeof(none.flags[0]);
+  if (has(blocks, &PathBlock::curved_cell)) of_path += sizeof(none.curved_cell[0]);
+  if (has_matrices(blocks)) of_path += sizeof(none.jones[0]);
+  const double times = static_cast<double>(num_blocks) / std::max(1.0, static_cast<double>(like.size()));
+  return times * (static_cast<double>(of_path) * num_paths + static_cast<double>(sizeof(Hit)) * num_hits);
+}
+
 void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks) {
   if (like.empty()) return;
   std::vector<const PathBlock*> blocks;

@@ -17,6 +17,7 @@ sys.path.insert(0, str(HERE / "_extensions"))
 import matplotlib
 
 import echopath
+import echopath.plots
 
 matplotlib.use("agg")
 
@@ -35,6 +36,7 @@ html_show_copyright = False
 autosummary_generate = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
+suppress_warnings = ["ref.python"]  # the type `object` of a signature is also an attribute of two classes
 
 myst_enable_extensions = ["amsmath", "dollarmath", "deflist"]
 myst_heading_anchors = 3

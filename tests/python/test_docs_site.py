@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import json
 import re
 import runpy
@@ -14,6 +15,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import echopath as ep
+from echopath import plots
 
 matplotlib.use("agg")
 ROOT = Path(__file__).parents[2]
@@ -48,8 +50,10 @@ def code_of(page: Path) -> str:
 
 
 def wanted_names() -> set[str]:
+    """What the reference must list: the names of the package but for its modules, bodies and pictures."""
+    own = {name for name in ep.__all__ if not inspect.ismodule(getattr(ep, name))}
     bodies = {f"actors.{name}" for name in ep.actors.__all__ if name[0].islower()}
-    return {name for name in ep.__all__ if name != "actors"} | bodies
+    return own | bodies | {f"plots.{name}" for name in plots.__all__}
 
 
 def test_names_of_a_summary_are_found():
@@ -125,8 +129,45 @@ def test_no_file_of_the_site_is_large():
     assert [path for path in files if path.stat().st_size > LARGEST_FILE] == []
 
 
+def cells_of(notebook: Path) -> list[dict]:
+    """The code cells of a notebook."""
+    return [cell for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+
+
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebooks_are_kept_without_outputs(notebook):
-    cells = [cell for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
-    assert len(cells) >= 5
-    assert [cell for cell in cells if cell["outputs"] or cell["execution_count"] is not None] == []
+    assert len(cells_of(notebook)) >= 5
+    assert [cell for cell in cells_of(notebook) if cell["outputs"] or cell["execution_count"] is not None] == []
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_cells_of_a_notebook_run(notebook, monkeypatch):
+    monkeypatch.setattr(plt, "show", lambda: None)
+    names = {"__name__": "a_notebook"}
+    for number, cell in enumerate(cells_of(notebook)):
+        exec(compile("".join(cell["source"]), f"{notebook.name}, cell {number}", "exec"), names)
+    plt.close("all")
+
+
+def test_lines_of_the_first_page_run():
+    names = {"__name__": "a_page"}
+    exec(compile(code_of(DOCS / "index.md"), "index.md", "exec"), names)
+    assert names["frame"].paths.num_paths > 0
+
+
+def test_links_between_pages_lead_somewhere():
+    for page in sorted(DOCS.rglob("*.md")):
+        if "generated" in page.parts:
+            continue
+        for target in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text(encoding="utf-8")):
+            assert is_a_page(page.parent, target), f"{page.name}: {target}"
+
+
+def is_a_page(folder: Path, target: str) -> bool:
+    """Whether a link leads to a page, or to one that is made of a script."""
+    made_of = {"../generated/gallery": EXAMPLES, "generated/gallery": EXAMPLES}
+    for prefix, source in made_of.items():
+        if target.startswith(prefix):
+            rest = target.removeprefix(prefix).strip("/")
+            return rest == "index" or (source / f"{rest}.py").is_file()
+    return any((folder / f"{target}{suffix}").is_file() for suffix in ("", ".md", ".rst"))

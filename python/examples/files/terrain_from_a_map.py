@@ -35,10 +35,11 @@ paths = ep.trace(scene, radar, num_rays=60_000, max_bounces=1)
 
 # %%
 # Each hit is a place on the ground that the radar sees: where there is none, a ridge stands before it.
-points = paths.points(paths.frame.trace_time) + place
+lit = paths.select("power > 1e-16")
+points = lit.points(lit.frame.trace_time)[lit.offsets] + place
 figure, axes = plt.subplots(figsize=(8, 6.5), layout="constrained")
 axes.pcolormesh(x / 1e3, y / 1e3, height, cmap="Greys_r")
-dots = axes.scatter(points[:, 0] / 1e3, points[:, 1] / 1e3, s=1, c=10 * np.log10(paths.power) + 30, cmap="inferno",
+dots = axes.scatter(points[:, 0] / 1e3, points[:, 1] / 1e3, s=1, c=10 * np.log10(lit.power) + 30, cmap="inferno",
                     vmin=-130, vmax=-85)
 axes.plot(place[0] / 1e3, place[1] / 1e3, "c^", markersize=12, label="radar, 250 m above the ground")
 axes.set(xlabel="East in km", ylabel="North in km", xlim=(-0.2, 5.95),

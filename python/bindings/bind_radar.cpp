@@ -217,10 +217,12 @@ void bind_antenna(py::module_& m) {
           "table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
           "[E, A] rad of a table with phases, else None")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
-  define(m, "Isotropic", &isotropic, py::arg("gain") = 1.0, "The same linear power gain in every direction.");
+  define(m, "Isotropic", &isotropic, py::arg("gain") = 1.0,
+         "The same linear power gain in every direction. Raises ValueError for a gain that is not positive.");
   define(m, "CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
          "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
-         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)");
+         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)\n"
+         "Raises ValueError naming the argument.");
   m.def("GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
         py::arg("phase") = py::none(), R"(Gain sampled over direction; there is none outside the table.
 

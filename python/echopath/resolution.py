@@ -107,7 +107,8 @@ def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: floa
     progress: callable (stage, fraction) or None
     Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
     that no ray has met is among them, with what three rays might have brought back from it as its upper end; so is one whose
-    paths a selection or a file leaves out.
+    paths a selection or a file leaves out. Raises ValueError for bad names and for globs that take no mesh,
+    KeyboardInterrupt on Ctrl-C.
     """
     families = families_of(paths, objects)
     powers = mean_powers(paths, families, {}, progress).of_families

@@ -6,6 +6,7 @@ import functools
 import inspect
 import re
 
+import pytest
 
 import echopath as ep
 
@@ -97,3 +98,25 @@ def test_quantities_are_recognised():
         assert QUANTITY.search(text), text
     for text in ("a copy of it", "many meshes", "T . R", "the worst case"):
         assert not QUANTITY.search(text), text
+
+
+# They judge or follow what another function has checked already.
+RAISES_NOTHING = {"check_rays", "check_signal", "effects"}
+
+
+def silent_functions() -> list[str]:
+    """Public functions with parameters whose docstrings do not tell what they raise."""
+    functions = [name for name, value in public_names().items() if callable(value) and not inspect.isclass(value)]
+    return [name for name in functions if parameters(PUBLIC[name]) and "Raises" not in docstring(PUBLIC[name])]
+
+
+def test_functions_say_what_they_raise():
+    assert set(silent_functions()) <= RAISES_NOTHING
+
+
+@pytest.mark.parametrize("call, error", [
+    (lambda: ep.actors.plate(-1, 1), ValueError), (lambda: ep.actors.box(1, edgy=1), TypeError),
+    (lambda: ep.hits(""), ValueError), (lambda: ep.Isotropic(-1), ValueError), (lambda: ep.CosinePower(-1), ValueError)])
+def test_what_docstrings_say_is_raised(call, error):
+    with pytest.raises(error):
+        call()

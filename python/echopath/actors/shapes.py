@@ -36,6 +36,7 @@ def plate(width: float, height: float, *, edge: float | None = None) -> _core.Me
     """Flat rectangle about the origin in the plane x = 0, `width` along y and `height` along z in m, front towards -x.
 
     edge: longest side in m of the grid of triangles, None for as few as possible.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     edge = surfaces.edge_length(edge, max(width, height))
     return _mesh(surfaces.parallelogram([0, width / 2, -height / 2], [0, -width, 0], [0, 0, height], edge))
@@ -47,6 +48,7 @@ def dihedral(size: float, height: float | None = None, *, edge: float | None = N
 
     They meet on the z axis; each is `size` wide and `height` high in m (default: square), z from -height/2 to height/2.
     Peak radar cross section 8 pi (size height / wavelength)^2 towards -x. `edge` is as in `plate`.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     height = size if height is None else height
     edge = surfaces.edge_length(edge, max(size, height))
@@ -62,6 +64,7 @@ def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
 
     `size` in m is the length of the three edges at the apex, one of which lies in the plane y = 0 and rises. Peak radar
     cross section 4 pi size^4 / (3 wavelength^2) towards -x. `edge` is as in `plate`.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     pieces = surfaces.num_pieces(np.sqrt(2.0) * size, surfaces.edge_length(edge, size))
     turn = np.radians([0.0, 120.0, 240.0])
@@ -74,7 +77,10 @@ def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
 
 @checked(size=_lengths(3), edge=_EDGE)
 def box(size: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
-    """Closed box about the origin; `size` is one length in m or three (x, y, z), `edge` as in `plate`."""
+    """Closed box about the origin; `size` is one length in m or three (x, y, z), `edge` as in `plate`.
+
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    """
     x, y, z = size
     edge = surfaces.edge_length(edge, max(x, y, z), 12.0)
     low = -np.array([x, y, z]) / 2.0
@@ -91,6 +97,7 @@ def ground(size: float | Sequence[float], *, z: float = 0.0, edge: float | None 
     """Horizontal rectangle about the z axis at the height `z`, front up.
 
     `size` is one length in m or two (x, y), `edge` as in `plate`.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     x, y = size
     edge = surfaces.edge_length(edge, max(x, y))
@@ -102,6 +109,7 @@ def wall(length: float, height: float, *, edge: float | None = None) -> _core.Me
     """Vertical rectangle in the plane y = 0, x from -length/2 to length/2, z from 0 to height, front towards -y.
 
     So it stands on the left of a street along x; yaw = pi turns it for the right side. Lengths in m, `edge` as in `plate`.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     edge = surfaces.edge_length(edge, max(length, height))
     return _mesh(surfaces.parallelogram([-length / 2, 0, 0], [length, 0, 0], [0, 0, height], edge))
@@ -113,6 +121,7 @@ def sphere(radius: float, *, edge: float | None = None, subdivisions: int | None
 
     Give `edge`, or `subdivisions`, the number of pieces of an icosahedron's edge (20 subdivisions^2 triangles);
     default 12.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     if edge is not None and subdivisions is not None:
         raise ValueError(f"edge and subdivisions: must not be given together, got {edge!r} and {subdivisions!r}")
@@ -124,7 +133,10 @@ def sphere(radius: float, *, edge: float | None = None, subdivisions: int | None
 
 @checked(semi_axes=_lengths(3), edge=_EDGE)
 def ellipsoid(semi_axes: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
-    """Ellipsoid about the origin; `semi_axes` (x, y, z) in m, `edge` as in `plate`."""
+    """Ellipsoid about the origin; `semi_axes` (x, y, z) in m, `edge` as in `plate`.
+
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    """
     a, b, c = semi_axes
     edge = _round_edge(edge, min(a, b), max(a, b, c))
     section = surfaces.table_section([(-c, 0, 0, a, b, 2), (c, 0, 0, a, b, 2)], c, c)
@@ -136,6 +148,7 @@ def capsule(radius: float, length: float, *, edge: float | None = None) -> _core
     """Cylinder of `radius` along z with half spheres on its ends, `length` from tip to tip, about the origin.
 
     Lengths in m, `edge` as in `plate`.
+    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
     """
     if length < 2.0 * radius:
         raise ValueError(f"length: must be at least twice the radius {radius!r} m, got {length!r}")

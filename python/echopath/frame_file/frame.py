@@ -68,7 +68,7 @@ def load_paths(path):
 def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
     """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `save_paths`.
 
-    The cubes hold all paths, also those that the record leaves out.
+    The cubes hold all paths, also those that the record leaves out. Raises ep.FileError when the file cannot be written.
     """
     with _new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "in_package.h"
 #include "leaving.h"
 
 namespace echopath::bindings {
@@ -68,21 +69,48 @@ void poll(const std::string& stage, const py::object& progress, double fraction)
   if (!progress.is_none()) progress(stage, fraction);
 }
 
+// Whom to tell how far the work is: nobody, a callable, or for True the bars of the package, closed however the work ends.
+class Listener {
+ public:
+  explicit Listener(const py::object& progress) : told_(progress), is_ours_(progress.is(py::bool_(true))) {
+    if (progress.is(py::bool_(false))) told_ = py::none();
+    if (is_ours_) told_ = in_package("progress", "automatic_bars")();
+    if (!told_.is_none() && !PyCallable_Check(told_.ptr()))
+      throw py::type_error("progress: must be None, True or a callable (stage, fraction), got " +
+                           std::string(Py_TYPE(told_.ptr())->tp_name));
+  }
+  ~Listener() {
+    if (!is_ours_) return;
+    const py::error_scope pending;
+    try {
+      told_.attr("close")();
+    } catch (py::error_already_set& error) {
+      error.discard_as_unraisable("closing a progress bar");
+    }
+  }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  const py::object& callable() const { return told_; }
+
+ private:
+  py::object told_;
+  bool is_ours_;
+};
+
 }  // namespace
 
 bool looks_for_signals() { return is_looking; }
 
 void run_beside(const std::string& stage, const py::object& progress, const std::function<void(Job&)>& work) {
-  if (!progress.is_none() && !PyCallable_Check(progress.ptr()))
-    throw py::type_error("progress: must be None or a callable (stage, fraction), got " +
-                         std::string(Py_TYPE(progress.ptr())->tp_name));
+  const Listener listener(progress);
   Job job;
   const InCore in_core(&job);
   Worker worker(work, job);
   std::exception_ptr interruption;
   while (!interruption && !worker.wait_a_little()) {
     try {
-      poll(stage, progress, job.fraction());
+      poll(stage, listener.callable(), job.fraction());
     } catch (...) {
       interruption = std::current_exception();
       job.cancel();
@@ -95,7 +123,7 @@ void run_beside(const std::string& stage, const py::object& progress, const std:
   }
   if (interruption) std::rethrow_exception(interruption);
   if (failure) std::rethrow_exception(failure);
-  poll(stage, progress, 1.0);
+  poll(stage, listener.callable(), 1.0);
 }
 
 }  // namespace echopath::bindings

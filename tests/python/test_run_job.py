@@ -49,8 +49,43 @@ def test_progress_rises_to_one():
 
 
 def test_progress_must_be_callable():
-    with pytest.raises(TypeError, match="progress: must be None or a callable .* got int"):
+    with pytest.raises(TypeError, match="progress: must be None, True or a callable .* got int"):
         _core._wait(0.0, 3)
+
+
+def test_true_shows_a_bar_with_the_name_of_the_stage(capsys):
+    _core._wait(0.6, True)
+    shown = capsys.readouterr().err
+    assert "wait" in shown and "%|" in shown
+
+
+def test_bars_of_true_are_those_that_tqdm_chooses_and_are_closed_after_an_error(monkeypatch):
+    made = []
+
+    class Bar:
+        def __init__(self, **settings):
+            self.settings, self.n, self.is_closed = settings, 0.0, False
+            made.append(self)
+
+        def update(self, step):
+            self.n += step
+            if self.n > 30.0:
+                raise LookupError("enough")
+
+        def close(self):
+            self.is_closed = True
+
+    monkeypatch.setattr("tqdm.auto.tqdm", Bar)
+    with pytest.raises(LookupError, match="enough"):
+        _core._wait(0.5, True)
+    assert [bar.settings["desc"] for bar in made] == ["wait"] and made[0].is_closed
+
+
+def test_false_none_and_short_work_show_nothing(capsys):
+    _core._wait(0.02, True)
+    _core._wait(0.1, False)
+    _core._wait(0.1, None)
+    assert capsys.readouterr().err == ""
 
 
 def test_exception_of_the_work_is_raised_with_its_python_type():

@@ -165,7 +165,7 @@ def _whole_number(text: str, least: int) -> int:
 
 def _demo(options) -> None:
     from .demo import run_demo
-    from .progress import progress_bars
+    from ..progress import progress_bars
 
     require_writable(options.out, "--out")
     if options.view:
@@ -190,7 +190,7 @@ def _view(options) -> None:
 
 def _run(options) -> None:
     from . import report
-    from .progress import progress_bars
+    from ..progress import progress_bars
     from .run import certify, chosen_partition, simulate_file, write_outputs
     from ..scene_file import load_scene
 
@@ -219,7 +219,7 @@ def _info(options) -> None:
 
 def _labels(options) -> None:
     from .labels import label_file, objects_of_options
-    from .progress import progress_bars
+    from ..progress import progress_bars
 
     require_writable(options.out, "--out")
     with progress_bars() as progress:
@@ -233,7 +233,7 @@ def _labels(options) -> None:
 def _bench(options) -> None:
     from ..bench import (certificate, crowd, hard, labels, published, replay, report, run_certificate, run_crowd, run_labels,
                          run_physics, run_published, run_replay, run_speed, speed)
-    from .progress import progress_bars
+    from ..progress import progress_bars
 
     require_writable(options.out, "--out")
     with progress_bars() as progress:

@@ -12,6 +12,8 @@
 #include "echopath/spectrum/angle/beamform.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
 #include "echopath/spectrum/angle/range_azimuth.h"
+#include "in_package.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -50,10 +52,11 @@ std::string text_of(const RangeAzimuth& map) {
 }
 
 void bind_angle_spectrum(py::module_& m) {
-  py::class_<AngleSpectrum>(m, "AngleSpectrum", R"(Angle spectra with their axes; made by angle_fft.
+  py::class_<AngleSpectrum> bound(m, "AngleSpectrum", R"(Angle spectra with their axes; made by angle_fft.
 
 Axes are direction cosines along the columns and rows of the array's grid: for antennas in the y-z plane
-sin(azimuth) cos(elevation) and sin(elevation).)")
+sin(azimuth) cos(elevation) and sin(elevation).)");
+  bound
       .def_property_readonly(
           "values",
           [](const py::object& self) {
@@ -71,11 +74,37 @@ sin(azimuth) cos(elevation) and sin(elevation).)")
           "[elevation] rad, arcsin of sin_elevation; NaN beyond +-1")
       .def_property_readonly("velocity", view_of(&AngleSpectrum::velocity), "[velocity] m/s, receding positive")
       .def_property_readonly("range", view_of(&AngleSpectrum::range), "[range] m")
+      .def("to_xarray", from_package("xarray_maps", "angle_spectrum_array"),
+           R"(The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
+
+Axes: sin_elevation, sin_azimuth (direction cosines, 1), velocity (m/s, receding positive) and range (m).
+
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& range, const py::object& velocity, const py::object& ax,
+             const std::string& title) {
+            return in_package("plots", "draw_angle_spectrum")(self, range, velocity, py::arg("ax") = ax,
+                                                              py::arg("title") = title);
+          },
+          py::arg("range") = py::none(), py::arg("velocity") = py::none(), py::kw_only(), py::arg("ax") = py::none(),
+          py::arg("title") = "Received power by direction",
+          R"(Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
+
+range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
+ax: Matplotlib axes to draw in, None: new ones; title: what stands above, the cell is added
+Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.)")
       .def("__repr__", [](const AngleSpectrum& self) { return "AngleSpectrum(" + text_of(shape_of(self)) + ")"; });
+  def_travel_checked(
+      bound, [](const AngleSpectrum& made) { require_shape(made.values, shape_of(made), "values"); },
+      field("sin_azimuth", &AngleSpectrum::sin_azimuth), field("sin_elevation", &AngleSpectrum::sin_elevation),
+      field("velocity", &AngleSpectrum::velocity), field("range", &AngleSpectrum::range),
+      field("values", &AngleSpectrum::values));
 }
 
 void bind_beam_power(py::module_& m) {
-  py::class_<BeamPower>(m, "BeamPower", "Power of beams with their axes; made by beamform.")
+  py::class_<BeamPower> bound(m, "BeamPower", "Power of beams with their axes; made by beamform.");
+  bound
       .def_property_readonly(
           "power",
           [](const py::object& self) {
@@ -88,10 +117,16 @@ void bind_beam_power(py::module_& m) {
       .def_property_readonly("velocity", view_of(&BeamPower::velocity), "[velocity] m/s, or [cell]")
       .def_property_readonly("range", view_of(&BeamPower::range), "[range] m, or [cell]")
       .def("__repr__", [](const BeamPower& self) { return "BeamPower(" + text_of(shape_of(self)) + ")"; });
+  def_travel_checked(
+      bound, [](const BeamPower& made) { require_shape(made.power, shape_of(made), "power"); },
+      field("azimuth", &BeamPower::azimuth), field("elevation", &BeamPower::elevation),
+      field("velocity", &BeamPower::velocity), field("range", &BeamPower::range),
+      field("is_of_cells", &BeamPower::is_of_cells), field("power", &BeamPower::power));
 }
 
 void bind_range_azimuth_map(py::module_& m) {
-  py::class_<RangeAzimuth>(m, "RangeAzimuth", "A range-azimuth map with its axes; made by range_azimuth.")
+  py::class_<RangeAzimuth> bound(m, "RangeAzimuth", "A range-azimuth map with its axes; made by range_azimuth.");
+  bound
       .def_property_readonly(
           "power",
           [](const py::object& self) {
@@ -103,11 +138,40 @@ void bind_range_azimuth_map(py::module_& m) {
       .def_property_readonly("range", view_of(&RangeAzimuth::range), "[range] m")
       .def_property_readonly("elevation", view_of(&RangeAzimuth::elevation), "[elevation] rad, of the beams")
       .def_readonly("velocity", &RangeAzimuth::velocity, "m/s, of the cells taken; None: all velocities together")
+      .def("to_xarray", from_package("xarray_maps", "range_azimuth_array"),
+           R"(The map as an xarray.DataArray, without a copy: power in W.
+
+Axes: azimuth (rad, left positive) and range (m); attributes elevation (rad, of the beams) and velocity (m/s, of the cells, where
+only some were taken).
+
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
+             const std::string& title) {
+            return in_package("plots", "draw_range_azimuth")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
+                                                             py::arg("vmax") = vmax, py::arg("title") = title);
+          },
+          py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
+          py::arg("title") = "Received power from above",
+          R"(Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
+
+ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
+vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.)")
       .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
+  def_travel_checked(
+      bound,
+      [](const RangeAzimuth& made) { require_shape(made.power, {size_of(made.azimuth), size_of(made.range)}, "power"); },
+      field("azimuth", &RangeAzimuth::azimuth), field("range", &RangeAzimuth::range),
+      field("elevation", &RangeAzimuth::elevation), field("velocity", &RangeAzimuth::velocity),
+      field("power", &RangeAzimuth::power));
 }
 
 void bind_estimates(py::module_& m) {
-  py::class_<AngleEstimates>(m, "AngleEstimates", "Directions of echoes, arrays over all peaks; made by estimate_angles.")
+  py::class_<AngleEstimates> bound(m, "AngleEstimates",
+                                   "Directions of echoes, arrays over all peaks; made by estimate_angles.");
+  bound
       .def_property_readonly(
           "cell", [](const py::object& self) { return numpy_view(self.cast<const AngleEstimates&>().cell, self); },
           "[M] index into the cells given, ascending; the strongest peak of a cell first")
@@ -122,6 +186,18 @@ void bind_estimates(py::module_& m) {
       .def("__len__", [](const AngleEstimates& self) { return self.cell.size(); })
       .def("__repr__",
            [](const AngleEstimates& self) { return "AngleEstimates(" + std::to_string(self.cell.size()) + " peaks)"; });
+  def_travel_checked(
+      bound,
+      [](const AngleEstimates& made) {
+        const auto count = static_cast<py::ssize_t>(made.cell.size());
+        for (const auto* column : {&made.range, &made.velocity, &made.azimuth, &made.elevation, &made.power})
+          require_shape(*column, {count}, "range, velocity, azimuth, elevation and power");
+        require_shape(made.points, {count}, "points");
+      },
+      field("cell", &AngleEstimates::cell), field("range", &AngleEstimates::range),
+      field("velocity", &AngleEstimates::velocity), field("azimuth", &AngleEstimates::azimuth),
+      field("elevation", &AngleEstimates::elevation), field("power", &AngleEstimates::power),
+      field("points", &AngleEstimates::points));
 }
 
 }  // namespace

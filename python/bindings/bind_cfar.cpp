@@ -11,6 +11,7 @@
 #include "choice.h"
 #include "echopath/spectrum/cfar/peaks.h"
 #include "run_job.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -71,10 +72,49 @@ std::string text_of(const CfarResult& result) {
   return text.str();
 }
 
+void check_result(const CfarResult& made) {
+  require_shape(made.power, {made.num_velocities, made.num_ranges}, "power");
+  require_shape(made.noise, {static_cast<py::ssize_t>(made.cells.size())}, "noise");
+  for (const auto& [velocity, range] : made.cells) {
+    require(velocity >= 0 && velocity < made.num_velocities, "cells", "must lie in the map", velocity);
+    require(range >= 0 && range < made.num_ranges, "cells", "must lie in the map", range);
+  }
+  require(!made.factors.factor.empty(), "factors", "must not be empty", 0);
+}
+
+// Fields of the parts of a result.
+auto in_design(const char* name, auto CfarDesign::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.*member; });
+}
+auto in_window(const char* name, int CfarWindow::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.cells.*member; });
+}
+auto in_noise(const char* name, auto MapNoise::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.noise.*member; });
+}
+
+void def_cfar_travel(py::class_<CfarResult>& bound) {
+  def_travel_checked(
+      bound, &check_result,
+      field(
+          "method", [](auto& self) -> auto& { return self.design.method; }, kCfarMethod),
+      in_design("false_alarm_rate", &CfarDesign::false_alarm_rate), in_design("rank", &CfarDesign::rank),
+      in_window("guard_velocity", &CfarWindow::guard_velocity), in_window("guard_range", &CfarWindow::guard_range),
+      in_window("training_velocity", &CfarWindow::training_velocity),
+      in_window("training_range", &CfarWindow::training_range), in_noise("window", &MapNoise::window),
+      in_noise("num_chirps", &MapNoise::num_chirps), in_noise("num_samples", &MapNoise::num_samples),
+      in_noise("zero_pad", &MapNoise::zero_pad), in_noise("num_channels", &MapNoise::num_channels),
+      field("factors", [](auto& self) -> auto& { return self.factors.factor; }),
+      field("statistic", [](auto& self) -> auto& { return self.factors.statistic; }),
+      field("num_velocities", &CfarResult::num_velocities), field("num_ranges", &CfarResult::num_ranges),
+      field("power", &CfarResult::power), field("cells", &CfarResult::cells), field("noise", &CfarResult::noise));
+}
+
 }  // namespace
 
 void bind_cfar(py::module_& m) {
-  py::class_<CfarResult>(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.")
+  py::class_<CfarResult> bound(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.");
+  bound
       .def_property_readonly(
           "power",
           [](const py::object& self) {
@@ -110,6 +150,7 @@ void bind_cfar(py::module_& m) {
           "cells beyond the guard cells on each side, along (velocity, range)")
       .def("__len__", [](const CfarResult& self) { return self.cells.size(); })
       .def("__repr__", [](const CfarResult& self) { return text_of(self); });
+  def_cfar_travel(bound);
 
   const CfarOptions standard;
   m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",

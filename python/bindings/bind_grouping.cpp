@@ -22,18 +22,31 @@ using Objects = std::vector<std::pair<std::string, std::vector<std::string>>>;
 py::object text_key(const std::string& name) { return py::str(name); }
 
 KeyedGrouping selections_grouping(const SelectionPairs& parts) {
-  return {by_selections(named_selections(parts)), &text_key};
+  return {by_selections(named_selections(parts)), &text_key, [parts] { return py::make_tuple("selections", parts); }};
 }
 
 // Remembers the families that it meets, also those of later records.
 KeyedGrouping families_grouping(SurfaceMap surfaces) {
   auto known = std::make_shared<std::map<std::string, Family>>();
+  const auto recipe = [surfaces] {
+    return py::make_tuple("families", py::make_tuple(surfaces.names, surfaces.num_objects, to_numpy(surfaces.of_mesh)));
+  };
   Grouping rule = [surfaces = std::move(surfaces), known](const Paths& paths, Job* job) {
     const Families found = find_families(paths, surfaces, job);
     for (const Family& family : found.families) known->try_emplace(family.key(), family);
     return found.partition();
   };
-  return {std::move(rule), [known](const std::string& name) { return py::cast(known->at(name)); }};
+  return {std::move(rule), [known](const std::string& name) { return py::cast(known->at(name)); }, recipe};
+}
+
+SurfaceMap surfaces_of_state(const py::tuple& state) {
+  SurfaceMap surfaces{state[0].cast<std::vector<std::string>>(), state[1].cast<uint32_t>(),
+                      as_vector<uint32_t>(state[2], "of_mesh")};
+  const size_t count = surfaces.names.size();
+  require(surfaces.num_objects <= count, "num_objects", "must be the number of some of the names", surfaces.num_objects);
+  for (const uint32_t surface : surfaces.of_mesh)
+    require(surface < count, "of_mesh", "must be below the number of names", surface);
+  return surfaces;
 }
 
 py::object batch_key(const std::string& name) {
@@ -55,7 +68,21 @@ KeyedGrouping all_of(const std::vector<KeyedGrouping>& groupings) {
     }
     return py::object(key);
   };
-  return {by_all(std::move(rules)), key_of};
+  const auto recipe = [groupings] { return py::make_tuple("all_of", groupings); };
+  return {by_all(std::move(rules)), key_of, recipe};
+}
+
+KeyedGrouping batches_grouping() {
+  return {by_batches(), &batch_key, [] { return py::make_tuple("batches", py::none()); }};
+}
+
+KeyedGrouping grouping_of_recipe(const py::tuple& recipe) {
+  const auto kind = recipe[0].cast<std::string>();
+  if (kind == "selections") return selections_grouping(recipe[1].cast<SelectionPairs>());
+  if (kind == "families") return families_grouping(surfaces_of_state(recipe[1].cast<py::tuple>()));
+  if (kind == "all_of") return all_of(recipe[1].cast<std::vector<KeyedGrouping>>());
+  require(kind == "batches", "grouping", "must be 'selections', 'families', 'all_of' or 'batches'", "'" + kind + "'");
+  return batches_grouping();
 }
 
 SurfaceMap surfaces_of(const Scene& scene, const Objects& objects) {
@@ -177,11 +204,11 @@ void bind_grouping(py::module_& m) {
   py::class_<KeyedGrouping>(m, "Grouping", "A rule that sorts the paths of any record of a scene into parts, for decompose.")
       .def_static("selections", &selections_grouping, py::arg("parts"),
                   "parts: [(name, selection), ...]; the first that takes a path has it. Keys: names, \"other\" last.")
-      .def_static(
-          "batches", [] { return KeyedGrouping{by_batches(), &batch_key}; },
-          "Keys: (batch, \"coherent\") and (batch, \"diffuse\"); last (None, \"coherent\"), paths by images, which "
-          "stand in each batch's estimate in full.")
-      .def_static("all_of", &all_of, py::arg("groupings"), "Combinations that occur. Keys: tuples of keys.");
+      .def_static("batches", &batches_grouping,
+                  "Keys: (batch, \"coherent\") and (batch, \"diffuse\"); last (None, \"coherent\"), paths by images, which "
+                  "stand in each batch's estimate in full.")
+      .def_static("all_of", &all_of, py::arg("groupings"), "Combinations that occur. Keys: tuples of keys.")
+      .def(py::pickle([](const KeyedGrouping& self) { return self.recipe(); }, &grouping_of_recipe));
   m.def("find_families", &families_of, py::arg("paths"), py::arg("objects"),
         R"(The family of each path.
 

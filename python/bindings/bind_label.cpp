@@ -93,6 +93,13 @@ the fault; matching raises one when a glob takes no mesh of the scene.)");
           "__ror__", [](const Selection& a, const Selection& b) { return b | a; }, py::is_operator())
       .def("__invert__", [](const Selection& a) { return ~a; })
       .def("__bool__", [](const Selection&) -> bool { refuse_truth("a Selection"); })
+      .def("__eq__",
+           [](const Selection& self, const py::object& other) {
+             return py::isinstance<Selection>(other) && self.text() == other.cast<const Selection&>().text();
+           })
+      .def("__hash__", [](const Selection& self) { return py::hash(py::str(self.text())); })
+      .def(py::pickle([](const Selection& self) { return py::str(self.text()); },
+                      [](const py::str& text) { return Selection(text.cast<std::string>()); }))
       .def("__str__", &Selection::text)
       .def("__repr__", [](const Selection& self) { return "<Selection " + self.text() + ">"; });
   py::detail::get_type_info(typeid(Selection))->implicit_conversions.push_back(&selection_of_text);

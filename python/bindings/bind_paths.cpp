@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "array.h"
+#include "in_package.h"
 #include "named_selections.h"
 #include "path_series.h"
 #include "run_job.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -125,6 +127,24 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
   return paths;
 }
 
+// What from_arrays takes, by name: also the state of a pickle.
+const std::vector<std::string> kPathsState = {"hits",  "offsets",     "num_bounces", "diffuse", "weight", "stratum", "batch",
+                                              "flags", "curved_cell", "jones",       "scene",   "radar",  "frame"};
+
+py::dict paths_state(const py::object& self) {
+  py::dict state;
+  for (const std::string& name : kPathsState) state[name.c_str()] = self.attr(name.c_str());
+  for (const char* name : {"curved_cell", "jones"}) {
+    if (py::len(state[name]) == 0) state[name] = py::none();
+  }
+  return state;
+}
+
+PathsPtr paths_of_state(const py::dict& state) {
+  require_fields(state, kPathsState);
+  return py::type::of<Paths>().attr("from_arrays")(**state).cast<PathsPtr>();
+}
+
 std::string paths_text(const Paths& self) {
   return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
 }
@@ -182,6 +202,20 @@ share hits; selections share all hits of their trace.)")
       .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")
       .def("_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
            "The paths where a mask, bool [P], is true, with only the hits that they use.")
+      .def(
+          "save",
+          [](const py::object& self, const py::object& path, double min_power) {
+            return in_package("frame_file", "save_paths")(self, path, py::arg("min_power") = min_power);
+          },
+          py::arg("path"), py::arg("min_power") = 0.0, R"(Writes the paths with their scene and radar to an HDF5 file.
+
+path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
+below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.)")
+      .def_static(
+          "load", [](const py::object& path) { return in_package("frame_file", "load_paths")(path); }, py::arg("path"),
+          "Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.")
+      .def_property_readonly("effects", from_package("effects", "of_paths"),
+                             "list of Effect: what the trace modelled, what not, and why")
       .def("partition", &partition_paths, py::arg("parts"),
            "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
       .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
@@ -194,6 +228,21 @@ hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, fla
 [P, 2, 2] complex or None
 scene, radar, frame: what they belong to
 Raises ValueError where an index leads nowhere.)")
+      .def(py::pickle(&paths_state, &paths_of_state))
+      .def("to_dataframe", from_package("tables", "paths_table"),
+           R"(A table with a row for each path, as a pandas.DataFrame.
+
+Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular, D diffuse,
+a letter a hit), kind ("coherent" or "diffuse"), length in m and power in W at the trace time for the first antennas, stratum (what its ray
+was aimed at, "" for paths by images), batch (255: of all batches) and is_reversed.
+Needs pandas, raises ModuleNotFoundError without it.)")
+      .def("to_xarray", from_package("xarray_maps", "paths_dataset"),
+           R"(The record as an xarray.Dataset, without a copy of its arrays.
+
+Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and power (W)
+at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
+attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)")
+      .def("_repr_html_", from_package("notebook", "paths_html"), "A table for notebooks.")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
 }

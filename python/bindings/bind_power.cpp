@@ -8,6 +8,7 @@
 #include "array.h"
 #include "echopath/power/received_power.h"
 #include "run_job.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -46,15 +47,15 @@ std::string power_text(const ReceivedPower& self) {
 }  // namespace
 
 void bind_power(py::module_& m) {
-  py::class_<ReceivedPower>(m, "ReceivedPower",
-                            R"(Mean received power of a set of paths and how well the rays know it; all powers in W.
+  py::class_<ReceivedPower> bound(m, "ReceivedPower",
+                                  R"(Mean received power of a set of paths and how well the rays know it; all powers in W.
 
 At the trace time, between two antennas, at the start frequency; the mean is over the random phases of diffuse
 hits. [low, high] is the 95 % interval, of bias and chance together: what the footprint filter takes away, told by what
 half the density of rays would take, and the spread of the batches or, of one batch, of the hits. The power is resolved if it
 reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
-and are NaN for one batch.)")
-      .def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
+and are NaN for one batch.)");
+  bound.def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
       .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
       .def_readonly("coherent", &ReceivedPower::coherent,
                     "W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero")
@@ -84,6 +85,17 @@ and are NaN for one batch.)")
           "dB, 10 log10(1 + standard_error / power); infinite of one batch, which has no standard error, and where "
           "that is more than half the power")
       .def("__repr__", &power_text);
+  def_travel(bound, field("power", &ReceivedPower::power), field("standard_error", &ReceivedPower::standard_error),
+             field("coherent", &ReceivedPower::coherent), field("coherent_error", &ReceivedPower::coherent_error),
+             field("diffuse", &ReceivedPower::diffuse), field("diffuse_error", &ReceivedPower::diffuse_error),
+             field("num_batches", &ReceivedPower::num_batches), field("low", &ReceivedPower::low),
+             field("high", &ReceivedPower::high), field("bias", &ReceivedPower::bias),
+             field("chance", &ReceivedPower::chance), field("field", &ReceivedPower::field),
+             field("half_density_field", &ReceivedPower::half_density_field),
+             field("unfiltered", &ReceivedPower::unfiltered), field("between_rays", &ReceivedPower::between_rays),
+             field("num_coherent_paths", &ReceivedPower::num_coherent_paths),
+             field("num_diffuse_hits", &ReceivedPower::num_diffuse_hits),
+             field("strongest_share", &ReceivedPower::strongest_share));
   m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
         py::arg("progress") = py::none(), "What ep.received_power calls.");
   m.def("received_powers", &powers_of, py::arg("paths"), py::arg("group_of_path"), py::arg("num_groups"), py::kw_only(),

@@ -13,6 +13,7 @@
 #include "define.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
+#include "in_package.h"
 #include "keywords.h"
 
 namespace echopath::bindings {
@@ -290,6 +291,7 @@ Raises ValueError naming the argument.)")
       .def(
           "world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
           py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
+      .def("_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
 }
 

@@ -7,7 +7,9 @@
 #include "array.h"
 #include "cube_array.h"
 #include "echopath/spectrum/range_doppler.h"
+#include "in_package.h"
 #include "run_job.h"
+#include "travel.h"
 #include "window_name.h"
 
 namespace echopath::bindings {
@@ -27,6 +29,12 @@ py::array values_of(const py::object& self) {
                     self);
 }
 
+void check_map(const RangeDoppler& map) {
+  require(map.num_transmitters >= 1, "num_transmitters", "must be at least 1", map.num_transmitters);
+  require(map.num_receivers >= 1, "num_receivers", "must be at least 1", map.num_receivers);
+  require_shape(map.values, {map.num_transmitters, map.num_receivers, num_of(map.velocity), num_of(map.range)}, "values");
+}
+
 std::string text_of(const RangeDoppler& map) {
   std::ostringstream text;
   text << "RangeDoppler([" << map.num_transmitters << ", " << map.num_receivers << ", " << map.velocity.size() << ", "
@@ -38,8 +46,8 @@ std::string text_of(const RangeDoppler& map) {
 }  // namespace
 
 void bind_spectrum(py::module_& m) {
-  py::class_<RangeDoppler>(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.")
-      .def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
+  py::class_<RangeDoppler> bound(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.");
+  bound.def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
       .def_property_readonly(
           "velocity", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().velocity, self); },
           "[velocity] in m/s, ascending, receding positive")
@@ -52,7 +60,33 @@ void bind_spectrum(py::module_& m) {
           "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
+      .def("to_xarray", from_package("xarray_maps", "range_doppler_array"),
+           R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
+
+Axes: tx, rx, velocity (m/s, receding positive) and range (m).
+
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
+             const std::string& title) {
+            return in_package("plots", "draw_range_doppler")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
+                                                             py::arg("vmax") = vmax, py::arg("title") = title);
+          },
+          py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
+          py::arg("title") = "Received power by range and radial velocity",
+          R"(Draws the map, the mean over the channels, cropped to where there is signal.
+
+ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
+vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+Returns the axes: range in m across, radial velocity in m/s up (receding positive).)")
+      .def("_repr_html_", from_package("notebook", "range_doppler_html"), "A table for notebooks.")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
+  def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
+                     field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),
+                     field("range", &RangeDoppler::range), field("values", &RangeDoppler::values),
+                     field("window", &RangeDoppler::window), field("zero_pad", &RangeDoppler::zero_pad),
+                     field("is_tdm_compensated", &RangeDoppler::is_tdm_compensated));
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
         py::arg("zero_pad") = 1, "What ep.range_doppler calls.");

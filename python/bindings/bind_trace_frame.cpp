@@ -9,13 +9,16 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/trace/record/paths.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 
 void bind_trace_frame(py::module_& m) {
-  py::class_<Stratum>(m, "Stratum",
-                      "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), "
-                      "rays evenly over them.")
+  py::class_<Stratum> bound_stratum(
+      m, "Stratum",
+      "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), "
+      "rays evenly over them.");
+  bound_stratum
       .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density, std::string name,
                        const py::object& across, double half_azimuth, double low, double high, int object, int num_mirrors,
                        int focus_of) {
@@ -58,7 +61,14 @@ void bind_trace_frame(py::module_& m) {
       .def("__repr__",
            [](const Stratum& self) { return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)"; });
 
-  py::class_<TraceStatistics>(m, "TraceStatistics", "What a trace did.")
+  def_travel(bound_stratum, field("axis", &Stratum::axis), field("versine", &Stratum::versine),
+             field("across", &Stratum::across), field("half_azimuth", &Stratum::half_azimuth), field("low", &Stratum::low),
+             field("high", &Stratum::high), field("num_rays", &Stratum::num_rays),
+             field("ray_density", &Stratum::ray_density), field("name", &Stratum::name), field("object", &Stratum::object),
+             field("num_mirrors", &Stratum::num_mirrors), field("focus_of", &Stratum::focus_of));
+
+  py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics", "What a trace did.");
+  bound_statistics
       .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
                        int64_t small, int64_t false_hits, int64_t unaimed, int64_t unfollowed) {
              return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed, unfollowed};
@@ -81,7 +91,16 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams,
                     "sequences of mirrors whose further mirrors were not looked for, for want of memory");
 
-  py::class_<TraceFrame>(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.")
+  def_travel(bound_statistics, field("num_rays", &TraceStatistics::num_rays),
+             field("num_queries", &TraceStatistics::num_queries), field("num_hits", &TraceStatistics::num_hits),
+             field("num_paths", &TraceStatistics::num_paths), field("num_near_antenna", &TraceStatistics::num_near_antenna),
+             field("num_grazing", &TraceStatistics::num_grazing),
+             field("num_small_mirrors", &TraceStatistics::num_small_mirrors),
+             field("num_false_hits", &TraceStatistics::num_false_hits), field("num_unaimed", &TraceStatistics::num_unaimed),
+             field("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams));
+
+  py::class_<TraceFrame> bound_frame(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.");
+  bound_frame
       .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
                        std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
                        const std::string& footprint, const TraceStatistics& statistics, int num_batches,
@@ -131,6 +150,13 @@ void bind_trace_frame(py::module_& m) {
           "sampler", [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
           "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
+  def_travel(bound_frame, field("start_time", &TraceFrame::start_time), field("trace_time", &TraceFrame::trace_time),
+             field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
+             field("strata", &TraceFrame::strata), field("seed", &TraceFrame::seed),
+             field("max_bounces", &TraceFrame::max_bounces), field("statistics", &TraceFrame::statistics),
+             field("num_batches", &TraceFrame::num_batches), field("target_error_db", &TraceFrame::target_error_db),
+             field("error_db", &TraceFrame::error_db), field("polarization", &TraceFrame::polarization, kPolarization),
+             field("footprint", &TraceFrame::footprint, kFootprint), field("sampler", &TraceFrame::sampler, kSampler));
 }
 
 }  // namespace echopath::bindings

@@ -9,7 +9,9 @@
 #include "choice.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/validity.h"
+#include "in_package.h"
 #include "run_job.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -45,8 +47,9 @@ std::string repr_of(const Validity& self) {
 }
 
 void bind_shares(py::module_& m) {
-  py::class_<ValidityShares>(m, "ValidityShares", "What one trace does not serve, as shares of the power of some paths.")
-      .def_readonly("power", &ValidityShares::power, "W, what the shares are of")
+  py::class_<ValidityShares> bound(m, "ValidityShares",
+                                   "What one trace does not serve, as shares of the power of some paths.");
+  bound.def_readonly("power", &ValidityShares::power, "W, what the shares are of")
       .def_readonly("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad")
       .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
       .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
@@ -60,12 +63,15 @@ void bind_shares(py::module_& m) {
              << ", turned=" << self.turned << ", new_surface=" << self.new_surface << ")";
         return text.str();
       });
+  def_travel(bound, field("power", &ValidityShares::power), field("slid", &ValidityShares::slid),
+             field("left", &ValidityShares::left), field("blocked", &ValidityShares::blocked),
+             field("turned", &ValidityShares::turned), field("new_surface", &ValidityShares::new_surface));
 }
 
 void bind_objects(py::module_& m) {
-  py::class_<ObjectValidity, ValidityShares>(
-      m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.")
-      .def_readonly("name", &ObjectValidity::name, "of the object")
+  py::class_<ObjectValidity, ValidityShares> bound(
+      m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.");
+  bound.def_readonly("name", &ObjectValidity::name, "of the object")
       .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
       .def_readonly("disappears", &ObjectValidity::disappears,
                     "share of its power that is lost, mean over the times of the check")
@@ -83,17 +89,47 @@ void bind_objects(py::module_& m) {
              << ">";
         return text.str();
       });
+  def_travel(bound, field("name", &ObjectValidity::name), field("power", &ObjectValidity::power),
+             field("slid", &ObjectValidity::slid), field("left", &ObjectValidity::left),
+             field("blocked", &ObjectValidity::blocked), field("turned", &ObjectValidity::turned),
+             field("new_surface", &ObjectValidity::new_surface), field("disappears", &ObjectValidity::disappears),
+             field("error_db", &ObjectValidity::error_db), field("seen_power", &ObjectValidity::seen_power),
+             field("turn", &ObjectValidity::turn), field("has_paths", &ObjectValidity::has_paths),
+             field("is_in_range", &ObjectValidity::is_in_range), field("is_too_fast", &ObjectValidity::is_too_fast),
+             field("is_asked", &ObjectValidity::is_asked));
+}
+
+// A column of what was found of each path.
+template <class T>
+auto found(const char* name, std::vector<T> ValidityArrays::* column) {
+  return field(name, [column](auto& self) -> auto& { return self.arrays.*column; });
+}
+
+void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
+  def_travel(
+      bound, field("num_paths", &Validity::num_paths), field("times", &Validity::times),
+      field("has_array", &Validity::has_array), field("shares", &Validity::shares),
+      field("rms_phase_error", &Validity::rms_phase_error), field("largest_phase_error", &Validity::largest_phase_error),
+      field("motion_phase_error", &Validity::motion_phase_error),
+      field("stepped_phase_error", &Validity::stepped_phase_error),
+      field("largest_cosine_change", &Validity::largest_cosine_change), field("objects", &Validity::objects),
+      field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
+      found("path_power", &ValidityArrays::power), found("path_phase_error", &ValidityArrays::phase_error),
+      found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error), found("path_left", &ValidityArrays::left),
+      found("path_blocked", &ValidityArrays::blocked), found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
+      found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change));
 }
 
 void bind_report(py::module_& m) {
-  py::class_<Validity, ValidityPtr>(m, "Validity",
-                                    R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
+  py::class_<Validity, ValidityPtr> bound(
+      m, "Validity",
+      R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
 
 Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
 the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band. An object
 within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
-over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
-      .def_readonly("num_paths", &Validity::num_paths, "P, their number")
+over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
+  bound.def_readonly("num_paths", &Validity::num_paths, "P, their number")
       .def_readonly("times", &Validity::times, "[T] s, of the check")
       .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
       .def_property_readonly("phase_error_share", share(&ValidityShares::slid),
@@ -142,8 +178,10 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)")
       .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
       .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
                              "[P] largest of a cosine, linear")
+      .def("_repr_html_", from_package("notebook", "validity_html"), "A table for notebooks.")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
+  def_validity_travel(bound);
 }
 
 std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, double time, const py::object& progress) {
@@ -153,7 +191,8 @@ std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, dou
 }
 
 void bind_renewal(py::module_& m) {
-  py::class_<Renewal, std::shared_ptr<Renewal>>(m, "Renewal", "A record brought up to another time; made by `renew`.")
+  py::class_<Renewal, std::shared_ptr<Renewal>> bound(m, "Renewal", "A record brought up to another time; made by `renew`.");
+  bound
       .def_property_readonly(
           "paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
           "Paths that are still there, in their order.")
@@ -165,6 +204,8 @@ void bind_renewal(py::module_& m) {
                ", num_blocked=" + std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) +
                ", num_moved=" + std::to_string(self.num_moved) + ")";
       });
+  def_travel(bound, field("paths", &Renewal::paths), field("num_blocked", &Renewal::num_blocked),
+             field("num_lost", &Renewal::num_lost), field("num_moved", &Renewal::num_moved));
   m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
         py::arg("progress") = py::none(), "What ep.renew calls.");
 }

@@ -25,6 +25,7 @@ from .antennas import load_antenna
 from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
 from .families import Families, families
+from .foreign_meshes import mesh_from
 from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .frame_validity import renew, validity
 from .guard import Check, GuardWarning, check_rays, check_signal
@@ -48,7 +49,6 @@ from .threads import num_threads, set_num_threads
 from .tracing import mie_rcs, rcs, trace
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
-from .xarray_maps import to_xarray
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
@@ -61,10 +61,10 @@ __all__ = [
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame",
     "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels",
-    "load_mesh", "load_meshes", "load_scene", "materials", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays",
+    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays",
     "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "received_powers", "renew",
     "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize",
-    "to_xarray", "trace", "unresolved", "validity", "view", "virtual_array", "visibility",
+    "trace", "unresolved", "validity", "view", "virtual_array", "visibility",
 ]
 
 

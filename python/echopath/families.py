@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core
 from .checks import checked, refused, text
+from .equality import is_same
 
 Objects = Mapping[str, str | Iterable[str]] | Iterable[str] | None  # {name: globs}, globs that are names, or the usual ones
 NO_OBJECT = -1  # index of the object of a path that touches none
@@ -61,6 +62,13 @@ class Families:
 
     def _of_paths(self, value) -> np.ndarray:
         return np.array([value(family) for family in self.families], np.int32)[self.family_of_path]
+
+    def __eq__(self, other) -> bool:
+        if not isinstance(other, Families):
+            return NotImplemented
+        return all(is_same(getattr(self, name), getattr(other, name)) for name in ("objects", "families", "family_of_path"))
+
+    __hash__ = None
 
     def __len__(self) -> int:
         return len(self.families)

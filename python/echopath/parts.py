@@ -6,6 +6,7 @@ from collections.abc import Hashable, Mapping
 from . import _core
 from ._core import Grouping, Selection
 from .checks import Progress, checked, refused, shown, text
+from .equality import is_same
 from .families import Families
 from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from .signals import RULES
@@ -27,6 +28,14 @@ class Parts(dict):
         super().__init__(cubes)
         self.selections = None if selections is None else dict(selections)
         self.radar = radar
+
+    def __eq__(self, other) -> bool:
+        return is_same(dict(self), dict(other)) if isinstance(other, dict) else NotImplemented
+
+    def __ne__(self, other) -> bool:
+        return not self == other
+
+    __hash__ = None
 
     def __missing__(self, name):
         raise KeyError(f"no part '{name}'; there are {', '.join(map(str, self))}")

@@ -46,6 +46,22 @@ class Scene(_core.Scene):
         self._add_nodes(batch.nodes)
         return f"{parent}/{name}" if parent else name
 
+    def to_pyvista(self, time: float = 0.0):
+        """The meshes at `time` in s as a pyvista.MultiBlock by their full names, in the order of their IDs; points in m.
+
+        Field data of a block: mesh_id; of its material material (name, "" without one), conductor and mirror (0 or 1),
+        permittivity (real, imaginary), conductivity (S/m), reflectivity, roughness_height (m), scattering and
+        cross_polarization, those that it has. Needs pyvista, raises ModuleNotFoundError without it.
+        """
+        from echopath_viewer import blocks_of
+
+        return blocks_of(self, time)
+
+    def _repr_html_(self) -> str:
+        from .notebook import scene_html
+
+        return scene_html(self)
+
     def _index_of(self, parent) -> int:
         if parent is None:
             return -1

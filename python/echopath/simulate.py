@@ -32,7 +32,7 @@ from .tracing import trace as trace_scene
 _FAMILIES, _WHOLE = object(), object()  # views that have the name of no partition
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(eq=False)
 class Frame:
     """One simulated frame.
 
@@ -82,6 +82,22 @@ class Frame:
         if self.noise_seed is None:
             return self.cube
         return _core.add_noise(self.cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+
+    def plot(self, *, ax=None, vmin=None, vmax=None, title="Received power, noise included"):
+        """Draws the range-Doppler map with its noise, and the detections in it, where there are some, as points.
+
+        ax: Matplotlib axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: above the map
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises ValueError for a record of
+        paths alone.
+        """
+        from .plots import draw_frame
+
+        return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
+
+    def _repr_html_(self) -> str:
+        from .notebook import frame_html
+
+        return frame_html(self)
 
     @property
     def effects(self) -> list:

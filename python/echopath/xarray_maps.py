@@ -1,42 +1,23 @@
-"""Maps as xarray, with named axes and units; comes with `pip install xarray`."""
+"""Results as xarray, with named axes and units: what their methods `to_xarray` do. Arrays are not copied."""
 from __future__ import annotations
 
-from . import _core
+import numpy as np
 
-
-def to_xarray(map):
-    """A map as xarray with named axes; its arrays are not copied.
-
-    map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
-        RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
-        the beams) and velocity (m/s, of the cells, where only some were taken)
-        Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
-        dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
-    Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no
-    map, ModuleNotFoundError without xarray.
-    """
-    for kind, convert in CONVERTERS.items():
-        if isinstance(map, kind):
-            return convert(map, _xarray())
-    raise TypeError(f"map: must be one of {', '.join(kind.__name__ for kind in CONVERTERS)}, got {type(map).__name__}")
-
-
-def _xarray():
-    try:
-        import xarray
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] != "xarray":
-            raise
-        text = "to_xarray needs xarray, which is not installed: pip install xarray"
-        raise ModuleNotFoundError(text, name="xarray") from None
-    return xarray
-
+from .optional import needed_module
 
 AXES = {
     "velocity": {"units": "m/s", "long_name": "radial velocity, receding positive"},
     "range": {"units": "m", "long_name": "range"},
     "azimuth": {"units": "rad", "long_name": "azimuth, left positive"},
+    "sin_azimuth": {"units": "1", "long_name": "direction cosine along the columns of the array, left positive"},
+    "sin_elevation": {"units": "1", "long_name": "direction cosine along the rows of the array, up positive"},
 }
+_RECORD = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
+_HITS = ("mesh_id", "triangle_id", "u", "v")
+
+
+def xarray_module():
+    return needed_module("xarray", "to_xarray")
 
 
 def axis(name: str, values):
@@ -44,24 +25,38 @@ def axis(name: str, values):
     return name, values, AXES[name]
 
 
-def _range_doppler(map, xarray):
-    return xarray.DataArray(map.values, dims=("tx", "rx", "velocity", "range"), name="range_doppler",
-                            coords={"velocity": axis("velocity", map.velocity), "range": axis("range", map.range)},
-                            attrs={"units": "sqrt(W)", "long_name": "received signal", "zero_pad": map.zero_pad})
+def range_doppler_array(map):
+    """A RangeDoppler as a DataArray; see RangeDoppler.to_xarray."""
+    attrs = {"units": "sqrt(W)", "long_name": "received signal", "zero_pad": map.zero_pad}
+    return _array(map, "range_doppler", map.values, ("tx", "rx", "velocity", "range"), attrs)
 
 
-def _range_azimuth(map, xarray):
+def range_azimuth_array(map):
+    """A RangeAzimuth as a DataArray; see RangeAzimuth.to_xarray."""
     attrs = {"units": "W", "long_name": "received power", "elevation": map.elevation}
     if map.velocity is not None:
         attrs["velocity"] = map.velocity
-    return xarray.DataArray(map.power, dims=("azimuth", "range"), name="range_azimuth",
-                            coords={"azimuth": axis("azimuth", map.azimuth), "range": axis("range", map.range)},
-                            attrs=attrs)
+    return _array(map, "range_azimuth", map.power, ("azimuth", "range"), attrs)
 
 
-# {class: function (map, xarray module)}; modules with maps of their own add theirs.
-CONVERTERS = {_core.RangeDoppler: _range_doppler, _core.RangeAzimuth: _range_azimuth}
+def angle_spectrum_array(map):
+    """An AngleSpectrum as a DataArray; see AngleSpectrum.to_xarray."""
+    dims = ("sin_elevation", "sin_azimuth", "velocity", "range")
+    return _array(map, "angle_spectrum", map.values, dims, {"units": "sqrt(W)", "long_name": "received signal"})
 
-# The core knows no xarray: its maps get this method here.
-for _kind in tuple(CONVERTERS):
-    _kind.to_xarray = to_xarray
+
+def paths_dataset(paths):
+    """Paths as a Dataset; see Paths.to_xarray."""
+    variables = {name: ("path", getattr(paths, name)) for name in _RECORD}
+    variables |= {name: ("hit", getattr(paths, name)) for name in _HITS}
+    length = paths.lengths([paths.frame.trace_time])[0]
+    variables["length"] = "path", length, {"units": "m", "long_name": "at the trace time, between the first antennas"}
+    variables["power"] = "path", paths.power, {"units": "W", "long_name": "at the trace time, between the first antennas"}
+    attrs = {"mesh_names": [mesh.name for mesh in paths.scene.meshes], "trace_time": paths.frame.trace_time,
+             "start_time": paths.frame.start_time, "seed": paths.frame.seed}
+    return xarray_module().Dataset(variables, attrs=attrs)
+
+
+def _array(map, name: str, values, dims: tuple, attrs: dict):
+    coords = {dim: axis(dim, np.asarray(getattr(map, dim))) for dim in dims if dim in AXES}
+    return xarray_module().DataArray(values, dims=dims, name=name, coords=coords, attrs=attrs)

@@ -10,6 +10,8 @@ PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 # Imports within functions that close a circle, and why each may.
 CLOSING = {
     ("echopath.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
+    ("echopath.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with what draws scenes in the viewer",
+    ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }
 

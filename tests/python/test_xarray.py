@@ -40,7 +40,7 @@ def test_a_target_is_found_by_the_names_of_the_axes(spectrum, radar):
 
 
 def test_values_axes_and_units_are_those_of_the_map(spectrum, radar):
-    named = ep.to_xarray(spectrum)
+    named = spectrum.to_xarray()
     assert named.dims == ("tx", "rx", "velocity", "range") and np.shares_memory(named.values, spectrum.values)
     assert np.array_equal(named.velocity, spectrum.velocity) and np.array_equal(named.range, spectrum.range)
     assert named.attrs["units"] == "sqrt(W)"
@@ -56,10 +56,24 @@ def test_values_axes_and_units_are_those_of_the_map(spectrum, radar):
 
 def test_without_xarray_the_message_says_what_to_install(spectrum, monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(ModuleNotFoundError, match=r"pip install xarray"):
+    with pytest.raises(ModuleNotFoundError, match="to_xarray needs xarray, .*: pip install xarray"):
         spectrum.to_xarray()
 
 
-def test_what_is_no_map_is_an_error():
-    with pytest.raises(TypeError, match="map: must be one of RangeDoppler, RangeAzimuth.*, got dict"):
-        ep.to_xarray({})
+def test_angle_spectra_have_directions_as_axes(spectrum, radar):
+    found = ep.angle_fft(spectrum, radar)
+    named = found.to_xarray()
+    assert named.dims == ("sin_elevation", "sin_azimuth", "velocity", "range") and np.shares_memory(named.values, found.values)
+    peak = abs(named).max(("sin_elevation", "velocity", "range")).idxmax("sin_azimuth")
+    assert float(peak) == pytest.approx(np.sin(AZIMUTH), abs=0.05)  # a quarter of a beam
+
+
+def test_paths_are_a_dataset_of_their_columns(radar):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(RANGE, 0, 0), yaw=np.pi)
+    paths = ep.trace(scene, radar, num_rays=500)
+    named = paths.to_xarray()
+    assert dict(named.sizes) == {"path": paths.num_paths, "hit": paths.num_hits}
+    assert np.array_equal(named.weight, paths.weight) and np.array_equal(named.triangle_id, paths.triangle_id)
+    assert named.attrs["mesh_names"] == ["plate"] and named.length.attrs["units"] == "m"
+    assert float(named.length.min()) == pytest.approx(2.0 * RANGE, abs=1e-3)

@@ -37,6 +37,13 @@ def plot_rays(scene, paths, **keywords):
     return draw(scene, paths, **keywords)
 
 
+def blocks_of(scene, time: float):
+    """The meshes of a scene at `time` in s as a pyvista.MultiBlock; see `Scene.to_pyvista`."""
+    with _told_what_to_install():
+        from .scene_builder.blocks import blocks_of as made
+    return made(scene, time)
+
+
 @contextmanager
 def _told_what_to_install():
     try:

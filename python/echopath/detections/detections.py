@@ -6,13 +6,16 @@ import dataclasses
 
 import numpy as np
 
+from ..equality import has_same_fields
 from ..files import written_whole
+from ..tables import make_table
 from .directions import toward
 from .echo_fields import EchoFields
 
 NOISE = "noise"  # part of a detection that no echo made
 COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
            "class_code", "share", "is_noise", "is_resolved", "velocity_index", "range_index", "seed", "noise_seed")
+UNITS = {"range": "m", "velocity": "m/s", "azimuth": "rad", "elevation": "rad", "power": "W", "snr_db": "dB"}
 _FIELDS = COLUMNS[:COLUMNS.index("is_noise")]
 
 
@@ -97,6 +100,41 @@ class Detections:
             writer = csv.writer(stream, lineterminator="\n")
             writer.writerow(COLUMNS)
             writer.writerows([*map(_as_text, row), *seeds] for row in zip(*columns))
+
+    def to_dataframe(self):
+        """A pandas.DataFrame with a row for each detection.
+
+        Columns as in `to_csv`, in m, m/s, rad, W and dB, without the seeds, which stand in `attrs["seed"]` and
+        `attrs["noise_seed"]`; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError without it.
+        """
+        columns = {name: getattr(self, name) for name in (*_FIELDS, "is_noise", "is_resolved")}
+        columns |= {"velocity_index": self.cells[:, 0], "range_index": self.cells[:, 1]}
+        table = make_table(columns, UNITS)
+        table.attrs |= {"seed": self.seed, "noise_seed": self.noise_seed}
+        return table
+
+    def plot(self, view="range_doppler", *, ax=None, title=""):
+        """Draws a point for each detection, coloured by the object whose echo it is, larger where it is stronger; rings are
+        ghosts.
+
+        view: "range_doppler", or "above", which needs azimuths; ax: Matplotlib axes to draw in, None: new ones
+        title: "": how many there are
+        Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame. Raises
+        ValueError for another view, and for a view from above without azimuths.
+        """
+        from ..plots import draw_detections
+
+        return draw_detections(self, view=view, ax=ax, title=title)
+
+    def _repr_html_(self) -> str:
+        from ..notebook import detections_html
+
+        return detections_html(self)
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other, leave_out=("echoes",)) if isinstance(other, Detections) else NotImplemented
+
+    __hash__ = None
 
     def __len__(self) -> int:
         return len(self.range)

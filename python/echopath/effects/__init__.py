@@ -17,13 +17,22 @@ OUT_OF_SCOPE = [
 ]
 
 
+class Effects(list):
+    """A list of Effect, which notebooks show as a table."""
+
+    def _repr_html_(self) -> str:
+        from ..notebook import effects_html
+
+        return effects_html(self)
+
+
 @checked(**TraceSettings.RULES, **SignalSettings.RULES)
 def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceSettings.max_bounces,  # noqa: F811
             footprint: Footprint = TraceSettings.footprint, polarization: Polarization = TraceSettings.polarization,
             sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
             target_error_db: float | None = TraceSettings.target_error_db, replay: Replay = SignalSettings.replay,
             evaluate: Evaluate = SignalSettings.evaluate, retrace: Retrace = SignalSettings.retrace,
-            noise_seed: int | None = None) -> list[Effect]:
+            noise_seed: int | None = None) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
     max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; replay, evaluate,
@@ -36,7 +45,7 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
-             noise_seed: int | None = None) -> list[Effect]:
+             noise_seed: int | None = None) -> Effects:
     """The effects of a trace, from the scene, radar and settings that it recorded and what it left out; replay, evaluate,
     retrace, noise_seed: of later stages."""
     frame = paths.frame
@@ -45,10 +54,7 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     return _of_case(Case(paths.scene, paths.radar, settings, frame.statistics))
 
 
-def _of_case(case: Case) -> list[Effect]:
+def _of_case(case: Case) -> Effects:
     found = [rule(case) for rule in RULES]
-    return sorted(found, key=lambda effect: not effect.modelled) + OUT_OF_SCOPE
+    return Effects([*sorted(found, key=lambda effect: not effect.modelled), *OUT_OF_SCOPE])
 
-
-# The core knows no reports: its record of paths gets this property here.
-_core.Paths.effects = property(of_paths, doc="list of Effect: what the trace modelled, what not, and why")

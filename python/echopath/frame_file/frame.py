@@ -282,8 +282,3 @@ def _read_partitions(file, frame: Frame) -> None:
 
 def _cube_shape(radar) -> tuple:
     return len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
-
-
-# The core knows no HDF5: its record of paths gets these two methods here.
-_core.Paths.save = save_paths
-_core.Paths.load = staticmethod(load_paths)

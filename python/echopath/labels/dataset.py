@@ -1,9 +1,8 @@
 """Labels as an xarray.Dataset."""
 from __future__ import annotations
 
-from ..xarray_maps import CONVERTERS, axis, to_xarray
+from ..xarray_maps import axis, xarray_module
 from .images import ghost_name
-from .labels import Labels
 
 _OF_CELLS = {  # attribute of Labels: name, unit
     "whole": ("whole", "W"), "dominant": ("dominant", ""), "mask": ("mask", ""), "above_noise": ("above_noise", ""),
@@ -11,7 +10,8 @@ _OF_CELLS = {  # attribute of Labels: name, unit
 _OF_PARTS = {"power": "W", "share": "1", "mean_power": "W", "mean_share": "1", "power_error": "W", "share_error": "1"}
 
 
-def _dataset(labels: Labels, xarray):
+def dataset_of(labels):
+    """Labels as a Dataset; see Labels.to_xarray."""
     row = "velocity" if labels.azimuth is None else "azimuth"
     names = {"dominant": labels.part_names, "object_map": [label.name for label in labels.objects],
              "ghost_map": [ghost_name(label) for label in labels.ghosts]}
@@ -26,8 +26,4 @@ def _dataset(labels: Labels, xarray):
     settings = {name: getattr(labels, name) for name in ("plane", "noise_power", "noise_margin_db", "dynamic_range_db")}
     settings |= {} if labels.seed is None else {"seed": labels.seed}
     coordinates = {"part": labels.part_names, row: axis(row, getattr(labels, row)), "range": axis("range", labels.range)}
-    return xarray.Dataset(variables, coords=coordinates, attrs=settings)
-
-
-CONVERTERS[Labels] = _dataset
-Labels.to_xarray = to_xarray
+    return xarray_module().Dataset(variables, coords=coordinates, attrs=settings)

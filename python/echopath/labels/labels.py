@@ -6,9 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..equality import has_same_fields
 from ..resolution import Interval
 from ..visibility import HIDDEN_SHARE
+from .dataset import dataset_of
 from .report import text_of
+from .table import table_of
 
 NONE = -1  # in a map of indices: no label
 COMES_INTO_VIEW = "comes into view"
@@ -184,6 +187,47 @@ class Labels:
     def shape(self) -> tuple:
         """(V, R), number of cells along velocity or azimuth, and along range."""
         return self.whole.shape
+
+    def to_xarray(self):
+        """The maps as an xarray.Dataset, without a copy: power (W) and share by part, velocity (m/s) or azimuth (rad), and
+        range (m); whole (W), mask, dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none;
+        errors where they are known. Needs xarray, raises ModuleNotFoundError without it.
+        """
+        return dataset_of(self)
+
+    def to_dataframe(self):
+        """The objects and their ghosts as a pandas.DataFrame, a row for each, objects first.
+
+        Columns: kind ("object" or "ghost"), name of the object, status (objects), via (names of what mirrored it, joined by
+        " > "), ghost_type, order, class_code, cells, power (W); range (m), velocity (m/s) or azimuth (rad) and peak_power (W) of
+        the strongest cell, the ends of the box about the cells; visible_share (objects); received, received_low and
+        received_high (W, mean with its 95 % interval), is_resolved; units in `attrs["units"]`. Needs pandas, raises
+        ModuleNotFoundError without it.
+        """
+        return table_of(self)
+
+    def plot(self, what="parts", *, ax=None, title=None):
+        """Draws the power of the whole in grey under the cells that have a label, with the names of the objects.
+
+        what: "parts", cells by the part that dominates, or "objects", cells of the objects and of their ghosts by type
+        ax: Matplotlib axes to draw in, None: new ones; title: None: what is shown
+        Returns the axes: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up. Raises
+        ValueError for another `what`.
+        """
+        from ..plots import draw_labels
+
+        titles = {"parts": "Which part made each cell", "objects": "Objects and their ghosts"}
+        return draw_labels(self, what=what, ax=ax, title=titles.get(what, "") if title is None else title)
+
+    def _repr_html_(self) -> str:
+        from ..notebook import labels_html
+
+        return labels_html(self)
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, Labels) else NotImplemented
+
+    __hash__ = None
 
     def __str__(self) -> str:
         return text_of(self)

@@ -1,10 +1,19 @@
-"""Pictures of scenes, rays, range-Doppler and range-azimuth maps, as matplotlib figures without a window."""
-from .labels import plot_ghosts, plot_labels, plot_part_powers
-from .maps import colour_limits, part_title, plot_overview, plot_partition, plot_range_doppler, power_dbm
+"""Pictures of scenes, rays, maps, labels and detections with Matplotlib.
+
+Functions named plot_* return a figure without a window; those named draw_* draw in given axes, or in new ones of pyplot, and
+return the axes: they are what the methods `plot` of the results call.
+"""
+from .angles import draw_angle_spectrum
+from .frames import draw_frame
+from .labels import draw_labels, plot_ghosts, plot_labels, plot_part_powers
+from .maps import (
+    colour_limits, draw_range_doppler, part_title, plot_overview, plot_partition, plot_range_doppler, power_dbm,
+)
+from .points import draw_detections
 from .scene_view import plot_scene
 from .style import save_png
-from .top_view import plot_range_azimuth
+from .top_view import draw_range_azimuth, plot_range_azimuth
 
-__all__ = ["colour_limits", "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers",
-           "plot_partition",
-           "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png"]
+__all__ = ["colour_limits", "draw_angle_spectrum", "draw_detections", "draw_frame", "draw_labels", "draw_range_azimuth",
+           "draw_range_doppler", "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers",
+           "plot_partition", "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png"]

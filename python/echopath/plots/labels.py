@@ -6,7 +6,7 @@ import numpy as np
 from ..labels.images import colours_of
 from ..measures import SMALLEST_POWER, in_dbm, with_error
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
-from .style import new_figure
+from .style import axes_or_new, new_figure
 
 AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
 FILL = 0.45                  # opacity of a label over the map
@@ -14,6 +14,9 @@ ROOM_BELOW_DB = 6.0          # of the weakest bar
 UNRESOLVED_HATCH = "////"    # of the bar of a power that the rays do not know to 0.3 dB
 MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
 FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin
+NAME_ASIDE, NAME_DEPTH = 14.0, 22.0  # points, from the peak of an object to its name
+NAME_LETTER, NAME_LINE = 5.0, 14.0   # points, about, of the names
+LEGEND_LINE = 13.0           # points, of the legend above the map
 LEGEND_LETTERS = 72          # of a line of the legend
 # Okabe and Ito: told apart with any colour vision.
 CLASSES = {"real": ("object itself", "#009e73"), 1: ("ghost, type 1: last bounce on the object", "#e69f00"),
@@ -26,11 +29,9 @@ def plot_labels(labels, *, title="Which part made each cell", powers=None):
     labels: Labels; powers: {part: ep.ReceivedPower} of the bars, None: no bars
     Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
     """
-    colours = _colours(labels.part_names)
-    areas = [(name, colours[index], labels.dominant == index) for index, name in enumerate(labels.part_names)]
     with new_figure(13.0 if powers else 9.0, 4.8) as figure:
         panels = figure.subfigures(1, 2 if powers else 1, squeeze=False, width_ratios=(2.3, 1.0) if powers else None)[0]
-        _draw_map(panels[0], labels, areas, title)
+        _draw_map(panels[0], labels, _part_areas(labels), title)
         if powers:
             draw_part_powers(panels[1].subplots(), powers)
     return figure
@@ -50,11 +51,30 @@ def plot_ghosts(labels, *, title="Objects and their ghosts"):
     return figure
 
 
+def draw_labels(labels, *, what="parts", ax=None, title=""):
+    """The map of `plot_labels` (what="parts") or of `plot_ghosts` ("objects") in given axes, or in new ones (None).
+
+    Returns the axes. Raises ValueError for other names.
+    """
+    areas_of = {"parts": _part_areas, "objects": _class_areas}
+    if what not in areas_of:
+        raise ValueError(f"what: must be 'parts' or 'objects', got {what!r}")
+    with axes_or_new(ax, 9.0, 4.8) as ax:
+        _draw_cells(ax, labels, areas_of[what](labels))
+        ax.set_title(title, pad=_legend_height(ax))
+    return ax
+
+
 # --- maps ---
 
 def _draw_map(figure, labels, areas: list, title: str) -> None:
     """The power of the whole in grey under areas (name, colour, bool [V, R]) of the mask; figure: for the map alone."""
-    axes, rows = figure.subplots(), _rows(labels)
+    _draw_cells(figure.subplots(), labels, areas)
+    figure.suptitle(title, fontsize=10)
+
+
+def _draw_cells(axes, labels, areas: list) -> None:
+    rows = _rows(labels)
     (bottom, top), (near, far) = _shown(labels)
     level = in_dbm(labels.whole[bottom:top, near:far], SMALLEST_POWER)
     image = axes.pcolormesh(labels.range[near:far], rows[bottom:top], level, cmap="gray", shading="nearest", rasterized=True,
@@ -66,17 +86,14 @@ def _draw_map(figure, labels, areas: list, title: str) -> None:
             axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
     axes.set_xlim(labels.range[near], labels.range[far - 1])
     axes.set_ylim(rows[bottom], rows[top - 1])
-    for label in labels.objects:
-        if label.peak is not None:
-            _name_object(axes, labels, label)
-    figure.suptitle(title, fontsize=10)
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
     words = axes.get_legend_handles_labels()[1]
     if words:
         columns = max(1, LEGEND_LETTERS // max(map(len, words)))
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
-    figure.colorbar(image, ax=axes, label="Power without noise in dBm", pad=0.01, aspect=30, extend="min")
+    axes.figure.colorbar(image, ax=axes, label="Power without noise in dBm", pad=0.01, aspect=30, extend="min")
+    _name_objects(axes, labels)  # last: by the size of the axes, of which colour bars take some
 
 
 def _draw_area(axes, distance, rows, is_inside, colour) -> None:
@@ -97,6 +114,18 @@ def _draw_area(axes, distance, rows, is_inside, colour) -> None:
     axes.add_collection(LineCollection(np.concatenate(edges), colors=[colour], linewidths=0.7))
 
 
+def _legend_height(axes) -> float:
+    """Points that the title must stand higher, so that the legend above the map has its place."""
+    legend = axes.get_legend()
+    return 6.0 if legend is None else 8.0 + LEGEND_LINE * -(-len(legend.get_texts()) // legend._ncols)
+
+
+def _part_areas(labels) -> list:
+    """Cells of each part where it dominates."""
+    colours = _colours(labels.part_names)
+    return [(name, colours[index], labels.dominant == index) for index, name in enumerate(labels.part_names)]
+
+
 def _class_areas(labels) -> list:
     """Cells of all objects, and of their ghosts by type."""
     types = np.array([*(ghost.ghost_type for ghost in labels.ghosts), 0])  # the last one for cells of no ghost
@@ -112,12 +141,31 @@ def _grey_limits(labels) -> dict:
     return {"vmin": min(lowest, highest - 10.0), "vmax": highest}
 
 
-def _name_object(axes, labels, label) -> None:
-    distance, row = label.peak[0], _in_plot_units(labels, label.peak[1])
-    axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
+def _name_objects(axes, labels) -> None:
+    """A ring at the peak of each object with its name below it, deeper where another name stands in the way."""
+    seen = sorted((label for label in labels.objects if label.peak is not None), key=lambda label: label.peak[0])
+    width = axes.get_window_extent().width * 72.0 / axes.figure.dpi  # points
+    taken = []  # (left, right, top) of the names so far, points
     left, right = axes.get_xlim()
-    is_far = distance > left + 0.7 * (right - left)  # its name then stands on the near side, within the map
-    axes.annotate(label.name, (distance, row), xytext=(-14 if is_far else 14, -22), textcoords="offset points",
+    for label in seen:
+        share = (label.peak[0] - left) / (right - left)
+        is_far = share > 0.7  # its name then stands on the near side, within the map
+        length = NAME_LETTER * len(label.name)
+        begin = share * width + (-NAME_ASIDE - length if is_far else NAME_ASIDE)
+        row = _in_plot_units(labels, label.peak[1])
+        bottom, top = axes.get_ylim()
+        level = (row - bottom) / (top - bottom) * axes.get_window_extent().height * 72.0 / axes.figure.dpi
+        depth = NAME_DEPTH
+        while any(begin < end and start < begin + length and abs(height - (level - depth)) < NAME_LINE
+                  for start, end, height in taken):
+            depth += NAME_LINE
+        taken.append((begin, begin + length, level - depth))
+        _name_object(axes, label.name, label.peak[0], row, is_far, depth)
+
+
+def _name_object(axes, name: str, distance: float, row: float, is_far: bool, depth: float) -> None:
+    axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
+    axes.annotate(name, (distance, row), xytext=(-NAME_ASIDE if is_far else NAME_ASIDE, -depth), textcoords="offset points",
                   color="white",
                   fontsize=8, horizontalalignment="right" if is_far else "left",
                   arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7},

@@ -6,13 +6,14 @@ import math
 import numpy as np
 
 from ..measures import SMALLEST_POWER, STATIC_SPEED, in_dbm, with_error
-from .style import MAP_COLOURS, new_figure
+from .style import MAP_COLOURS, axes_or_new, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
 RANGE_MARGIN = 0.8           # m, shown around the signal
 VELOCITY_MARGIN = 0.5        # m/s
+MAP_SIZE = 9.0, 4.4          # inches, of one map
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 
 
@@ -37,14 +38,20 @@ def plot_range_doppler(spectrum, *, title="Received power by range and radial ve
     note: small print below the map.
     Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive).
     """
-    vmin, vmax = _limits(spectrum, vmin, vmax)
-    with new_figure(9.0, 4.4) as figure:
-        axes = figure.subplots()
-        image = _draw_whole(axes, spectrum, vmin, vmax, title)
-        axes.set_ylabel(VELOCITY_LABEL)
-        _colour_bar(figure, image, [axes])
+    with new_figure(*MAP_SIZE) as figure:
+        draw_range_doppler(spectrum, ax=figure.subplots(), vmin=vmin, vmax=vmax, title=title)
         _small_print(figure, note)
     return figure
+
+
+def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
+    """The same in given axes, or in new ones (None); returns the axes."""
+    vmin, vmax = _limits(spectrum, vmin, vmax)
+    with axes_or_new(ax, *MAP_SIZE) as ax:
+        image = _draw_whole(ax, spectrum, vmin, vmax, title)
+        ax.set_ylabel(VELOCITY_LABEL)
+        _colour_bar(ax.figure, image, [ax])
+    return ax
 
 
 def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note=""):

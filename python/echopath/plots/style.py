@@ -33,6 +33,22 @@ def new_figure(width: float, height: float):
         yield figure
 
 
+@contextmanager
+def axes_or_new(ax, width: float, height: float):
+    """Yields `ax`, or where it is None the axes of a new figure of pyplot of that size in inches, which notebooks show."""
+    import matplotlib
+    from matplotlib.axes import Axes
+
+    if ax is not None and not isinstance(ax, Axes):
+        raise TypeError(f"ax: must be Matplotlib axes or None, got {type(ax).__name__}")
+    with matplotlib.rc_context(_SETTINGS):
+        if ax is None:
+            from matplotlib import pyplot
+
+            ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
+        yield ax
+
+
 def save_png(figure, path, *, seed=None, noise_seed=None) -> None:
     """Writes a figure as PNG, whole or not at all, with what made it as text chunks; the same figure gives the same bytes.
 

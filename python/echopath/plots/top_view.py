@@ -7,7 +7,7 @@ import numpy as np
 
 from ..measures import SMALLEST_POWER, in_dbm
 from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB
-from .style import MAP_COLOURS, new_figure
+from .style import MAP_COLOURS, axes_or_new, new_figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
 LEAST_RANGES = 8               # cells shown at least
@@ -16,6 +16,7 @@ LARGE, SMALL = 4.6, 3.2         # inches, height of a sector alone and of one of
 WIDE = 1.4                     # width over height, from which three sectors do not stand in a row
 SPOKE_STEP = math.pi / 6.0     # rad
 MARGIN = 0.1                   # of the reach, around the sector: room for the angles
+LEFT_LABEL, AHEAD_LABEL = "To the left in m (right: -)", "Ahead in m"
 GRID_LOOK = {"color": "white", "linewidth": 0.5, "alpha": 0.35}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
@@ -45,11 +46,28 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
             axes.tick_params(labelbottom=True)  # the lowest of its column, perhaps above an empty place
         for axes in panels[len(maps):]:
             axes.remove()
-        figure.supxlabel("To the left in m (right: -)", fontsize=9)
-        figure.supylabel("Ahead in m", fontsize=9)
+        figure.supxlabel(LEFT_LABEL, fontsize=9)
+        figure.supylabel(AHEAD_LABEL, fontsize=9)
         figure.suptitle(title, fontsize=11)
-        figure.colorbar(image, ax=panels[:len(maps)], label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+        _colour_bar(figure, image, panels[:len(maps)])
     return figure
+
+
+def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
+    """One map in given axes, or in new ones (None), otherwise as `plot_range_azimuth`; returns the axes."""
+    lowest, highest = _colour_limits(map)
+    vmin, vmax = (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+    with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8) as ax:
+        image = _draw(ax, map, _reach(map, vmin), vmin, vmax)
+        ax.set_xlabel(LEFT_LABEL)
+        ax.set_ylabel(AHEAD_LABEL)
+        ax.set_title(title)
+        _colour_bar(ax.figure, image, [ax])
+    return ax
+
+
+def _colour_bar(figure, image, panels) -> None:
+    figure.colorbar(image, ax=panels, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
 
 
 def _in_dbm(power):

@@ -25,9 +25,9 @@ def vertices_of(points) -> pv.PolyData:
     return poly
 
 
-def triangles_of(vertices, triangles) -> pv.PolyData:
-    """vertices [V, 3] m, triangles [F, 3]."""
-    return pv.PolyData.from_regular_faces(np.asarray(vertices, np.float32), np.asarray(triangles, np.int64))
+def triangles_of(vertices, triangles, dtype=np.float32) -> pv.PolyData:
+    """vertices [V, 3] m, triangles [F, 3]; dtype: of the points."""
+    return pv.PolyData.from_regular_faces(np.asarray(vertices, dtype), np.asarray(triangles, np.int64))
 
 
 def set_cell_colours(poly: pv.PolyData, rgb) -> None:

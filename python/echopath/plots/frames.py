@@ -1,0 +1,22 @@
+"""A frame in one picture: its map, and what was detected in it."""
+from __future__ import annotations
+
+from .maps import MAP_SIZE, draw_range_doppler
+from .points import OUTSIDE, draw_points
+from .style import axes_or_new
+
+
+def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=""):
+    """The range-Doppler map of a frame with its noise, and its detections, where it has some, as points.
+
+    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
+    Returns the axes, as `draw_range_doppler`. Raises ValueError for a record of paths alone.
+    """
+    if frame.spectrum is None:
+        raise ValueError("frame: must have signals to draw, got a record of paths alone")
+    legend = OUTSIDE if ax is None else {}
+    with axes_or_new(ax, *MAP_SIZE) as ax:
+        draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title)
+        if frame.detections is not None and len(frame.detections):
+            draw_points(ax, frame.detections, legend=legend, edgecolors="white")
+    return ax

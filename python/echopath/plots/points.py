@@ -1,0 +1,86 @@
+"""Detections as points, in the plane of the map or seen from above."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..labels.images import colours_of
+from .maps import RANGE_LABEL, VELOCITY_LABEL
+from .style import axes_or_new
+from .top_view import AHEAD_LABEL, LEFT_LABEL
+
+VIEWS = ("range_doppler", "above")
+MOST_IN_COLUMN = 18     # of the legend
+MOST_NAMES = 14         # in the legend, the rest are "other objects"
+SIZES = 10.0, 70.0      # points^2, of the weakest and the strongest
+SPAN_DB = 40.0          # of the sizes, below the strongest
+NOISE_LOOK = {"marker": "x", "color": "0.55", "linewidths": 0.8}
+REST_COLOURS = {"surroundings": "0.45", "other objects": "0.75", "other": "0.45", "noise": "0.55"}
+OUTSIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}  # of new axes; others may lack the room
+
+
+def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
+    """A point for each detection, coloured by the object whose echo it is, larger where it is stronger, hollow for ghosts.
+
+    view: "range_doppler", or "above" (needs azimuths); ax: axes to draw in, None: new ones
+    Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame.
+    Raises ValueError for other views, and for a view from above without azimuths.
+    """
+    if view not in VIEWS:
+        raise ValueError(f"view: must be 'range_doppler' or 'above', got {view!r}")
+    if view == "above" and len(detections) and not np.isfinite(detections.azimuth).any():
+        raise ValueError("view: 'above' needs azimuths, which the antennas of these detections cannot tell")
+    is_given = ax is not None
+    with axes_or_new(ax, *((7.6, 4.6) if view == "range_doppler" else (6.6, 5.4))) as ax:
+        draw_points(ax, detections, view, legend={} if is_given else OUTSIDE)
+        if view == "above":
+            ax.set_xlabel(LEFT_LABEL)
+            ax.set_ylabel(AHEAD_LABEL)
+            ax.set_aspect("equal", adjustable="datalim")
+            ax.invert_xaxis()
+        else:
+            ax.set_xlabel(RANGE_LABEL)
+            ax.set_ylabel(VELOCITY_LABEL)
+        ax.grid(alpha=0.25)
+        ax.set_title(title or f"{len(detections)} detections")
+    return ax
+
+
+def draw_points(ax, detections, view="range_doppler", *, legend, **look) -> None:
+    """The points and their legend; legend, look: keywords of Axes.legend and of Axes.scatter."""
+    x, y = (detections.points[:, 1], detections.points[:, 0]) if view == "above" else (detections.range, detections.velocity)
+    names, sizes = _names(detections), _sizes(detections.power)
+    for name, colour in _colours(names).items():
+        of_name = (names == name) & np.isfinite(x) & np.isfinite(y)
+        filled = {"color": colour, "edgecolors": "white", "linewidths": 0.4} | look
+        ring = {"facecolors": "none", "edgecolors": [colour], "linewidths": 1.3}
+        for is_ghost, shown in ((False, NOISE_LOOK if name == "noise" else filled), (True, ring)):
+            taken = of_name & ((detections.ghost_type > 0) == is_ghost)
+            if taken.any():
+                label = f"{name}{', ghosts' * is_ghost}: {np.count_nonzero(taken)}"
+                ax.scatter(x[taken], y[taken], s=sizes[taken], label=label, zorder=3, **shown)
+    if len(names):
+        ax.legend(title="Whose echo: how many", alignment="left", ncols=1 + (len(set(names)) > MOST_IN_COLUMN), **legend)
+
+
+def _names(detections):
+    """Whose echo each detection is: the object, else the part, else the surroundings; the rare ones are other objects."""
+    named = np.where(detections.object != "", detections.object, detections.part).astype(object)
+    named[named == ""] = "surroundings" if (detections.object != "").any() else "detections"
+    named[detections.is_noise] = "noise"
+    found, counts = np.unique(named[~detections.is_noise].astype(str), return_counts=True)
+    rare = found[np.argsort(-counts, kind="stable")[MOST_NAMES:]]
+    named[np.isin(named.astype(str), rare) & ~detections.is_noise] = "other objects"
+    return named
+
+
+def _colours(names) -> dict:
+    """{name: colour}; objects in the order of their names, then what is none."""
+    rest = {name: colour for name, colour in REST_COLOURS.items() if name in names}
+    own = sorted(set(names) - set(rest))
+    return {name: tuple(value / 255.0 for value in colour) for name, colour in zip(own, colours_of(own))} | rest
+
+
+def _sizes(power):
+    level = 10.0 * np.log10(np.maximum(power, 1e-300))
+    share = np.clip(1.0 + (level - level.max(initial=-np.inf)) / SPAN_DB, 0.0, 1.0) if len(level) else level
+    return SIZES[0] + (SIZES[1] - SIZES[0]) * share

@@ -1,0 +1,135 @@
+"""Methods `plot` of results: they draw in the axes that they are given, return them, and show what the result says."""
+import matplotlib
+import matplotlib.text
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.radars import build_radar
+
+matplotlib.use("Agg")
+RANGE, AZIMUTH = 9.0, 0.35  # m, rad, of a plate
+
+
+@pytest.fixture
+def ax():
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots()
+    yield axes
+    pyplot.close(figure)
+
+
+@pytest.fixture(scope="module")
+def frame():
+    half_wave = 0.00195
+    radar = build_radar([ep.Antenna()], [ep.Antenna((0, k * half_wave, 0)) for k in range(8)], num_samples=128,
+                        sampling_rate=10e6, num_chirps=32, transmit_power=1.0)
+    scene = ep.Scene()
+    place = RANGE * np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=ep.Material(reflectivity=0.9, scattering=1.0), position=place,
+              yaw=AZIMUTH + np.pi)
+    return ep.simulate(scene, radar, num_rays=2000, labels=True, detections=True, parts={"plate": "T 'plate' R"})
+
+
+def results(frame) -> dict:
+    return {"RangeDoppler": frame.spectrum, "RangeAzimuth": frame.range_azimuth, "Frame": frame,
+            "AngleSpectrum": ep.angle_fft(frame.spectrum, frame.radar), "Labels": frame.labels["parts"],
+            "Detections": frame.detections}
+
+
+KINDS = ("RangeDoppler", "RangeAzimuth", "Frame", "AngleSpectrum", "Labels", "Detections")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_axes_that_are_given_are_drawn_in_and_returned(frame, ax, kind):
+    assert results(frame)[kind].plot(ax=ax, title="My title") is ax
+    assert ax.has_data() and "My title" in ax.get_title() and ax.get_xlabel() and ax.get_ylabel()
+    ax.figure.canvas.draw()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_without_axes_new_ones_are_made(frame, kind):
+    from matplotlib import pyplot
+
+    before = len(pyplot.get_fignums())
+    ax = results(frame)[kind].plot()
+    assert len(pyplot.get_fignums()) == before + 1 and ax.get_title()
+    pyplot.close(ax.figure)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_are_no_axes_is_refused_by_name(frame, kind):
+    with pytest.raises(TypeError, match="ax: must be Matplotlib axes or None, got str"):
+        results(frame)[kind].plot(ax="here")
+
+
+def test_the_colour_scale_of_a_map_is_the_one_asked_for(frame, ax):
+    image = frame.spectrum.plot(ax=ax, vmin=-120.0, vmax=-90.0).get_images()[0]
+    assert image.get_clim() == (-120.0, -90.0)
+    row, column = np.unravel_index(image.get_array().argmax(), image.get_array().shape)
+    assert frame.spectrum.range[column] == pytest.approx(RANGE, abs=0.2) and frame.spectrum.velocity[row] == 0.0
+
+
+def test_the_curve_of_an_angle_spectrum_peaks_at_the_target_and_left_is_left(frame, ax):
+    spectrum = ep.angle_fft(frame.spectrum, frame.radar)
+    curve = spectrum.plot(range=RANGE, velocity=0.0, ax=ax).get_lines()[0]
+    angle, level = curve.get_data()
+    assert angle[level.argmax()] == pytest.approx(np.degrees(AZIMUTH), abs=4.0)  # a quarter of a beam
+    assert ax.get_xlim()[0] > ax.get_xlim()[1] and f"{RANGE:.0f}" in ax.get_title()
+    with pytest.raises(ValueError, match="range: must lie in 0 to .* m, got 1000"):
+        spectrum.plot(range=1000.0, ax=ax)
+
+
+def test_points_of_detections_lie_where_the_target_is(frame, ax):
+    assert len(frame.detections)
+    for view, expected in (("range_doppler", (RANGE, 0.0)),
+                           ("above", (RANGE * np.sin(AZIMUTH), RANGE * np.cos(AZIMUTH)))):
+        ax.clear()
+        frame.detections.plot(view, ax=ax)
+        found = [collection.get_offsets() for collection in ax.collections if collection.get_label().startswith("plate: ")]
+        assert np.linalg.norm(np.concatenate(found) - expected, axis=1).min() < 0.3
+    with pytest.raises(ValueError, match="view: must be 'range_doppler' or 'above', got 'side'"):
+        frame.detections.plot("side")
+
+
+def test_labels_show_parts_or_objects(frame, ax):
+    labels = frame.labels["parts"]
+    words = {}
+    for what in ("parts", "objects"):
+        ax.clear()
+        labels.plot(what, ax=ax)
+        words[what] = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert any(text.startswith("plate: ") for text in words["parts"])
+    assert any(text.startswith("object itself: ") for text in words["objects"])
+    with pytest.raises(ValueError, match="what: must be 'parts' or 'objects', got 'cars'"):
+        labels.plot("cars", ax=ax)
+
+
+def test_names_of_objects_at_one_place_do_not_cover_each_other(ax):
+    from support.labelled import ROUGH, make_radar
+
+    scene = ep.Scene()
+    for index in range(5):
+        scene.add(ep.actors.plate(0.2, 0.2), name=f"object_{index}", material=ROUGH, position=(8 + 0.6 * index, index - 2, 1),
+                  yaw=np.pi)
+    paths = ep.trace(scene, make_radar(), num_rays=4000)
+    ax.figure.set_size_inches(9, 5)
+    ep.annotate(paths, {"plates": "T . R"}).plot(ax=ax)
+    ax.figure.canvas.draw()
+    boxes = [matplotlib.text.Text.get_window_extent(text) for text in ax.texts if text.get_text().startswith("object_")]
+    assert len(boxes) >= 4
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[i + 1:])
+
+
+def test_frames_and_detections_without_what_is_asked_for_say_so(frame, tmp_path):
+    frame.paths.save(tmp_path / "paths.h5")
+    with pytest.raises(ValueError, match="frame: must have signals to draw"):
+        ep.load_frame(tmp_path / "paths.h5").plot()
+    one = build_radar([ep.Antenna()], [ep.Antenna((0, 0.01, 0))], num_samples=64, num_chirps=16, sampling_rate=5e6)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(5, 0, 0), yaw=np.pi)
+    blind = ep.simulate(scene, one, num_rays=500, detections=True).detections
+    if len(blind) and not np.isfinite(blind.azimuth).any():
+        with pytest.raises(ValueError, match="view: 'above' needs azimuths"):
+            blind.plot("above")

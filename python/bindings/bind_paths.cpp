@@ -232,15 +232,16 @@ Raises ValueError where an index leads nowhere.)")
       .def("to_dataframe", from_package("tables", "paths_table"),
            R"(A table with a row for each path, as a pandas.DataFrame.
 
-Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular, D diffuse,
-a letter a hit), kind ("coherent" or "diffuse"), length in m and power in W at the trace time for the first antennas, stratum (what its ray
-was aimed at, "" for paths by images), batch (255: of all batches) and is_reversed.
+Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
+D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
+objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
+at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
 Needs pandas, raises ModuleNotFoundError without it.)")
       .def("to_xarray", from_package("xarray_maps", "paths_dataset"),
            R"(The record as an xarray.Dataset, without a copy of its arrays.
 
-Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and power (W)
-at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
+Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and
+power (W) at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
 attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)")
       .def("_repr_html_", from_package("notebook", "paths_html"), "A table for notebooks.")
       .def("__len__", &Paths::num_paths)

@@ -1,6 +1,6 @@
 #pragma once
-// Methods of the extension's classes whose work the package does: tables, pictures, files. They are part of the class, so that
-// help and editors show them; the module is imported when the method is called, and the core knows nothing of it.
+// Methods of the extension's classes whose work the package does: tables, pictures, files. They are part of the class, so
+// that help and editors show them; the module is imported when the method is called, and the core knows nothing of it.
 #include <pybind11/pybind11.h>
 
 #include <string>

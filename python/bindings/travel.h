@@ -3,8 +3,8 @@
 //
 //   def_travel(bound, field("range", &Map::range), field("zero_pad", &Map::zero_pad))
 //
-// The state of a pickle is a dict of the fields by name, with vectors as NumPy arrays. Each is checked on the way in: a state
-// that lacks a field, has others or holds what does not fit raises a ValueError or TypeError that names it.
+// The state of a pickle is a dict of the fields by name, with vectors as NumPy arrays. Each is checked on the way in: a
+// state that lacks a field, has others or holds what does not fit raises a ValueError or TypeError that names it.
 #include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

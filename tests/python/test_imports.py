@@ -156,3 +156,23 @@ def test_a_package_that_runs_first_is_part_of_the_circle(tmp_path):
     (tmp_path / "moved.py").rename(tmp_path / "p" / "__init__.py")
     imports = imports_of([tmp_path / "p", tmp_path / "q"])
     assert sorted(circle_of(imports)) == ["p", "q"]
+
+
+def patches_in(tree):
+    """Lines at the top of a module that give an attribute to a class that it imports, found by its capital."""
+    imported = {alias.asname or alias.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names}
+    for statement in tree.body:
+        for target in getattr(statement, "targets", ()):
+            owner = getattr(target, "value", None)
+            name = getattr(owner, "attr", None) or getattr(owner, "id", "")
+            root = getattr(getattr(owner, "value", owner), "id", "")
+            if isinstance(target, ast.Attribute) and name[:1].isupper() and root in imported:
+                yield statement.lineno
+
+
+def test_no_class_is_patched_from_another_file():
+    text = "from . import _core\n_core.Paths.save = 3\nfrom .a import Labels\nLabels.plot = 3"
+    assert list(patches_in(ast.parse(text))) == [2, 4]
+    found = {name: lines for name, (file, _) in modules_of(PACKAGES).items()
+             if (lines := list(patches_in(ast.parse(file.read_text()))))}
+    assert found == {}

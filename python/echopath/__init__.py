@@ -61,8 +61,8 @@ __all__ = [
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame",
     "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels",
-    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays",
-    "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "received_powers", "renew",
+    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells",
+    "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "received_powers", "renew",
     "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize",
     "trace", "unresolved", "validity", "view", "virtual_array", "visibility",
 ]

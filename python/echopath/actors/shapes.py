@@ -36,7 +36,7 @@ def plate(width: float, height: float, *, edge: float | None = None) -> _core.Me
     """Flat rectangle about the origin in the plane x = 0, `width` along y and `height` along z in m, front towards -x.
 
     edge: longest side in m of the grid of triangles, None for as few as possible.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     edge = surfaces.edge_length(edge, max(width, height))
     return _mesh(surfaces.parallelogram([0, width / 2, -height / 2], [0, -width, 0], [0, 0, height], edge))
@@ -48,7 +48,7 @@ def dihedral(size: float, height: float | None = None, *, edge: float | None = N
 
     They meet on the z axis; each is `size` wide and `height` high in m (default: square), z from -height/2 to height/2.
     Peak radar cross section 8 pi (size height / wavelength)^2 towards -x. `edge` is as in `plate`.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     height = size if height is None else height
     edge = surfaces.edge_length(edge, max(size, height))
@@ -64,7 +64,7 @@ def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
 
     `size` in m is the length of the three edges at the apex, one of which lies in the plane y = 0 and rises. Peak radar
     cross section 4 pi size^4 / (3 wavelength^2) towards -x. `edge` is as in `plate`.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     pieces = surfaces.num_pieces(np.sqrt(2.0) * size, surfaces.edge_length(edge, size))
     turn = np.radians([0.0, 120.0, 240.0])
@@ -79,7 +79,7 @@ def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
 def box(size: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
     """Closed box about the origin; `size` is one length in m or three (x, y, z), `edge` as in `plate`.
 
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     x, y, z = size
     edge = surfaces.edge_length(edge, max(x, y, z), 12.0)
@@ -97,7 +97,7 @@ def ground(size: float | Sequence[float], *, z: float = 0.0, edge: float | None 
     """Horizontal rectangle about the z axis at the height `z`, front up.
 
     `size` is one length in m or two (x, y), `edge` as in `plate`.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     x, y = size
     edge = surfaces.edge_length(edge, max(x, y))
@@ -109,7 +109,7 @@ def wall(length: float, height: float, *, edge: float | None = None) -> _core.Me
     """Vertical rectangle in the plane y = 0, x from -length/2 to length/2, z from 0 to height, front towards -y.
 
     So it stands on the left of a street along x; yaw = pi turns it for the right side. Lengths in m, `edge` as in `plate`.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     edge = surfaces.edge_length(edge, max(length, height))
     return _mesh(surfaces.parallelogram([-length / 2, 0, 0], [length, 0, 0], [0, 0, height], edge))
@@ -121,7 +121,7 @@ def sphere(radius: float, *, edge: float | None = None, subdivisions: int | None
 
     Give `edge`, or `subdivisions`, the number of pieces of an icosahedron's edge (20 subdivisions^2 triangles);
     default 12.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     if edge is not None and subdivisions is not None:
         raise ValueError(f"edge and subdivisions: must not be given together, got {edge!r} and {subdivisions!r}")
@@ -135,7 +135,7 @@ def sphere(radius: float, *, edge: float | None = None, subdivisions: int | None
 def ellipsoid(semi_axes: float | Sequence[float], *, edge: float | None = None) -> _core.Mesh:
     """Ellipsoid about the origin; `semi_axes` (x, y, z) in m, `edge` as in `plate`.
 
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     a, b, c = semi_axes
     edge = _round_edge(edge, min(a, b), max(a, b, c))
@@ -148,7 +148,7 @@ def capsule(radius: float, length: float, *, edge: float | None = None) -> _core
     """Cylinder of `radius` along z with half spheres on its ends, `length` from tip to tip, about the origin.
 
     Lengths in m, `edge` as in `plate`.
-    Raises ValueError for lengths that are not positive, TypeError for unknown keywords.
+    Raises TypeError or ValueError naming the argument.
     """
     if length < 2.0 * radius:
         raise ValueError(f"length: must be at least twice the radius {radius!r} m, got {length!r}")

@@ -218,14 +218,16 @@ def _info(options) -> None:
 
 
 def _labels(options) -> None:
+    from ..settings import LabelSettings
     from .labels import label_file, objects_of_options
     from ..progress import progress_bars
 
     require_writable(options.out, "--out")
+    settings = LabelSettings(objects=objects_of_options(options.object), plane=options.plane,
+                             dynamic_range_db=options.dynamic_range, noise_margin_db=options.noise_margin,
+                             errors=options.errors)
     with progress_bars() as progress:
-        lines = label_file(options.frame, options.out, parts=options.part, objects=objects_of_options(options.object),
-                           plane=options.plane, dynamic_range_db=options.dynamic_range, noise_margin_db=options.noise_margin,
-                           errors=options.errors, progress=progress,
+        lines = label_file(options.frame, options.out, settings=settings, parts=options.part, progress=progress,
                            cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate})
     print("\n".join(lines))
 

@@ -9,27 +9,28 @@ from .._core import noise_power_in_cell
 from ..detections import detect_frame
 from ..frame_file import left_out, load_frame, save_labels
 from ..labels.of_frame import annotate_frame
+from ..settings import LabelSettings
 from . import report
 from .label_outputs import write_labels
 from .run import chosen_partition
 
 
-def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) -> list[str]:
+def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
     """Labels the map of a frame file, writes labels.h5, detections.csv, maps and pictures, and says what is in them.
 
     path: of the frame file; folder: of what is written
-    parts: texts NAME=SELECTION of a partition "choice" beside those of the file
+    settings: how to label; parts: texts NAME=SELECTION of a partition "choice" beside those of the file
     progress: callable (stage, fraction) or None
-    cfar: keywords of `cfar` for the detections, of frames with signals; keywords: of `annotate_frame`
+    cfar: keywords of `cfar` for the detections, of frames with signals
     Returns the lines of a report. Raises ValueError for bad input, ep.FileError for bad files.
     """
     path, folder = Path(path), Path(folder)
     missing, frame = left_out(path), load_frame(path)
     chosen = chosen_partition(parts, frame.parts)
-    frame.labels = annotate_frame(frame, chosen, progress=progress, **keywords)
+    frame.labels = annotate_frame(frame, chosen, settings=settings, progress=progress)
     detections = ["no detections: the file has paths alone, no signals"]
     if frame.spectrum is not None:
-        frame.detections = detect_frame(frame, objects=keywords.get("objects"), progress=progress, **cfar or {})
+        frame.detections = detect_frame(frame, objects=settings.objects, progress=progress, **cfar or {})
         frame.detections.to_csv(folder / "detections.csv")
         detections = report.detections(frame.detections)
     save_labels(frame.labels, folder / "labels.h5")
@@ -37,7 +38,7 @@ def label_file(path, folder, *, parts=(), cfar=None, progress=None, **keywords) 
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
             f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
-            *report.unresolved(_unresolved(frame, keywords.get("objects"), progress), missing)]
+            *report.unresolved(_unresolved(frame, settings.objects, progress), missing)]
 
 
 def _unresolved(frame, objects, progress) -> list:

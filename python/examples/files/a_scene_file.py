@@ -58,6 +58,6 @@ path.write_text(text)
 # The settings of the file are the keywords of ``simulate``.
 file = ep.load_scene(path)
 print(file.title)
-frame = ep.simulate(file.scene, file.radar, parts=file.parts, guard=False, **file.trace_settings(), **file.spectrum_settings())
+frame = ep.simulate(file.scene, file.radar, parts=file.parts, guard=False, trace=file.trace, signal=file.signal)
 figure = plots.plot_overview(frame.spectrum, {name: one for name, one in frame.part_spectra["parts"].items() if name != "other"},
                              title="All that is received", parts_title="Without noise, by part")

@@ -17,7 +17,7 @@ constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
 constexpr size_t kMaxFoci = 12;        // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
-constexpr double kMostRays = 0.5;      // of the stratum's rays, for all its foci
+constexpr double kLargestShare = 0.5;      // of the stratum's rays, for all its foci
 constexpr double kMinGain = 1.5;       // of the density of rays in a focus, over that without it
 
 // Describes a stratum of the trace to come.
@@ -39,7 +39,7 @@ LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) 
   focus.axis = glint.direction;
   focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell) / kFocusCore, kWidest));
   // Zones narrower than the cells of all those rays together stay unresolved anyway.
-  const double finest = kTwoPi * focus.versine / (kMostRays * std::max(plan.rays, 1.0));
+  const double finest = kTwoPi * focus.versine / (kLargestShare * std::max(plan.rays, 1.0));
   focus.share = focus.versine / std::max(glint.narrow * glint.narrow, finest) * std::sqrt(power);
   return focus;
 }
@@ -86,7 +86,7 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
 // Shares rays among the foci and drops those whose rays would lie hardly closer than without them.
 void give_rays(StratumPlan& plan) {
   const double part = std::sqrt(plan.of_foci / std::max(plan.power(), 1e-300));
-  const double given = kMostRays * std::min(1.0, part) * plan.rays, density = plan.rays / plan.solid_angle;
+  const double given = kLargestShare * std::min(1.0, part) * plan.rays, density = plan.rays / plan.solid_angle;
   double asked = 0.0;
   for (const LaunchFocus& focus : plan.foci) asked += focus.share;
   for (LaunchFocus& focus : plan.foci) focus.share *= given / asked;
@@ -106,7 +106,7 @@ void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, con
     plan.name = stratum.name;
     plan.rays = guide.shares.at(stratum.name);
     plan.solid_angle = stratum.solid_angle();
-    const double of_each_batch = (1.0 - kMostRays) * std::max(plan.rays, 1.0) / frame.num_batches;
+    const double of_each_batch = (1.0 - kLargestShare) * std::max(plan.rays, 1.0) / frame.num_batches;
     plan.cell = std::sqrt(plan.solid_angle / of_each_batch);
     plan.echo = echoes[k];
   }

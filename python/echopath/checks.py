@@ -235,7 +235,9 @@ def anything(argument: str, value):
 
 def progress(argument: str, value):
     """None, a callable (stage, fraction), or True for bars."""
-    if value is not None and not isinstance(value, bool) and not (callable(value) and not isinstance(value, type) and _takes(value, "stage", 0.0)):
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, type) or not callable(value) or not _takes(value, "stage", 0.0):
         raise refused(TypeError, argument, "a callable (stage, fraction), True or None", value)
     return value
 

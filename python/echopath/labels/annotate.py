@@ -112,7 +112,8 @@ def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSet
     return LabelSettings(**labels)
 
 
-def make_request(radar, num_batches: int, settings: LabelSettings, *, window, zero_pad, angles=None) -> Request:
+def make_request(radar, num_batches: int, settings: LabelSettings, *, window=SignalSettings.window,
+                 zero_pad=SignalSettings.zero_pad, angles=None) -> Request:
     """Checks what can be checked before the long work. num_batches: of the trace; the others as in `annotate`.
 
     Raises ValueError.

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from .maps import MAP_SIZE, draw_range_doppler
-from .points import OUTSIDE, draw_points
+from .points import draw_points
 from .style import axes_or_new
 
 
@@ -14,9 +14,9 @@ def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=""):
     """
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to draw, got a record of paths alone")
-    legend = OUTSIDE if ax is None else {}
+    has_room = ax is None
     with axes_or_new(ax, *MAP_SIZE) as ax:
         draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title)
         if frame.detections is not None and len(frame.detections):
-            draw_points(ax, frame.detections, legend=legend, edgecolors="white")
+            draw_points(ax, frame.detections, has_room=has_room, edgecolors="white")
     return ax

@@ -9,13 +9,13 @@ from .style import axes_or_new
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 VIEWS = ("range_doppler", "above")
-MOST_IN_COLUMN = 18     # of the legend
-MOST_NAMES = 14         # in the legend, the rest are "other objects"
+MOST_NAMES, FEW_NAMES = 14, 5  # in the legend beside the axes and within them; the rest are "other objects"
 SIZES = 10.0, 70.0      # points^2, of the weakest and the strongest
 SPAN_DB = 40.0          # of the sizes, below the strongest
 NOISE_LOOK = {"marker": "x", "color": "0.55", "linewidths": 0.8}
-REST_COLOURS = {"surroundings": "0.45", "other objects": "0.75", "other": "0.45", "noise": "0.55"}
-OUTSIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}  # of new axes; others may lack the room
+SURROUNDINGS = "surroundings"
+REST_COLOURS = {SURROUNDINGS: "0.45", "other objects": "0.75", "other": "0.45", "noise": "0.55"}
+BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
 
 
 def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
@@ -31,7 +31,7 @@ def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
         raise ValueError("view: 'above' needs azimuths, which the antennas of these detections cannot tell")
     is_given = ax is not None
     with axes_or_new(ax, *((7.6, 4.6) if view == "range_doppler" else (6.6, 5.4))) as ax:
-        draw_points(ax, detections, view, legend={} if is_given else OUTSIDE)
+        draw_points(ax, detections, view, has_room=not is_given)
         if view == "above":
             ax.set_xlabel(LEFT_LABEL)
             ax.set_ylabel(AHEAD_LABEL)
@@ -45,30 +45,33 @@ def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
     return ax
 
 
-def draw_points(ax, detections, view="range_doppler", *, legend, **look) -> None:
-    """The points and their legend; legend, look: keywords of Axes.legend and of Axes.scatter."""
+def draw_points(ax, detections, view="range_doppler", *, has_room: bool, **look) -> None:
+    """The points and their legend; has_room: beside the axes, for a long one; look: keywords of Axes.scatter."""
     x, y = (detections.points[:, 1], detections.points[:, 0]) if view == "above" else (detections.range, detections.velocity)
-    names, sizes = _names(detections), _sizes(detections.power)
+    names, sizes = _names(detections, MOST_NAMES if has_room else FEW_NAMES), _sizes(detections.power)
+    is_shown = np.isfinite(x) & np.isfinite(y)
     for name, colour in _colours(names).items():
-        of_name = (names == name) & np.isfinite(x) & np.isfinite(y)
+        of_name = (names == name) & is_shown
         filled = {"color": colour, "edgecolors": "white", "linewidths": 0.4} | look
         ring = {"facecolors": "none", "edgecolors": [colour], "linewidths": 1.3}
+        label = f"{name}: {np.count_nonzero(of_name)}"
         for is_ghost, shown in ((False, NOISE_LOOK if name == "noise" else filled), (True, ring)):
             taken = of_name & ((detections.ghost_type > 0) == is_ghost)
             if taken.any():
-                label = f"{name}{', ghosts' * is_ghost}: {np.count_nonzero(taken)}"
                 ax.scatter(x[taken], y[taken], s=sizes[taken], label=label, zorder=3, **shown)
-    if len(names):
-        ax.legend(title="Whose echo: how many", alignment="left", ncols=1 + (len(set(names)) > MOST_IN_COLUMN), **legend)
+                label = None  # once
+    if is_shown.any():
+        rings = "\n(rings: ghosts)" if (detections.ghost_type[is_shown] > 0).any() else ""
+        ax.legend(title=f"Whose echo: how many{rings}", alignment="left", **(BESIDE if has_room else {}))
 
 
-def _names(detections):
+def _names(detections, most: int):
     """Whose echo each detection is: the object, else the part, else the surroundings; the rare ones are other objects."""
     named = np.where(detections.object != "", detections.object, detections.part).astype(object)
-    named[named == ""] = "surroundings" if (detections.object != "").any() else "detections"
+    named[named == ""] = SURROUNDINGS if (detections.object != "").any() else "detections"
     named[detections.is_noise] = "noise"
-    found, counts = np.unique(named[~detections.is_noise].astype(str), return_counts=True)
-    rare = found[np.argsort(-counts, kind="stable")[MOST_NAMES:]]
+    found, counts = np.unique(named[~detections.is_noise & (named != SURROUNDINGS)].astype(str), return_counts=True)
+    rare = found[np.argsort(-counts, kind="stable")[most:]]
     named[np.isin(named.astype(str), rare) & ~detections.is_noise] = "other objects"
     return named
 

@@ -43,7 +43,7 @@ py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
 // Power of a path, to be compared with powers in W.
 struct Power {};
 
-void check_globs(const Selection& selection, const Scene& scene) { selection.check_globs(scene.mesh_names()); }
+void check_globs(const Selection& selection, const Scene& scene) { selection.check_globs(scene.all_mesh_names()); }
 
 // Number of hits of a path, to be compared with whole numbers.
 struct NumBounces {};

@@ -1,5 +1,5 @@
 #pragma once
-// A motion maps time to a rigid transform relative to the placement of its node.
+// A motion maps time to a rigid transform in the axes of the parent of its node, about the node's own origin.
 #include <cstdint>
 #include <memory>
 #include <vector>

@@ -60,28 +60,81 @@ int Scene::add(Node node) {
   const int num_nodes = static_cast<int>(nodes_.size());
   require(node.parent >= -1 && node.parent < num_nodes, "parent", "must be -1 or the index of a node", node.parent);
   check_content(node);
-  if (node.parent >= 0) node.name = nodes_[static_cast<size_t>(node.parent)].name + "/" + node.name;
+  if (node.parent >= 0) node.name = at(node.parent).name + "/" + node.name;
   require(!index_.contains(node.name), "name", "must be unique among its siblings", node.name);
-  if (node.mesh) {
-    SceneMesh mesh{num_nodes, num_nodes};
-    for (int above = node.parent; above >= 0; above = nodes_[static_cast<size_t>(above)].parent) mesh.object = above;
-    meshes_.push_back(mesh);
-  }
   index_.emplace(node.name, num_nodes);
   nodes_.push_back(std::move(node));
+  number_node(num_nodes);
   return num_nodes;
+}
+
+void Scene::change(int index, Node node) {
+  require_node(index);
+  check_content(node);
+  Node& present = nodes_[static_cast<size_t>(index)];
+  const bool same_ids = node.visible == present.visible && !node.mesh == !present.mesh;
+  node.name = std::move(present.name);
+  node.parent = present.parent;
+  present = std::move(node);
+  if (!same_ids) number_all();
+}
+
+void Scene::remove(int index) {
+  require_node(index);
+  std::vector<int> place(nodes_.size(), -1);  // among those that stay
+  std::vector<Node> kept;
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    Node& node = nodes_[i];
+    const int parent = node.parent < 0 ? -1 : place[static_cast<size_t>(node.parent)];
+    if (static_cast<int>(i) == index || (node.parent >= 0 && parent < 0)) continue;
+    place[i] = static_cast<int>(kept.size());
+    node.parent = parent;
+    kept.push_back(std::move(node));
+  }
+  nodes_ = std::move(kept);
+  index_.clear();
+  for (size_t i = 0; i < nodes_.size(); ++i) index_.emplace(nodes_[i].name, static_cast<int>(i));
+  number_all();
+}
+
+void Scene::require_node(int index) const {
+  require(index >= 0 && index < static_cast<int>(nodes_.size()), "index", "must be that of a node", index);
+}
+
+// Parents come before their children, so it is known of the parent whether it takes part.
+void Scene::number_node(int index) {
+  const Node& node = at(index);
+  takes_part_.push_back(node.visible && (node.parent < 0 || takes_part(node.parent)));
+  if (!node.mesh || !takes_part(index)) return;
+  SceneMesh mesh{index, index};
+  for (int above = node.parent; above >= 0; above = at(above).parent) mesh.object = above;
+  meshes_.push_back(mesh);
+}
+
+void Scene::number_all() {
+  takes_part_.clear();
+  meshes_.clear();
+  for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) number_node(index);
 }
 
 int64_t Scene::num_triangles() const {
   int64_t total = 0;
-  for (const Node& node : nodes_) total += node.mesh ? static_cast<int64_t>(node.mesh->triangles().size()) : 0;
+  for (const SceneMesh& mesh : meshes_) total += static_cast<int64_t>(at(mesh.node).mesh->triangles().size());
   return total;
 }
 
 std::vector<std::string> Scene::mesh_names() const {
   std::vector<std::string> names;
   names.reserve(meshes_.size());
-  for (const SceneMesh& mesh : meshes_) names.push_back(nodes_[static_cast<size_t>(mesh.node)].name);
+  for (const SceneMesh& mesh : meshes_) names.push_back(at(mesh.node).name);
+  return names;
+}
+
+std::vector<std::string> Scene::all_mesh_names() const {
+  std::vector<std::string> names = mesh_names();
+  for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) {
+    if (at(index).mesh && !takes_part(index)) names.push_back(at(index).name);
+  }
   return names;
 }
 
@@ -92,8 +145,8 @@ std::optional<int> Scene::find(std::string_view full_name) const {
 
 bool Scene::is_moving(uint32_t mesh_id) const {
   if (node_of(mesh_id).deformation) return true;
-  for (int i = meshes_[mesh_id].node; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) {
-    if (nodes_[static_cast<size_t>(i)].motion) return true;
+  for (int i = meshes_[mesh_id].node; i >= 0; i = at(i).parent) {
+    if (at(i).motion) return true;
   }
   return false;
 }
@@ -108,8 +161,8 @@ bool Scene::is_anything_moving() const {
 bool Scene::may_stretch(uint32_t mesh_id) const {
   if (node_of(mesh_id).deformation) return true;
   if (!is_moving(mesh_id)) return false;
-  for (int i = meshes_[mesh_id].node; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) {
-    if (scales_unevenly(nodes_[static_cast<size_t>(i)].placement.linear())) return true;
+  for (int i = meshes_[mesh_id].node; i >= 0; i = at(i).parent) {
+    if (scales_unevenly(at(i).placement.linear())) return true;
   }
   return false;
 }
@@ -117,7 +170,9 @@ bool Scene::may_stretch(uint32_t mesh_id) const {
 std::vector<double> Scene::breakpoints() const {
   std::vector<double> all;
   const auto append = [&](const std::vector<double>& times) { all.insert(all.end(), times.begin(), times.end()); };
-  for (const Node& node : nodes_) {
+  for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) {
+    const Node& node = at(index);
+    if (!takes_part(index)) continue;
     if (node.motion) append(node.motion->breakpoints());
     if (node.deformation) append(node.deformation->breakpoints());
   }
@@ -127,7 +182,9 @@ std::vector<double> Scene::breakpoints() const {
 }
 
 void Scene::require_times(double begin, double end) const {
-  for (const Node& node : nodes_) {
+  for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) {
+    const Node& node = at(index);
+    if (!takes_part(index)) continue;
     if (node.motion) require_span(node.motion->span(), begin, end, node.name);
     if (node.deformation) require_span(node.deformation->span(), begin, end, node.name);
   }

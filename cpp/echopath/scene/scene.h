@@ -26,6 +26,7 @@ struct Node {
   MaterialPtr material;                            // null where there is no mesh
   std::string material_name;                       // as the user gave it, may be empty
   bool smooth = false;                             // the mesh stands for a curved surface (scene/mesh/smooth.h)
+  bool visible = true;                             // false: neither it nor what is below it takes part in anything
 };
 
 // Tells where a mesh ID stands in the tree.
@@ -34,6 +35,9 @@ struct SceneMesh {
   int object = 0;  // index of the child of the root above it (or itself)
 };
 
+// The full name of a node tells for good which one is meant. Indices of nodes and mesh IDs count without gaps what is there
+// now, so that arrays by mesh ID are dense and a changed scene equals one that was built so from the start; whoever records
+// them keeps a copy of the scene beside them, as Paths do. Copies share meshes, motions and materials, which cannot change.
 class Scene {
  public:
   // Adds a node and returns its index. `node.name` is its own name without the parent's; it must be non-empty, unique
@@ -41,12 +45,21 @@ class Scene {
   // deformation needs a mesh and as many vertices as the mesh was made from. Raises invalid_argument, and then adds
   // nothing.
   int add(Node node);
+  // Gives a node everything of `node` but the name and the parent, which stay. Raises as add does, and then changes nothing.
+  void change(int index, Node node);
+  // Removes a node with all that is below it. The nodes behind them move up.
+  void remove(int index);
 
   const std::vector<Node>& nodes() const { return nodes_; }
-  const std::vector<SceneMesh>& meshes() const { return meshes_; }  // by mesh ID
+  // Returns whether a node and all above it are visible. What does not take part has no mesh ID, and its motions are not
+  // asked for anything.
+  bool takes_part(int index) const { return takes_part_[static_cast<size_t>(index)]; }
+  const std::vector<SceneMesh>& meshes() const { return meshes_; }  // that take part, by mesh ID
   const Node& node_of(uint32_t mesh_id) const { return nodes_[static_cast<size_t>(meshes_[mesh_id].node)]; }
-  int64_t num_triangles() const;
-  std::vector<std::string> mesh_names() const;                // by mesh ID
+  int64_t num_triangles() const;                // of the meshes that take part
+  std::vector<std::string> mesh_names() const;  // by mesh ID
+  // Returns the names by mesh ID, and behind them those of meshes that do not take part: a selection may name them too.
+  std::vector<std::string> all_mesh_names() const;
   std::optional<int> find(std::string_view full_name) const;  // node index
 
   // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
@@ -55,12 +68,18 @@ class Scene {
   // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
   // scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;
-  std::vector<double> breakpoints() const;  // of all motions, ascending
-  // Raises invalid_argument naming the node when a motion is not defined on all of [begin, end] (s).
+  std::vector<double> breakpoints() const;  // of all motions that take part, ascending
+  // Raises invalid_argument naming the node when a motion that takes part is not defined on all of [begin, end] (s).
   void require_times(double begin, double end) const;
 
  private:
-  std::vector<Node> nodes_;
+  const Node& at(int index) const { return nodes_[static_cast<size_t>(index)]; }
+  void require_node(int index) const;
+  void number_node(int index);
+  void number_all();
+
+  std::vector<Node> nodes_;  // parents before their children
+  std::vector<bool> takes_part_;
   std::vector<SceneMesh> meshes_;
   std::unordered_map<std::string, int> index_;  // full name -> node
 };

@@ -5,12 +5,15 @@
 namespace echopath {
 namespace {
 
-// Parents come before their children, so one pass in order is enough.
+// Parents come before their children, so one pass in order is enough. The motion of what does not take part may not be
+// defined at the time.
 std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
   std::vector<Transform> result;
   result.reserve(scene.nodes().size());
-  for (const Node& node : scene.nodes()) {
-    const Transform local = moved(node.placement, node.motion.get(), time);
+  for (int index = 0; index < static_cast<int>(scene.nodes().size()); ++index) {
+    const Node& node = scene.nodes()[static_cast<size_t>(index)];
+    const Motion* motion = scene.takes_part(index) ? node.motion.get() : nullptr;
+    const Transform local = moved(node.placement, motion, time);
     result.push_back(node.parent < 0 ? local : result[static_cast<size_t>(node.parent)] * local);
   }
   return result;

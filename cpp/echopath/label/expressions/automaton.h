@@ -15,8 +15,8 @@ constexpr int kMaxAutomatonStates = 4096;
 // Reads symbols (mesh class, diffuse bit): meshes that every glob or set of the expression treats alike share a class.
 class Automaton {
  public:
-  // mesh_names: full names by mesh ID. Raises invalid_argument when a glob takes no mesh (naming the nearest names) or when
-  // more than kMaxAutomatonStates states are needed.
+  // mesh_names: full names by mesh ID, and behind them others that globs may take. Raises invalid_argument when a glob takes
+  // no mesh (naming the nearest names) or when more than kMaxAutomatonStates states are needed.
   Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names);
 
   // Returns words of mesh bits (mesh_bits). Every path that is taken shares a bit with each of them: the expression takes

@@ -95,7 +95,7 @@ void narrow_by(const std::vector<Value>& values, Bits& candidates, Holds holds) 
 void narrow_by_expression(PathTraits& paths, const PathExpression& expression, Bits& candidates, Job* job) {
   const Paths& record = paths.paths();
   require(record.scene != nullptr, "paths", "must carry a scene to match mesh names", "none");
-  narrow(Automaton(expression, record.scene->mesh_names()), record, candidates, job, paths.mesh_bits(job));
+  narrow(Automaton(expression, record.scene->all_mesh_names()), record, candidates, job, paths.mesh_bits(job));
 }
 
 // Keeps counts in [min, min + range].

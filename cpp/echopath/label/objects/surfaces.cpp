@@ -72,15 +72,18 @@ void require_takes_mesh(bool takes_any, const std::string& glob, const std::vect
   require(false, "objects", "must be globs that take meshes (nearest names: " + nearest + ")", "'" + glob + "'");
 }
 
-// Gives the meshes that `glob` takes to `object` unless another object has them.
-void take_meshes(const std::string& glob, uint32_t object, const std::vector<std::string>& mesh_names, SurfaceMap& map) {
-  bool takes_any = false;
+// Gives the meshes that `glob` takes to `object` unless another object has them. Returns whether it takes one that does not
+// take part; their names stand behind those of the others.
+bool take_meshes(const std::string& glob, uint32_t object, const std::vector<std::string>& mesh_names, SurfaceMap& map) {
+  bool takes_any = false, takes_hidden = false;
   for (size_t mesh = 0; mesh < mesh_names.size(); ++mesh) {
     if (!glob_takes(glob, mesh_names[mesh])) continue;
     takes_any = true;
-    if (map.of_mesh[mesh] == kNone) map.of_mesh[mesh] = object;
+    if (mesh >= map.of_mesh.size()) takes_hidden = true;
+    else if (map.of_mesh[mesh] == kNone) map.of_mesh[mesh] = object;
   }
   require_takes_mesh(takes_any, glob, mesh_names);
+  return takes_hidden;
 }
 
 }  // namespace
@@ -94,15 +97,17 @@ std::vector<uint32_t> SurfaceMap::meshes_of(uint32_t surface) const {
 }
 
 SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objects) {
-  const std::vector<std::string> mesh_names = scene.mesh_names();
+  const std::vector<std::string> mesh_names = scene.all_mesh_names();
   SurfaceMap map;
-  map.of_mesh.assign(mesh_names.size(), kNone);
+  map.of_mesh.assign(scene.meshes().size(), kNone);
   std::set<std::string> names;
   for (const NamedGlobs& object : objects) {
     require(!object.name.empty(), "objects", "must have non-empty names", "an empty one");
     require(names.insert(object.name).second, "objects", "must have names that differ", object.name + " twice");
-    for (const std::string& glob : object.globs) take_meshes(glob, map.num_objects, mesh_names, map);
+    bool is_hidden = false;
+    for (const std::string& glob : object.globs) is_hidden |= take_meshes(glob, map.num_objects, mesh_names, map);
     const bool has_mesh = std::find(map.of_mesh.begin(), map.of_mesh.end(), map.num_objects) != map.of_mesh.end();
+    if (is_hidden && !has_mesh) continue;
     require(has_mesh, "objects", "must each have a mesh that none before it takes", object.name);
     map.names.push_back(object.name);
     ++map.num_objects;

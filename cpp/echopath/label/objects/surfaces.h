@@ -27,7 +27,8 @@ struct SurfaceMap {
 };
 
 // Gives each mesh to the first object that takes it. Raises invalid_argument for names that are empty or given twice, for a
-// glob that takes no mesh (naming the nearest names) and for an object that those before it leave without a mesh.
+// glob that takes no mesh (naming the nearest names) and for an object that those before it leave without a mesh. Objects
+// whose meshes do not take part are left out.
 SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objects);
 
 // Takes the objects that rays are aimed at: children of the root, without their flagged mirrors, whose bounding sphere at

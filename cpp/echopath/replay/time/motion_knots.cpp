@@ -42,7 +42,9 @@ std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar) {
 std::vector<double> motion_knots(const Scene& scene, const Radar& radar) {
   std::vector<double> times = motion_breakpoints(scene, radar);
   append_knots(radar.motion.get(), times);
-  for (const Node& node : scene.nodes()) {
+  for (int index = 0; index < static_cast<int>(scene.nodes().size()); ++index) {
+    const Node& node = scene.nodes()[static_cast<size_t>(index)];
+    if (!scene.takes_part(index)) continue;
     append_knots(node.motion.get(), times);
     append_knots(node.deformation.get(), times);
   }

@@ -42,8 +42,8 @@ SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, cons
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
     smooth_width_.push_back(width_of_smooth(node, geometry.vertices(id)));
+    has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }
-  for (const Node& node : scene.nodes()) has_smooth_ = has_smooth_ || (node.mesh && is_unflagged_smooth(node));
   for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 

@@ -11,21 +11,14 @@
 #include <vector>
 
 #include "array.h"
-#include "echopath/scene/overlap/coplanar.h"
+#include "echopath/em/material.h"
 #include "echopath/scene/readers/readers.h"
-#include "echopath/scene/scene.h"
 #include "keywords.h"
 #include "leaving.h"
-#include "run_job.h"
+#include "shared.h"
 
 namespace echopath::bindings {
 namespace {
-
-// pybind11 has no holder of const objects; what is handed out has no way to change it.
-template <class T>
-std::shared_ptr<T> shared(const std::shared_ptr<const T>& pointer) {
-  return std::const_pointer_cast<T>(pointer);
-}
 
 double as_number(const py::object& value, const char* argument) {
   return *checked_array<double>(value, argument, "[]").data();
@@ -221,196 +214,12 @@ void bind_readers(py::module_& m) {
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
 }
 
-// --- Scene ---
-
-Node node(std::string name, int parent, const py::object& placement, std::shared_ptr<Motion> motion,
-          std::shared_ptr<Mesh> mesh, std::shared_ptr<Deformation> deformation, std::shared_ptr<Material> material,
-          std::string material_name, bool smooth) {
-  Node made;
-  made.name = std::move(name);
-  made.parent = parent;
-  if (!placement.is_none()) made.placement = as_transform(placement, "transform");
-  made.motion = std::move(motion);
-  made.mesh = std::move(mesh);
-  made.deformation = std::move(deformation);
-  made.material = std::move(material);
-  made.material_name = std::move(material_name);
-  made.smooth = smooth;
-  return made;
-}
-
-// What scene.meshes lists.
-struct MeshEntry {
-  uint32_t id;
-  int node_index;
-  Node node;
-};
-
-uint32_t checked_mesh_id(const Scene& scene, int64_t mesh_id) {
-  const auto count = static_cast<int64_t>(scene.meshes().size());
-  if (mesh_id >= 0 && mesh_id < count) return static_cast<uint32_t>(mesh_id);
-  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " + std::to_string(mesh_id));
-}
-
-// All nodes or none.
-void add_nodes(Scene& scene, const std::vector<Node>& nodes) {
-  if (nodes.size() == 1) {
-    scene.add(nodes.front());
-    return;
-  }
-  Scene grown = scene;
-  for (const Node& node : nodes) grown.add(node);
-  scene = std::move(grown);
-}
-
-std::vector<MeshEntry> mesh_entries(const Scene& scene) {
-  std::vector<MeshEntry> entries;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    entries.push_back({id, scene.meshes()[id].node, scene.node_of(id)});
-  }
-  return entries;
-}
-
-py::array_t<double> world_vertices_of(const Scene& scene, int64_t mesh_id, double time) {
-  return to_numpy(world_vertices(scene, checked_mesh_id(scene, mesh_id), time));
-}
-
-// What scene.coplanar_overlaps lists.
-struct NamedOverlap {
-  CoplanarOverlap overlap;
-  std::string first, second;
-};
-
-std::vector<NamedOverlap> named_overlaps(Scene scene, double time, double max_distance) {
-  const auto found =
-      run_job("coplanar overlaps", py::none(), [&](Job& job) { return coplanar_overlaps(scene, time, max_distance, &job); });
-  std::vector<NamedOverlap> named;
-  for (const CoplanarOverlap& one : found) {
-    named.push_back({one, scene.node_of(one.first_mesh_id).name, scene.node_of(one.second_mesh_id).name});
-  }
-  return named;
-}
-
-std::string overlap_text(const NamedOverlap& self) {
-  std::ostringstream text;
-  text << "CoplanarOverlap('" << self.first << "', '" << self.second << "', " << self.overlap.num_triangles << " triangles, "
-       << self.overlap.area << " m^2)";
-  return text.str();
-}
-
-void bind_overlaps(py::module_& m) {
-  py::class_<NamedOverlap>(m, "CoplanarOverlap", "Where two meshes, or a mesh and itself, lie on each other.")
-      .def_property_readonly(
-          "names", [](const NamedOverlap& self) { return py::make_tuple(self.first, self.second); },
-          "full names of the two meshes; twice the same for a mesh that lies on itself")
-      .def_property_readonly(
-          "mesh_ids",
-          [](const NamedOverlap& self) { return py::make_tuple(self.overlap.first_mesh_id, self.overlap.second_mesh_id); },
-          "their mesh IDs, the lower one first")
-      .def_property_readonly(
-          "num_triangles", [](const NamedOverlap& self) { return self.overlap.num_triangles; },
-          "of both meshes, that lie on one of the other")
-      .def_property_readonly(
-          "area", [](const NamedOverlap& self) { return self.overlap.area; }, "m^2, summed over pairs of triangles")
-      .def_property_readonly(
-          "distance", [](const NamedOverlap& self) { return self.overlap.distance; }, "m, largest between the two")
-      .def("__repr__", &overlap_text);
-}
-
-std::string scene_text(const Scene& self) {
-  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) + " meshes, " +
-         std::to_string(self.num_triangles()) + " triangles)";
-}
-
-void bind_nodes(py::module_& m) {
-  py::class_<Node>(m, "Node", "A node of a scene; cannot be changed.")
-      .def(py::init(&node), py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
-           py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
-           py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false)
-      .def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
-      .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
-      .def_property_readonly(
-          "placement", [](const Node& self) { return to_numpy(self.placement); },
-          "[4, 4] at rest, relative to the parent, m")
-      .def_property_readonly(
-          "motion", [](const Node& self) { return shared(self.motion); }, "a motion or None")
-      .def_property_readonly(
-          "mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
-      .def_property_readonly(
-          "deformation", [](const Node& self) { return shared(self.deformation); }, "a VertexSequence, a Skin or None")
-      .def_property_readonly(
-          "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
-      .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
-      .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
-      .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
-
-  py::class_<MeshEntry>(m, "SceneMesh", "A mesh of a scene with its mesh ID.")
-      .def_readonly("id", &MeshEntry::id, "mesh ID")
-      .def_readonly("node", &MeshEntry::node_index, "index into scene.nodes")
-      .def_property_readonly(
-          "name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
-      .def_property_readonly(
-          "mesh", [](const MeshEntry& self) { return shared(self.node.mesh); }, "the Mesh")
-      .def_property_readonly(
-          "triangles",
-          [](const MeshEntry& self) -> py::object { return py::cast(shared(self.node.mesh)).attr("triangles"); },
-          "[F, 3] indices of vertices")
-      .def_property_readonly(
-          "material", [](const MeshEntry& self) { return shared(self.node.material); }, "the Material")
-      .def_property_readonly(
-          "material_name", [](const MeshEntry& self) { return self.node.material_name; },
-          "as given, \"\" for a material without a name")
-      .def("__repr__", [](const MeshEntry& self) {
-        const std::string count = std::to_string(self.node.mesh->triangles().size());
-        return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";
-      });
-}
-
-void bind_scene_tree(py::module_& m) {
-  py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene", "A tree of named nodes with placements, motions and meshes.")
-      .def(py::init<>())
-      .def("_add_nodes", &add_nodes, py::arg("nodes"))
-      .def_property_readonly(
-          "nodes", [](const Scene& self) { return self.nodes(); }, "list of Node, parents first")
-      .def_property_readonly("meshes", &mesh_entries, "list of SceneMesh by mesh ID")
-      .def_property_readonly("num_triangles", &Scene::num_triangles)
-      .def_property_readonly("num_nodes", [](const Scene& self) { return self.nodes().size(); })
-      .def_property_readonly(
-          "breakpoints", [](const Scene& self) { return to_numpy(self.breakpoints()); },
-          "Times [N] in s, ascending, where some motion is not smooth.")
-      .def("find", &Scene::find, py::arg("name"), "Index of the node with that full name, None where there is none.")
-      .def(
-          "is_moving", [](const Scene& self, int64_t id) { return self.is_moving(checked_mesh_id(self, id)); },
-          py::arg("mesh_id"), "Whether the mesh moves or deforms at some time. Raises IndexError.")
-      .def("require_times", &Scene::require_times, py::arg("begin"), py::arg("end"),
-           "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).")
-      .def("world_vertices", &world_vertices_of, py::arg("mesh_id"), py::arg("time") = 0.0,
-           "Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.")
-      .def("coplanar_overlaps", &named_overlaps, py::kw_only(), py::arg("time") = 0.0,
-           py::arg("max_distance") = kCoplanarDistance, R"(Where meshes lie on each other, or a mesh lies on itself.
-
-time: s; max_distance: m, up to which two triangles count that are nowhere further apart where one lies over the other
-Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
-label are those of the one that is met. Where no ray reaches, as under a box on the ground, it does no harm.
-Triangles that merely touch, overlap by less than max_distance, or cross do not count.
-Of meshes that are copies of each other at the same place, the first stands for all: each copy is listed with it and with
-nothing else.
-Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
-time outside a motion.)")
-      .def("__repr__", &scene_text);
-  m.def("glob_takes", &glob_takes, py::arg("glob"), py::arg("full_name"),
-        "Whether a glob takes a mesh name: its full name or an ancestor's; * is any text, / too, and ? one character.");
-}
-
 }  // namespace
 
 void bind_scene(py::module_& m) {
   bind_material(m);
   bind_mesh(m);
   bind_readers(m);
-  bind_nodes(m);
-  bind_overlaps(m);
-  bind_scene_tree(m);
 }
 
 }  // namespace echopath::bindings

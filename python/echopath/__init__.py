@@ -39,6 +39,7 @@ from .powers import received_power, received_powers
 from .resolution import Interval, Unresolved, unresolved
 from .scene import Scene
 from .scene_file import SceneFile, load_scene
+from .scene_node import SceneNode
 from .selections import first, hits, last, num_bounces, power
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .signals import add_noise, synthesize
@@ -56,15 +57,15 @@ __all__ = [
     "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint",
     "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel",
     "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler",
-    "ReceivedPower", "Renewal", "Scene", "SceneFile", "Selection", "Sight", "SignalProbe", "SignalSettings", "Skin",
-    "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity",
+    "ReceivedPower", "Renewal", "Scene", "SceneFile", "SceneNode", "Selection", "Sight", "SignalProbe", "SignalSettings",
+    "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity",
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame",
     "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels",
-    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells",
-    "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs", "received_power", "received_powers", "renew",
-    "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "speed_of_light", "synthesize",
-    "trace", "unresolved", "validity", "view", "virtual_array", "visibility",
+    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads",
+    "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs",
+    "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads",
+    "simulate", "speed_of_light", "synthesize", "trace", "unresolved", "validity", "view", "virtual_array", "visibility",
 ]
 
 

@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 
 from . import _core
+from .checks import refused
 
 
 def data_folder(name: str):
@@ -48,7 +49,8 @@ class MaterialLibrary(Mapping):
         try:
             return self._entries[name]
         except (KeyError, TypeError):
-            nearest = ", ".join(_core.nearest_names(str(name), list(self)))
+            word = str(name).encode("utf-8", "backslashreplace").decode("utf-8")  # lone surrogates too
+            nearest = ", ".join(_core.nearest_names(word, list(self)))
             raise KeyError(f"unknown material {name!r}, the nearest known ones are {nearest}") from None
 
     @cached_property
@@ -69,3 +71,15 @@ def _read(file):
 
 
 materials = MaterialLibrary()
+
+
+def known_material(material) -> tuple:
+    """(Material, its name or "") of a Material or a name; raises ValueError or TypeError naming the argument `material`."""
+    if isinstance(material, str):
+        try:
+            return materials[material], material
+        except KeyError as error:
+            raise ValueError(f"material: {error.args[0]}") from None
+    if not isinstance(material, _core.Material):
+        raise refused(TypeError, "material", "a Material or a name of one", material)
+    return material, materials.name_of(material)

@@ -1,27 +1,47 @@
 """Scenes: a tree of named nodes with meshes, materials and motions."""
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 
-import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _core
-from .keywords import known_keywords
-from .materials import materials
+from .actors import Actor
+from .checks import anything, checked, flag, optional, real, refused, text, vector
+from .materials import known_material, materials
+from .placements import ORIGIN, motion_ahead, placement
+from .scene_node import SceneNode, split_motion
 
-_ORIGIN = (0.0, 0.0, 0.0)
+Content = _core.Mesh | Actor | Sequence[tuple[str, _core.Mesh]] | None
 
 
 class Scene(_core.Scene):
-    """A tree of named nodes.
+    """A tree of named objects: `scene["street/car"]` is one of them, to be read, moved and changed (SceneNode).
 
+    Iteration gives the full names of all objects, parents first; `name in scene` and `len(scene)` go by them. KeyError names
+    the nearest name.
     nodes: list of Node, parents first; meshes: list of SceneMesh by mesh ID (.id, .name, .triangles [F, 3], .material)
     world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s
+    Mesh IDs count without gaps the meshes that take part now, so they change when objects are removed or hidden; names do
+    not. Paths keep the scene that they were traced in, with its mesh IDs.
+    scene: another Scene to copy, such as `paths.scene`; None: empty
     """
 
-    @known_keywords
-    def add(self, mesh_or_actor=None, *, name, material=None, motion=None, position=_ORIGIN, yaw=0.0, transform=None,
-            parent=None, smooth=False) -> str:
+    def __init__(self, scene: _core.Scene | None = None):
+        if scene is None:
+            super().__init__()
+        elif isinstance(scene, _core.Scene):
+            super().__init__(scene)
+        else:
+            raise refused(TypeError, "scene", "a Scene to copy or None", scene)
+
+    @checked(self=anything, mesh_or_actor=anything, name=text, material=anything, motion=anything,
+             speed=optional(real(unit="m/s")), position=vector, yaw=real(unit="rad"), transform=anything,
+             parent=optional(text), smooth=flag, visible=flag)
+    def add(self, mesh_or_actor: Content = None, *, name: str, material: _core.Material | str | None = None,
+            motion: _core.Motion | _core.Deformation | None = None, speed: float | None = None,
+            position: ArrayLike = ORIGIN, yaw: float = 0.0, transform: ArrayLike | None = None, parent: str | None = None,
+            smooth: bool = False, visible: bool = True) -> str:
         """Adds an object and returns its full name, "street/pedestrian".
 
         mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part
@@ -31,18 +51,27 @@ class Scene(_core.Scene):
             here replaces them)
         motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence or a Skin; None: at rest. A mesh with a Skin
             becomes a node with a child for each joint that dominates any of its triangles, named after the joint
-            (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart
-        position [3] in m, yaw in rad about z (left positive): placement at rest relative to the parent
-        transform: [4, 4] instead of position and yaw; a motion turns the node about its own origin
+            (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities, translations
+            and turns of a motion are in the axes of the parent (of the world, for an object without one) and about the
+            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. Only the parts of an
+            object have its axes for their parent's, so a pedestrian of `actors` walks where its yaw points
+        speed: m/s, instead of motion: straight ahead, along the object's own +x as yaw or transform turn it; what parts of
+            an actor do by themselves, such as walking, adds to it
+        position [3] in m, yaw in rad about z (left positive): placement at rest (time 0 of `speed`) relative to the parent
+        transform: [4, 4] instead of position and yaw
         parent: full name of a node; None: the root
         smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
             across creases of more than 30 degrees; parts of actors may bring it themselves
+        visible: False: it takes no part in anything until `scene[name].visible` is set
         Raises ValueError or TypeError naming the argument; then nothing has been added.
         """
-        if not isinstance(smooth, bool):
-            raise TypeError(f"smooth: must be True or False, got {smooth!r}")
-        batch = _Batch(self, self._index_of(parent), smooth)
-        batch.add_object(mesh_or_actor, name, material, motion, _placement(position, yaw, transform))
+        place = placement(position, yaw, transform)
+        if speed is not None:
+            if motion is not None:
+                raise refused(ValueError, "speed", "given without motion", speed)
+            motion = motion_ahead(place, speed)
+        batch = _Batch(self, self._parent_index(parent), smooth, visible)
+        batch.add_object(mesh_or_actor, name, material, motion, place)
         self._add_nodes(batch.nodes)
         return f"{parent}/{name}" if parent else name
 
@@ -62,46 +91,59 @@ class Scene(_core.Scene):
 
         return scene_html(self)
 
-    def _index_of(self, parent) -> int:
-        if parent is None:
-            return -1
-        index = self.find(parent)
-        if index is None:
-            names = [node.name for node in self.nodes]
-            nearest = ", ".join(_core.nearest_names(parent, names)) or "none, the scene is empty"
-            raise ValueError(f"parent: must be the full name of a node (nearest: {nearest}), got {parent!r}")
-        return index
+    def remove(self, name: str) -> None:
+        """Removes an object with all that is below it.
+
+        name: full name. Mesh IDs behind it move up; to take something out for a while, hide it instead
+        (`scene[name].visible = False`). Raises KeyError naming the nearest names.
+        """
+        self._remove(self._index_of(name))
+
+    def copy(self) -> Scene:
+        """A copy, in which changes do not touch this one; meshes, motions and materials, which cannot change, are shared."""
+        return Scene(self)
+
+    def __getitem__(self, name: str) -> SceneNode:
+        self._index_of(name)
+        return SceneNode(self, name)
+
+    def _parent_index(self, parent: str | None) -> int:
+        try:
+            return -1 if parent is None else self._index_of(parent)
+        except KeyError as error:
+            raise ValueError(error.args[0].replace("name:", "parent:", 1)) from None
 
 
 class _Batch:
     """The nodes of one `add`, made before any of them is added."""
 
-    def __init__(self, scene, parent: int, smooth: bool):
+    def __init__(self, scene, parent: int, smooth: bool, visible: bool):
         self.nodes = []
-        self._first = scene.num_nodes
+        self._first = len(scene)
         self._parent = parent
         self._smooth = smooth
+        self._visible = visible
 
-    def add_object(self, content, name, material, motion, placement) -> None:
+    def add_object(self, content, name, material, motion, place) -> None:
         if content is None or isinstance(content, _core.Mesh):
-            self._add_mesh(name, self._parent, placement, motion, content, material)
+            self._add_mesh(name, self._parent, place, motion, content, material)
             return
         parts = _parts_of(content, material)
         if motion is None:
             motion = getattr(content, "motion", None)
-        self._add(name, self._parent, placement, motion, None, None)
+        self._add(name, self._parent, place, motion, None, None)
         groups = {(): self._first}
         for part_name, mesh, part_material, part_motion, part_placement, part_smooth in parts:
             *path, own_name = str(part_name).split("/")
             self._add_mesh(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material,
                            part_smooth)
 
-    def _add_mesh(self, name, parent: int, placement, motion, mesh, material, smooth: bool = False) -> None:
+    def _add_mesh(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> None:
         """A node with the mesh; below it the mesh's regions where a skin moves them."""
         if not isinstance(motion, _core.Skin) or mesh is None or mesh.whole is not None:
-            self._add(name, parent, placement, motion, mesh, material, smooth)
+            self._add(name, parent, place, motion, mesh, material, smooth)
             return
-        group = self._add(name, parent, placement, None, None, None)
+        group = self._add(name, parent, place, None, None, None)
         for joint, part in motion.parts(mesh):
             self._add(joint, group, None, motion, part, material, smooth)
 
@@ -111,18 +153,13 @@ class _Batch:
             groups[path] = self._add(path[-1], self._group(groups, path[:-1]), None, None, None, None)
         return groups[path]
 
-    def _add(self, name, parent: int, placement, motion, mesh, material, smooth: bool = False) -> int:
-        if not isinstance(name, str):
-            raise TypeError(f"name: must be text, got {name!r}")
+    def _add(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> int:
         material, material_name = _material(material, mesh, name)
-        deformation = motion if isinstance(motion, _core.Deformation) else None
-        if deformation is not None and mesh is None:
-            raise ValueError(f"motion: a {type(motion).__name__} needs a mesh, and '{name}' has none of its own")
-        if not (motion is None or deformation or isinstance(motion, _core.Motion)):
-            raise TypeError(f"motion: must be a LinearMotion, KeyframeMotion, VertexSequence or Skin, got {motion!r}")
-        self.nodes.append(_core.Node(name=name, parent=parent, placement=placement, motion=None if deformation else motion,
-                                     mesh=mesh, deformation=deformation, material=material, material_name=material_name,
-                                     smooth=(self._smooth or smooth) and mesh is not None))
+        motion, deformation = split_motion(motion, mesh, name)
+        self.nodes.append(_core.Node(name=name, parent=parent, placement=place, motion=motion, mesh=mesh,
+                                     deformation=deformation, material=material, material_name=material_name,
+                                     smooth=(self._smooth or smooth) and mesh is not None,
+                                     visible=self._visible or len(self.nodes) > 0))
         return self._first + len(self.nodes) - 1
 
 
@@ -130,48 +167,24 @@ def _parts_of(content, material) -> list:
     """(name, mesh, material, motion, placement, smooth) of each part of an actor or of a list of named meshes."""
     if hasattr(content, "parts"):
         return [(part.name, part.mesh, part.material if material is None else material, part.motion,
-                 _placement(part.position, 0.0, None), getattr(part, "smooth", False)) for part in content.parts]
+                 placement(part.position, 0.0, None), getattr(part, "smooth", False)) for part in content.parts]
     if isinstance(content, (list, tuple)):
         if not all(_is_named_mesh(item) for item in content):
-            raise TypeError("mesh_or_actor: a list must hold pairs (name, Mesh)")
+            raise refused(TypeError, "mesh_or_actor", "a list of pairs (name, Mesh)", content)
         return [(name, mesh, material, None, None, False) for name, mesh in content]
-    kind = type(content).__name__
-    raise TypeError(f"mesh_or_actor: must be a Mesh, an Actor, a list of (name, Mesh) or None, got {kind}")
+    raise refused(TypeError, "mesh_or_actor", "a Mesh, an Actor, a list of (name, Mesh) or None", content)
 
 
 def _is_named_mesh(item) -> bool:
-    return isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], _core.Mesh)
+    return isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[0], str) and isinstance(item[1], _core.Mesh)
 
 
 def _material(material, mesh, name: str):
     """(Material or None, its name or "")."""
     if mesh is None:
         if material is not None:
-            raise ValueError(f"material: must not be given without a mesh, got {material!r} for '{name}'")
+            raise refused(ValueError, "material", f"given with a mesh, which '{name}' has not", material)
         return None, ""
     if material is None:
         raise ValueError(f"material: the mesh '{name}' needs one, a Material or one of {', '.join(materials)}")
-    if isinstance(material, str):
-        try:
-            return materials[material], material
-        except KeyError as error:
-            raise ValueError(f"material: {error.args[0]}") from None
-    if not isinstance(material, _core.Material):
-        raise TypeError(f"material: must be a Material or a name, got {material!r}")
-    return material, materials.name_of(material)
-
-
-def _placement(position, yaw, transform):
-    """parent_from_node at rest, [4, 4]."""
-    if transform is not None:
-        if tuple(np.ravel(position)) != _ORIGIN or yaw != 0.0:
-            raise ValueError("transform: must not be given together with position or yaw")
-        return transform
-    position = np.asarray(position, dtype=np.float64)
-    if position.shape != (3,) or not np.isfinite(position).all():
-        raise ValueError(f"position: must be three finite numbers in m, got {position.tolist()}")
-    if not math.isfinite(yaw):
-        raise ValueError(f"yaw: must be a finite angle in rad, got {yaw}")
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    x, y, z = position
-    return np.array([[cos, -sin, 0.0, x], [sin, cos, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]])
+    return known_material(material)

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import warnings
 
 import numpy as np
@@ -156,17 +155,16 @@ def coarse_meshes(scene, frequency: float) -> list:
     return found
 
 
-_known: dict = {}  # tessellations by the digest of a mesh
+_known = _core.MeshTable()  # tessellations, each as long as its mesh lives
 
 
 def _measured(mesh) -> Tessellation | None:
-    """The tessellation of a mesh, measured once: a digest of its arrays costs a hundredth."""
-    digest = hashlib.blake2b(mesh.vertices, digest_size=16)
-    digest.update(mesh.triangles)
-    key = digest.digest()
-    if key not in _known:
-        _known[key] = tessellation(mesh.vertices, mesh.triangles)
-    return _known[key]
+    """The tessellation of a mesh, measured once."""
+    measured = _known.get(mesh, _known)
+    if measured is _known:
+        measured = tessellation(mesh.vertices, mesh.triangles)
+        _known.set(mesh, measured)
+    return measured
 
 
 def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: bool) -> str:

@@ -104,8 +104,8 @@ QUANTITIES = {
     "ChirpSequence": ("start_frequency", "num_samples", "num_chirps", "chirp_interval", "slope", "chirp_duration",
                       "window_centre", "centre_frequency", "wavelength", "range_resolution", "max_range"),
     "Radar": ("waveform", "transmit_power", "frame_duration"),
-    "Node": ("name", "parent", "placement", "mesh", "material", "material_name"),
-    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress"),
+    "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible"),
+    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress", "kept"),
     "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "settings", "progress", "probe"),
 }
 

@@ -36,6 +36,7 @@ def write_scene(group, scene) -> None:
     write_texts(group, "name", [node.name for node in nodes])
     write_texts(group, "material_name", [node.material_name for node in nodes])
     write_array(group, "smooth", np.array([node.smooth for node in nodes], np.uint8))
+    write_array(group, "visible", np.array([node.visible for node in nodes], np.uint8))
     write_array(group, "parent", np.array([node.parent for node in nodes], np.int32))
     placements = np.array([node.placement for node in nodes], np.float64).reshape(-1, 4, 4)
     write_array(group, "placement", placements, unit="m")
@@ -52,6 +53,8 @@ def read_scene(group):
     count = len(names)
     material_names = read_texts(group, "material_name", count)
     smooth = read_array(group, "smooth", np.uint8, (count,))
+    # In older files all nodes are.
+    visible = read_array(group, "visible", np.uint8, (count,)) if "visible" in group else np.ones(count, np.uint8)
     parents = read_array(group, "parent", np.int32, (count,))
     placements = read_array(group, "placement", np.float64, (count, 4, 4))
     shared = {kind: _read_shared(group, kind, count) for kind in _SHARED}
@@ -63,6 +66,7 @@ def read_scene(group):
         own_name = names[index] if parent == NONE else names[index].removeprefix(names[parent] + "/")
         nodes.append(_core.Node(name=own_name, parent=parent, placement=placements[index],
                                 material_name=material_names[index], smooth=bool(smooth[index]),
+                                visible=bool(visible[index]),
                                 **{kind: items[index] for kind, items in shared.items()}))
     scene = Scene()
     scene._add_nodes(nodes)

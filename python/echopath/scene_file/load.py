@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import inspect
 import math
 import os
@@ -217,29 +218,30 @@ def _material(value, key: str):
 
 def _build_scene(settings: SceneTable, folder: Path):
     scene = Scene()
+    meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
     for index, table in enumerate(settings.objects):
         key = f"objects[{index}]"
         placement = {"transform": table.transform} if table.transform is not None else {
             "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
         material = _material(table.material, f"{key}.material")
-        shape, material = _shape(table, folder, key, material)
+        shape, material = _shape(table, folder, key, material, meshes_of_file)
         motion = _motion(table.motion, f"{key}.motion")
         with _blame(key):
-            scene.add(shape, name=table.name, material=material, motion=motion, parent=table.parent,
-                      smooth=table.smooth, **placement)
+            scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
+                      smooth=table.smooth, visible=table.visible, **placement)
     return scene
 
 
-def _shape(table: ObjectTable, folder: Path, key: str, material):
+def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file):
     """The object's mesh, group of meshes or actor, and the material still to be given to it."""
     if table.mesh is not None:
         with _blame(f"{key}.mesh"):
-            meshes = _core.load_meshes(str(folder / table.mesh), unit=table.unit or 1.0)
+            meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     factory = _actor_factory(table.actor, f"{key}.actor")
     model = _parameter_table(table.actor, factory)
     parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
-    if material is not None and "material" in inspect.signature(factory).parameters:
+    if material is not None and "material" in _parameters(factory):
         parameters["material"], material = material, None
     with _blame(f"{key}.parameters"):
         return factory(**parameters), material
@@ -262,8 +264,14 @@ def _actor_factory(name: str, key: str):
     return getattr(actors, name)
 
 
+@functools.cache
+def _parameters(factory) -> dict:
+    return dict(inspect.signature(factory).parameters)
+
+
+@functools.cache
 def _parameter_table(name: str, factory) -> type[Table]:
     """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
     fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
-              for parameter in inspect.signature(factory).parameters.values() if parameter.name != "material"}
+              for parameter in _parameters(factory).values() if parameter.name != "material"}
     return create_model(f"{name}_parameters", __base__=Table, **fields)

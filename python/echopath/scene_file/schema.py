@@ -194,9 +194,11 @@ class ObjectTable(Table):
     position: Vector3 | None = Field(None, description="m")
     yaw_deg: Number | None = Field(None, description="degrees about z")
     transform: Matrix4 | None = Field(None, description="4 x 4, instead of position and yaw_deg")
-    motion: MotionTable | None = Field(None, description="relative to the placement; none: it stands still")
+    motion: MotionTable | None = Field(None, description="in the axes of the parent; none: it stands still")
+    speed: Number | None = Field(None, description="m/s straight ahead, along its own +x, instead of motion")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     smooth: bool = Field(False, description="the mesh stands for a curved surface")
+    visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
 
     @model_validator(mode="after")
     def _one_shape(self):
@@ -212,6 +214,12 @@ class ObjectTable(Table):
     def _one_placement(self):
         if self.transform is not None and (self.position is not None or self.yaw_deg is not None):
             raise broken_rule("transform", "must not stand beside position or yaw_deg", self.transform)
+        return self
+
+    @model_validator(mode="after")
+    def _one_motion(self):
+        if self.speed is not None and self.motion is not None:
+            raise broken_rule("speed", "must not stand beside motion", self.speed)
         return self
 
 

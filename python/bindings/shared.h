@@ -1,0 +1,13 @@
+#pragma once
+// pybind11 has no holder of const objects.
+#include <memory>
+
+namespace echopath::bindings {
+
+// Returns the pointer as pybind11 can hold it; what it points to must be bound without any way to change it.
+template <class T>
+std::shared_ptr<T> shared(const std::shared_ptr<const T>& pointer) {
+  return std::const_pointer_cast<T>(pointer);
+}
+
+}  // namespace echopath::bindings

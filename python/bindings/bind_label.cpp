@@ -21,6 +21,11 @@ namespace {
 // the text into "incompatible arguments", this lets the message with the caret through.
 PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
   if (!PyUnicode_Check(value)) return nullptr;
+  if (PyUnicode_AsUTF8AndSize(value, nullptr) == nullptr) {  // or it would be asked for again and again
+    PyErr_Clear();
+    PyErr_Format(PyExc_ValueError, "text: must be text without lone surrogates, got %A", value);
+    throw py::error_already_set();
+  }
   PyObject* made = PyObject_CallOneArg(reinterpret_cast<PyObject*>(selection_type), value);
   if (made == nullptr) throw py::error_already_set();
   return made;

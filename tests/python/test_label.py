@@ -151,3 +151,26 @@ def test_python_operators_that_would_mislead_are_errors():
         ep.Selection(3)
     with pytest.raises(TypeError):
         ep.hits("a") & 3
+
+
+def test_what_both_operands_have_is_taken_once():
+    selection = both = either = ep.hits("wall") & (ep.num_bounces >= 2)
+    for _ in range(60):  # without sharing 2^60 terms
+        both, either = both & both, either | either
+    assert str(both) == str(either) == str(selection)
+    assert str((ep.Selection("T . R") | selection) | selection) == str(ep.Selection("T . R") | selection)
+
+
+def test_selections_that_would_take_for_ever_are_refused():
+    many = deep = ep.Selection("T . R")
+    with pytest.raises(ValueError, match="selection: must have at most 100000 terms, got 1[0-9]{5}$"):
+        for _ in range(60):
+            many = (many & ep.hits("wall")) | (many & ep.hits("floor"))
+    with pytest.raises(ValueError, match="selection: must be nested at most 100 deep, got 101"):
+        for _ in range(101):
+            deep = ~(deep & ep.hits("wall"))
+
+
+def test_text_that_is_no_unicode_is_refused():
+    with pytest.raises(ValueError, match="text: must be text without lone surrogates, got .*ud800"):
+        ep.Selection("T '\ud800' R")

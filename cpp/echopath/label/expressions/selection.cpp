@@ -1,8 +1,10 @@
 #include "echopath/label/expressions/selection.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -12,6 +14,12 @@
 #include "echopath/power/path_power.h"
 
 namespace echopath {
+namespace {
+
+constexpr int64_t kMaxTerms = 100000;  // each is evaluated for all paths
+constexpr int kMaxDepth = 100;         // bounds the recursion, and the memory of masks [P] at each level
+
+}  // namespace
 
 struct Selection::Term {
   enum class Kind { kExpression, kNumBounces, kPower, kAnd, kOr, kNot };
@@ -21,18 +29,34 @@ struct Selection::Term {
   Comparison comparison = Comparison::kAbove;  // kPower
   double watts = 0.0;                          // kPower
   std::vector<Selection> children = {};        // kAnd, kOr: two or more, kNot: one
+  int64_t size = 1;                            // leaves as often as they are evaluated, though operands are shared
+  int depth = 1;                               // of the tree of terms
 
-  static Selection make(Term term) { return Selection(std::make_shared<const Term>(std::move(term))); }
+  static Selection make(Term term) {
+    if (!term.children.empty()) term.size = 0;
+    for (const Selection& child : term.children) {
+      term.size += child.term_->size;
+      term.depth = std::max(term.depth, child.term_->depth + 1);
+    }
+    require(term.size <= kMaxTerms, "selection", "must have at most " + std::to_string(kMaxTerms) + " terms", term.size);
+    require(term.depth <= kMaxDepth, "selection", "must be nested at most " + std::to_string(kMaxDepth) + " deep",
+            term.depth);
+    return Selection(std::make_shared<const Term>(std::move(term)));
+  }
 
-  // Children of the same kind are taken over, so that a long chain of | is one term and not a deep tree.
+  // Takes over children of the same kind, so that a long chain of | is one term and not a deep tree. What stands in both
+  // operands is taken once: s & s is s.
   static Selection combine(Kind kind, const Selection& a, const Selection& b) {
     Term term{.kind = kind};
+    std::unordered_set<const Term*> taken;
+    const auto take = [&](const Selection& child) {
+      if (taken.insert(child.term_.get()).second) term.children.push_back(child);
+    };
     for (const Selection& operand : {a, b}) {
-      const Term& inner = *operand.term_;
-      if (inner.kind == kind) term.children.insert(term.children.end(), inner.children.begin(), inner.children.end());
-      else term.children.push_back(operand);
+      if (operand.term_->kind != kind) take(operand);
+      else std::for_each(operand.term_->children.begin(), operand.term_->children.end(), take);
     }
-    return make(std::move(term));
+    return term.children.size() == 1 ? term.children.front() : make(std::move(term));
   }
 };
 

@@ -2,11 +2,14 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <sstream>
 #include <string>
 
 #include "array.h"
 #include "choice.h"
 #include "echopath/sim/decompose.h"
+#include "echopath/sim/replay_cost.h"
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
 #include "run_job.h"
@@ -43,11 +46,25 @@ py::array cube_array(Cube&& cube) {
 // None: the radar of the trace.
 const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
 
+// Long work is said beforehand. What interpolates in time is quick, and says nothing.
+void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSettings& settings) {
+  constexpr double kLong = 10.0;  // s
+  const double seconds = exact_seconds(paths, radar, settings);
+  if (seconds < kLong) return;
+  std::ostringstream text;
+  text << "evaluate: '" << (settings.synthesis.per_sample ? "samples" : "chirps") << "' takes about "
+       << std::llround(seconds) << " s on this machine"
+       << (settings.keyframes.retrace == Retrace::kNever ? "" : ", more with keyframes") << " for " << paths.num_paths()
+       << " paths; 'interpolated' is quick, with phases to phase_tolerance";
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.str().c_str(), 2) != 0) throw py::error_already_set();
+}
+
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
                           const std::string& replay, const std::string& evaluate, double phase_tolerance,
                           const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe) {
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
+  warn_of_long_work(paths, radar_or_own(paths, radar), settings);
   return cube_array(run_job("synthesize", progress,
                             [&](Job& job) { return synthesize(paths, radar_or_own(paths, radar), settings, &job); }));
 }
@@ -58,6 +75,7 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
                          SignalProbe* probe) {
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
+  warn_of_long_work(paths, radar_or_own(paths, radar), settings);
   std::vector<Grouping> rules;
   for (const KeyedGrouping& view : views) rules.push_back(view.rule);
   auto cubes = run_job("decompose", progress,

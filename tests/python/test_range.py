@@ -8,7 +8,6 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
-from support.shapes import METAL
 
 # The far things are tried in a process of their own, which a failed assertion of Embree ends.
 CASES = {
@@ -87,7 +86,8 @@ def test_more_rays_than_there_may_be_are_refused_at_once():
 def test_rays_whose_record_the_memory_cannot_hold_are_refused_at_once():
     """Each of them meets the sphere around the radar: at least 32 bytes of a path and 16 of a hit."""
     scene, radar = a_sphere()
-    with pytest.raises(ValueError, match=r"num_rays: must be so few that their paths, about \d{3,4} GB, fit .*, got 10000000000$"):
+    told = r"num_rays: must be so few that their paths, about \d{3,4} GB, fit into the memory .*, got 10000000000$"
+    with pytest.raises(ValueError, match=told):
         ep.trace(scene, radar, num_rays=10**10, max_bounces=1)
 
 

@@ -1,4 +1,6 @@
-"""Desktop viewer of Echopath: which rays made which cell. It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
+"""Desktop viewer of Echopath: which rays made which cell.
+
+It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
 
 model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window: Qt. Each works without the next.
 """

@@ -1,0 +1,11 @@
+#pragma once
+// How long a signal takes, before it is computed.
+#include "echopath/sim/stream/cube_pass.h"
+
+namespace echopath {
+
+// Returns about how many seconds all threads of this machine take to evaluate the moving paths exactly at every chirp or
+// sample, to a factor of three; 0 where the settings interpolate in time, which is quick.
+double exact_seconds(const Paths& paths, const Radar& radar, const CubeSettings& settings);
+
+}  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
-// The end of Python. A thread that waits for the GIL is torn away when Python ends; in the midst of C++ this ends the process.
+// The end of Python. A thread that waits for the GIL is torn away when Python ends; in the midst of C++ this ends the
+// process.
 #include <pybind11/pybind11.h>
 
 #include <optional>

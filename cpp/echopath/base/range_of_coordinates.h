@@ -9,8 +9,9 @@
 
 namespace echopath {
 
-// Everything lies within this distance of the origin that its coordinates count from. Embree multiplies three coordinates in
-// single precision, which overflows beyond 2.4e12 m, and double precision resolves a hundredth of a wave at 77 GHz up to here.
+// Everything lies within this distance of the origin that its coordinates count from. Embree multiplies three coordinates
+// in single precision, which overflows beyond 2.4e12 m, and double precision resolves a thirtieth of a wave at 77 GHz up
+// to here.
 inline constexpr double kFarthest = 1e12;  // m
 // Double precision tells apart times of 2e-6 s up to here; times since 1970 are below 2e9 s.
 inline constexpr double kLatest = 1e10;  // s

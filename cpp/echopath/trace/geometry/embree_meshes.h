@@ -12,8 +12,8 @@ namespace echopath {
 class EmbreeMeshes {
  public:
   // Returns the IDs of the meshes that differ from those of the last call, ascending: all meshes where the origin (m, world)
-  // or the number of meshes has changed, none where nothing moves. Raises invalid_argument naming the mesh that is out of the
-  // range of coordinates (base/range_of_coordinates.h) about the origin; after that it may only be destroyed.
+  // or the number of meshes has changed, none where nothing moves. Raises invalid_argument naming the mesh that is out of
+  // the range of coordinates (base/range_of_coordinates.h) about the origin; after that it may only be destroyed.
   std::vector<uint32_t> update(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
   uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }

@@ -99,6 +99,17 @@ TEST(Obj, PassesOverWhatItDoesNotNeed) {
   EXPECT_EQ(meshes[0].mesh->vertices(), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+TEST(Obj, ReadsPastAByteOrderMark) {
+  const auto meshes = read("\xEF\xBB\xBF" + kSquare + "f 1 2 3 4\n");
+  EXPECT_EQ(meshes[0].mesh->area(), 1.0);
+}
+
+TEST(Obj, ReadsLinesThatEndAsOnAnySystem) {
+  const auto meshes = read("# old\rv 0 0 0\rv 1 0 0\r\nv 0 1 0\nf 1 2 3\r");
+  EXPECT_EQ(meshes[0].mesh->area(), 0.5);
+  expect_refused("# old\rv 0 0\rv 1 0 0\r", {"line 2", "3 numbers"});
+}
+
 TEST(Obj, LoadMeshJoinsAllGroupsInTheOrderOfTheFile) {
   const TemporaryFile file("joined.obj", kSquare + "g a\nf 1 2 3\ng b\nf 1 3 4\ng a\nf 1 2 4\n");
   const MeshPtr mesh = load_mesh(file.path());
@@ -120,6 +131,30 @@ TEST(Obj, NamesTheLineOfAnError) {
   expect_refused("v 0 0\n" + kSquare, {"line 1", "3 numbers"});
   expect_refused("v 0 0 nan\n" + kSquare, {"line 1", "not a number"});
   expect_refused("v 0 \\\n0 0\nv 0 0 abc\n", {"line 3"});
+  expect_refused("v\n" + kSquare, {"line 1", "3 numbers"});
+  expect_refused(kSquare + "f\n", {"line 5", "3 corners"});
+}
+
+// Its parser would read each of these as another number.
+TEST(Obj, RefusesWordsThatItsParserMisreads) {
+  expect_refused("v 1-2 0 0\n", {"line 1", "not a number: '1-2'"});
+  expect_refused("v 1 . 0\n", {"not a number: '.'"});
+  expect_refused("v 1e9999999999 0 0\n", {"not a number"});
+  expect_refused("v 0." + std::string(400, '0') + "1e400 0 0\n", {"hundreds of digits"});
+  expect_refused(kSquare + "f 1 2 1-2\n", {"line 5", "'1-2'"});
+  expect_refused(kSquare + "f 4294967297 2 3\n", {"line 5", "'4294967297'"});
+  expect_refused("v 1e71 0 0\n" + kSquare + "f 1 2 3\n", {"beyond 1e70 m"});
+}
+
+TEST(Obj, RefusesNamesThatAreNoText) {
+  const std::string face = kSquare + "f 1 2 3\n";
+  expect_refused("g a" + std::string(1, '\0') + "b\n" + face, {"line 1", "without NUL"});
+  expect_refused("o Stra\xDF\n" + face, {"line 1", "UTF-8"});
+  for (const char* name : {"\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\x80"}) {
+    expect_refused(std::string("g ") + name + "\n" + face, {"UTF-8"});
+  }
+  const std::string euro_and_car = "\xE2\x82\xAC\xF0\x9F\x9A\x97";
+  EXPECT_EQ(read("# Stra\xDF\ng " + euro_and_car + "\n" + face)[0].name, euro_and_car);
 }
 
 TEST(Obj, RefusesFilesWithoutFaces) {

@@ -147,6 +147,21 @@ TEST(Ply, NamesTheLineOfAnErrorInTheHeader) {
   expect_refused(replaced(good, "format ascii 1.0\n", ""), {"no line 'format'"});
 }
 
+TEST(Ply, RefusesVerticesThatAreNotFinite) {
+  const double nan = std::nan("");
+  for (const Format format : kFormats) {
+    Body body(format);
+    for (const double y : {0.0, 1.0, nan}) body.put(y).put(1.0).put(y * y);
+    body.put(uint8_t{3}).put(int32_t{0}).put(int32_t{1}).put(int32_t{2});
+    expect_refused(first_lines(format) +
+                       "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                       body.content(),
+                   {"vertex 2", "coordinate"});
+  }
+  expect_refused(replaced(two_triangles(Format::kAscii), "-5400000", "1e999"), {"line 13", "vertex 0", "out of range"});
+}
+
 TEST(Ply, RefusesContentThatDoesNotFitItsHeader) {
   const std::string good = two_triangles(Format::kAscii);
   expect_refused(replaced(good, "double z", "double w"), {"x, y and z"});

@@ -1,15 +1,17 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <fstream>
 #include <istream>
 #include <limits>
+#include <optional>
 #include <streambuf>
 #include <string_view>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/scene/readers/obj_words.h"
 #include "echopath/scene/readers/soup.h"
 
 namespace echopath {
@@ -21,14 +23,18 @@ static_assert(std::is_same_v<tinyobj::real_t, double>, "coordinates in float los
   throw FileError(path + ", line " + std::to_string(line) + ": " + what);
 }
 
+constexpr double kParserRounding = 1e-12;  // relative; the parser misreads numbers of hundreds of digits
+constexpr double kSmallest = std::numeric_limits<double>::min();
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 // Hands a file to the parser line by line, so that errors can name the line. It refuses vertices and faces that the parser
-// would read as zeros, and mends what the parser does not know: continued lines, comments behind values, a bare `g`.
+// would read as zeros, and mends what the parser does not know: a byte-order mark, continued lines, comments behind values, a
+// bare `g`.
 class ObjLines : public std::streambuf {
  public:
-  explicit ObjLines(std::string path) : path_(std::move(path)), file_(path_, std::ios::binary) {
-    if (!file_) throw FileError(path_ + ": cannot be opened");
-  }
+  ObjLines(std::istream& file, const std::string& path) : path_(path), file_(file) {}
   int64_t line() const { return line_; }
+  const Vec3& vertex() const { return vertex_; }  // of the latest such line, to the nearest double
 
  protected:
   int_type underflow() override {
@@ -42,10 +48,10 @@ class ObjLines : public std::streambuf {
     text_.clear();
     std::string part;
     bool continued = true, any = false;
-    while (continued && std::getline(file_, part)) {
+    while (continued && read_line(part)) {
       any = true;
-      ++line_;
-      while (!part.empty() && (part.back() == '\r' || part.back() == ' ')) part.pop_back();
+      if (++line_ == 1 && part.starts_with(kByteOrderMark)) part.erase(0, kByteOrderMark.size());
+      while (!part.empty() && part.back() == ' ') part.pop_back();
       continued = !part.empty() && part.back() == '\\';
       if (continued) part.back() = ' ';
       text_ += part;
@@ -56,36 +62,64 @@ class ObjLines : public std::streambuf {
     return true;
   }
 
+  // Reads up to the end of a line as any system writes it, which is also where the parser ends one.
+  bool read_line(std::string& part) {
+    part.clear();
+    std::streambuf& bytes = *file_.rdbuf();
+    const int_type end = traits_type::eof();
+    int_type c = bytes.sbumpc();
+    const bool any = c != end;
+    for (; c != end && c != '\n' && c != '\r'; c = bytes.sbumpc()) part += traits_type::to_char_type(c);
+    if (c == '\r' && bytes.sgetc() == '\n') bytes.sbumpc();
+    return any;
+  }
+
   void check_and_mend() {
     const size_t begin = std::min(text_.find_first_not_of(" \t"), text_.size());
     const std::string_view statement = std::string_view(text_).substr(begin);
+    const std::string_view keyword = statement.substr(0, statement.find_first_of(" \t"));
+    if (keyword == "g" || keyword == "o") check_name(statement);
     if (statement == "g") text_ += ' ';
-    if (statement.size() < 2 || (statement[1] != ' ' && statement[1] != '\t')) return;
-    if (statement[0] != 'v' && statement[0] != 'f') return;
+    const bool is_vertex = keyword == "v";
+    if (!is_vertex && keyword != "f") return;
     text_.resize(std::min(text_.find('#'), text_.size()));
-    const std::string_view values = std::string_view(text_).substr(begin + 2);
-    const bool is_vertex = statement[0] == 'v';
-    const std::string_view allowed = is_vertex ? "0123456789+-.eE \t" : "0123456789-/ \t";
-    if (values.find_first_not_of(allowed) != std::string_view::npos) fail(path_, line_, "not a number in '" + text_ + "'");
-    if (count_words(values) < 3) {
-      fail(path_, line_,
-           std::string(is_vertex ? "a vertex needs 3 numbers" : "a face needs 3 corners") + ": '" + text_ + "'");
-    }
+    const std::string_view values = std::string_view(text_).substr(std::min(begin + 1, text_.size()));
+    if (is_vertex) check_vertex(values);
+    else check_face(values);
   }
 
-  static int count_words(std::string_view text) {
-    int count = 0;
-    bool inside = false;
-    for (const char c : text) {
-      const bool blank = c == ' ' || c == '\t';
-      if (!blank && !inside) ++count;
-      inside = !blank;
-    }
-    return count;
+  void check_name(std::string_view statement) const {
+    if (!is_name(statement)) fail(path_, line_, "a name must be UTF-8 text without NUL");
   }
 
-  std::string path_, text_;
-  std::ifstream file_;
+  void check_vertex(std::string_view values) {
+    Eigen::Index count = 0;
+    for (std::string_view word = take_word(values); !word.empty(); word = take_word(values)) {
+      const std::optional<double> number = number_of(word);
+      if (!number) refuse("not a number", word);
+      if (count < 3) vertex_[count] = *number;
+      ++count;
+    }
+    if (count < 3) fail(path_, line_, "a vertex needs 3 numbers: '" + text_ + "'");
+  }
+
+  void check_face(std::string_view values) const {
+    int64_t count = 0;
+    for (std::string_view word = take_word(values); !word.empty(); word = take_word(values)) {
+      if (!is_corner(word)) refuse("not a number of a corner", word);
+      ++count;
+    }
+    if (count < 3) fail(path_, line_, "a face needs 3 corners: '" + text_ + "'");
+  }
+
+  [[noreturn]] void refuse(const std::string& what, std::string_view word) const {
+    fail(path_, line_, what + ": '" + std::string(word) + "' in '" + text_ + "'");
+  }
+
+  const std::string& path_;
+  std::istream& file_;
+  std::string text_;
+  Vec3 vertex_ = Vec3::Zero();
   int64_t line_ = 0;
 };
 
@@ -97,8 +131,10 @@ class ObjBuilder {
 
   static void vertex(void* self, double x, double y, double z, double) {
     auto& builder = *static_cast<ObjBuilder*>(self);
-    const Vec3 point(x, y, z);
-    if (!point.allFinite()) builder.refuse("a coordinate is out of range");
+    const Vec3 point(x, y, z), &exact = builder.lines_.vertex();
+    const bool is_near =
+        ((point - exact).cwiseAbs().array() <= kParserRounding * exact.cwiseAbs().array() + kSmallest).all();
+    if (!is_near) builder.refuse("a coordinate is out of range, or has hundreds of digits");
     builder.soup.vertices.push_back(point);
   }
 
@@ -138,28 +174,25 @@ class ObjBuilder {
   }
 
   uint32_t group_index() {
-    const std::string& name = group_.empty() ? object_ : group_;
-    if (latest_ < soup.group_names.size() && soup.group_names[latest_] == name) return latest_;
-    const auto found = std::find(soup.group_names.begin(), soup.group_names.end(), name);
-    latest_ = static_cast<uint32_t>(found - soup.group_names.begin());
-    if (found == soup.group_names.end()) soup.group_names.push_back(name);
-    return latest_;
+    const auto [entry, added] = index_of_.try_emplace(group_.empty() ? object_ : group_, soup.group_names.size());
+    if (added) soup.group_names.push_back(entry->first);
+    return static_cast<uint32_t>(entry->second);
   }
 
   const std::string& path_;
   const ObjLines& lines_;
   std::string group_, object_;
   std::vector<uint32_t> corners_;
-  uint32_t latest_ = std::numeric_limits<uint32_t>::max();
+  std::unordered_map<std::string, size_t> index_of_;  // of the groups' names
 };
 
 }  // namespace
 
-Soup read_obj(const std::string& path) {
-  ObjLines lines(path);
+Soup read_obj(std::istream& file, const std::string& name) {
+  ObjLines lines(file, name);
   std::istream stream(&lines);
   stream.exceptions(std::ios::badbit);  // an error raised in underflow must come out
-  ObjBuilder builder(path, lines);
+  ObjBuilder builder(name, lines);
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = ObjBuilder::vertex;
   callbacks.index_cb = ObjBuilder::face;

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 #include <utility>
@@ -112,8 +111,10 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
       read_property(values, element.properties[p], items);
       row[p] = items.empty() ? 0.0 : items[0];
     }
-    soup.vertices.emplace_back(row[static_cast<size_t>(axes[0])], row[static_cast<size_t>(axes[1])],
-                               row[static_cast<size_t>(axes[2])]);
+    const Vec3 point(row[static_cast<size_t>(axes[0])], row[static_cast<size_t>(axes[1])],
+                     row[static_cast<size_t>(axes[2])]);
+    if (!point.allFinite()) values.refuse("vertex " + std::to_string(i) + ": a coordinate is out of range or not a number");
+    soup.vertices.push_back(point);
   }
 }
 
@@ -149,12 +150,10 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
 
 }  // namespace
 
-Soup read_ply(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError(path + ": cannot be opened");
-  const PlyHeader header = read_ply_header(file, path);
+Soup read_ply(std::istream& file, const std::string& name) {
+  const PlyHeader header = read_ply_header(file, name);
   std::string body((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  PlyValues values(std::move(body), header.format, path, header.num_lines + 1);
+  PlyValues values(std::move(body), header.format, name, header.num_lines + 1);
   Soup soup;
   soup.group_names.emplace_back();
   for (const PlyElement& element : header.elements) {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -15,8 +16,10 @@ namespace {
 
 struct Reader {
   std::string_view extension;
-  Soup (*read)(const std::string& path);
+  Soup (*read)(std::istream& stream, const std::string& name);
 };
+constexpr double kFarthest = 1e70;  // m; areas beyond it have no double
+
 constexpr Reader kReaders[] = {{".obj", read_obj}, {".ply", read_ply}};
 
 const Reader& reader_of(const std::string& path) {
@@ -29,14 +32,27 @@ const Reader& reader_of(const std::string& path) {
   throw FileError(path + ": unknown mesh format '" + extension + "', known are " + known);
 }
 
-Soup read(const std::string& path, double unit) {
+void check_unit(double unit) {
   require(std::isfinite(unit) && unit > 0.0, "unit", "must be positive, in metres per file unit", unit);
-  const Reader& reader = reader_of(path);
-  if (std::filesystem::is_directory(path)) throw FileError(path + ": is a directory");
-  Soup soup = reader.read(path);
-  if (soup.triangles.empty()) throw FileError(path + ": has no faces");
-  for (Vec3& vertex : soup.vertices) vertex *= unit;
+}
+
+Soup read(std::istream& stream, const std::string& name, double unit) {
+  Soup soup = reader_of(name).read(stream, name);
+  if (soup.triangles.empty()) throw FileError(name + ": has no faces");
+  for (Vec3& vertex : soup.vertices) {
+    vertex *= unit;
+    if (!(vertex.cwiseAbs().maxCoeff() <= kFarthest)) throw FileError(name + ": has a vertex beyond 1e70 m");
+  }
   return soup;
+}
+
+std::ifstream opened(const std::string& path, double unit) {
+  check_unit(unit);
+  reader_of(path);  // an unknown format is told before a missing file
+  if (std::filesystem::is_directory(path)) throw FileError(path + ": is a directory");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be opened");
+  return file;
 }
 
 // Holds the triangles of one group with the vertices they use, in the order of the file.
@@ -76,23 +92,30 @@ MeshPtr mesh_of(Part part) {
 
 }  // namespace
 
-std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {
-  const Soup soup = read(path, unit);
+std::vector<NamedMesh> read_meshes(std::istream& stream, const std::string& name, double unit) {
+  check_unit(unit);
+  const Soup soup = read(stream, name, unit);
   std::vector<std::vector<uint32_t>> members(soup.group_names.size());
   for (uint32_t t = 0; t < soup.triangles.size(); ++t) members[soup.group[t]].push_back(t);
   std::vector<uint32_t> number(soup.vertices.size());
   std::vector<NamedMesh> meshes;
   for (size_t g = 0; g < members.size(); ++g) {
-    const std::string stem = std::filesystem::path(path).stem().string();
-    const std::string& name = soup.group_names[g].empty() ? stem : soup.group_names[g];
-    if (MeshPtr mesh = mesh_of(part_of(soup, members[g], number))) meshes.push_back({name, std::move(mesh)});
+    const std::string stem = std::filesystem::path(name).stem().string();
+    const std::string& group = soup.group_names[g].empty() ? stem : soup.group_names[g];
+    if (MeshPtr mesh = mesh_of(part_of(soup, members[g], number))) meshes.push_back({group, std::move(mesh)});
   }
-  if (meshes.empty()) throw FileError(path + ": has no face with an area");
+  if (meshes.empty()) throw FileError(name + ": has no face with an area");
   return meshes;
 }
 
+std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {
+  std::ifstream file = opened(path, unit);
+  return read_meshes(file, path, unit);
+}
+
 MeshPtr load_mesh(const std::string& path, double unit) {
-  Soup soup = read(path, unit);
+  std::ifstream file = opened(path, unit);
+  Soup soup = read(file, path, unit);
   MeshPtr mesh = mesh_of({std::move(soup.vertices), std::move(soup.triangles), std::move(soup.face)});
   if (!mesh) throw FileError(path + ": has no face with an area");
   return mesh;

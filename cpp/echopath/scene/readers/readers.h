@@ -1,5 +1,6 @@
 #pragma once
 // Reads mesh files in double precision.
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct NamedMesh {
 // without any area is left out. Raises FileError naming the file and, in text formats, the line; raises invalid_argument for
 // unit <= 0.
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit = 1.0);
+
+// Reads the same from a stream that is open already. `name` stands for the path: its extension tells the format, and messages
+// begin with it.
+std::vector<NamedMesh> read_meshes(std::istream& stream, const std::string& name, double unit = 1.0);
 
 // Reads all groups of a file as one mesh.
 MeshPtr load_mesh(const std::string& path, double unit = 1.0);

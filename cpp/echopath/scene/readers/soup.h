@@ -1,6 +1,7 @@
 #pragma once
 // A soup holds the content of a mesh file before it becomes meshes. Internal to the module.
 #include <cstdint>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -16,16 +17,13 @@ struct Soup {
   std::vector<std::string> group_names;  // "" where the file gives no name
   uint32_t num_faces = 0;
 
-  // Appends a polygon of three corners or more, cut into triangles; corners must be below the number of vertices.
+  // Appends a polygon of three corners or more, cut into triangles (triangulate.h); corners must be below the number of vertices.
   void add_polygon(const std::vector<uint32_t>& corners, uint32_t group_index);
 };
 
-// Cuts a simple polygon `corners` (indices into `vertices`) into triangles of the same direction: a fan where it is
-// convex, else ear by ear. A polygon that crosses itself is cut into a fan.
-std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners);
-
-// Both raise FileError naming the file, and the line where the format is text.
-Soup read_obj(const std::string& path);
-Soup read_ply(const std::string& path);
+// Both read `stream` to its end; `name` is what messages call it. Both raise FileError with that name, and the line where the
+// format is text, also for a coordinate that is not finite.
+Soup read_obj(std::istream& stream, const std::string& name);
+Soup read_ply(std::istream& stream, const std::string& name);
 
 }  // namespace echopath

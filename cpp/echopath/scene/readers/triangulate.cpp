@@ -1,7 +1,17 @@
+#include "echopath/scene/readers/triangulate.h"
+
+#include <functional>
+#include <numeric>
+#include <queue>
+
+#include "echopath/scene/readers/corner_tree.h"
 #include "echopath/scene/readers/soup.h"
 
 namespace echopath {
 namespace {
+
+// How often each corner may be looked at. A simple polygon needs three; more can only help one that touches itself.
+constexpr size_t kLooksPerCorner = 8;
 
 // Returns twice the vector area (Newell), which is normal to the mean plane.
 Vec3 polygon_normal(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners) {
@@ -14,24 +24,6 @@ Vec3 polygon_normal(const std::vector<Vec3>& vertices, const std::vector<uint32_
 }
 
 double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) { return (b - a).cross(c - b).dot(normal); }
-
-bool is_inside(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
-  return turn(a, b, p, normal) >= 0.0 && turn(b, c, p, normal) >= 0.0 && turn(c, a, p, normal) >= 0.0;
-}
-
-// Returns whether corner i of the remaining polygon can be cut off: it turns inwards and no other corner lies in its
-// triangle.
-bool is_ear(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& rest, size_t i, const Vec3& normal) {
-  const size_t n = rest.size();
-  const uint32_t before = rest[(i + n - 1) % n], here = rest[i], after = rest[(i + 1) % n];
-  const Vec3 &a = vertices[before], &b = vertices[here], &c = vertices[after];
-  if (turn(a, b, c, normal) <= 0.0) return false;
-  for (const uint32_t other : rest) {
-    const bool is_corner = other == before || other == here || other == after;
-    if (!is_corner && is_inside(vertices[other], a, b, c, normal)) return false;
-  }
-  return true;
-}
 
 bool is_convex(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners, const Vec3& normal) {
   const size_t n = corners.size();
@@ -46,29 +38,99 @@ void append_fan(const std::vector<uint32_t>& corners, std::vector<Triangle>& tri
   for (size_t i = 1; i + 1 < corners.size(); ++i) triangles.push_back({corners[0], corners[i], corners[i + 1]});
 }
 
+// Cuts ears off a polygon. Whether a corner has an ear changes only where a neighbour was cut off, so that each corner is
+// looked at when it gets a new neighbour, the first ones first.
+class EarCutter {
+ public:
+  EarCutter(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners, const Vec3& normal)
+      : vertices_(vertices), corners_(corners), normal_(normal), tree_(vertices, corners), num_left_(corners.size()),
+        before_(corners.size()), after_(corners.size()), is_left_(corners.size(), 1), waits_(corners.size(), 0),
+        looks_left_(kLooksPerCorner * corners.size()) {
+    const auto n = static_cast<uint32_t>(corners.size());
+    for (uint32_t place = 0; place < n; ++place) {
+      before_[place] = (place + n - 1) % n;
+      after_[place] = (place + 1) % n;
+    }
+  }
+
+  // Appends the ears to `triangles`; returns the corners that are left, three or those of a polygon without ears.
+  std::vector<uint32_t> cut(std::vector<Triangle>& triangles) {
+    for (size_t num_before = 0; num_before != num_left_ && num_left_ > 3 && looks_left_ > 0;) {
+      num_before = num_left_;
+      look_at_all();
+      cut_waiting(triangles);
+    }
+    std::vector<uint32_t> rest;
+    for (uint32_t place = 0; place < corners_.size(); ++place) {
+      if (is_left_[place]) rest.push_back(corners_[place]);
+    }
+    return rest;
+  }
+
+ private:
+  void look_at_all() {
+    for (uint32_t place = 0; place < corners_.size(); ++place) {
+      if (is_left_[place]) look_at(place);
+    }
+  }
+
+  void look_at(uint32_t place) {
+    if (!waits_[place]) waiting_.push(place);
+    waits_[place] = 1;
+  }
+
+  void cut_waiting(std::vector<Triangle>& triangles) {
+    for (; !waiting_.empty() && num_left_ > 3 && looks_left_ > 0; --looks_left_) {
+      const uint32_t place = waiting_.top();
+      waiting_.pop();
+      waits_[place] = 0;
+      if (!is_left_[place] || !has_ear(place)) continue;
+      triangles.push_back(ear_at(place).vertices);
+      cut_off(place);
+    }
+  }
+
+  Ear ear_at(uint32_t place) const {
+    const uint32_t before = corners_[before_[place]], here = corners_[place], after = corners_[after_[place]];
+    return {{vertices_[before], vertices_[here], vertices_[after]}, {before, here, after}, normal_};
+  }
+
+  // Returns whether the corner can be cut off: it turns inwards and no other corner lies in its triangle.
+  bool has_ear(uint32_t place) const {
+    const Ear ear = ear_at(place);
+    return turn(ear.points[0], ear.points[1], ear.points[2], normal_) > 0.0 && !tree_.has_corner_in(ear);
+  }
+
+  void cut_off(uint32_t place) {
+    const uint32_t before = before_[place], after = after_[place];
+    after_[before] = after;
+    before_[after] = before;
+    is_left_[place] = 0;
+    tree_.remove(place);
+    --num_left_;
+    look_at(before);
+    look_at(after);
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<uint32_t>& corners_;
+  Vec3 normal_;
+  CornerTree tree_;
+  size_t num_left_;
+  std::vector<uint32_t> before_, after_;  // [n] places of the neighbours
+  std::vector<uint8_t> is_left_, waits_;  // [n]
+  size_t looks_left_;
+  std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>> waiting_;  // places, the first on top
+};
+
 }  // namespace
 
 std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners) {
   std::vector<Triangle> triangles;
-  if (corners.size() > 3) {
-    const Vec3 normal = polygon_normal(vertices, corners);
-    std::vector<uint32_t> rest = corners;
-    if (!is_convex(vertices, corners, normal)) {
-      for (size_t i = 0; rest.size() > 3 && i < rest.size();) {
-        if (!is_ear(vertices, rest, i, normal)) {
-          ++i;
-          continue;
-        }
-        const size_t n = rest.size();
-        triangles.push_back({rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]});
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;
-      }
-    }
-    append_fan(rest, triangles);
-    return triangles;
-  }
-  append_fan(corners, triangles);
+  triangles.reserve(corners.size() - 2);
+  const Vec3 normal = polygon_normal(vertices, corners);
+  const bool is_fan = corners.size() == 3 || is_convex(vertices, corners, normal);
+  append_fan(is_fan ? corners : EarCutter(vertices, corners, normal).cut(triangles), triangles);
   return triangles;
 }
 

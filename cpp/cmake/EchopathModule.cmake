@@ -82,7 +82,9 @@ endfunction()
 # Of modules that compute with finite complex numbers per ray: products and quotients without the care of Annex G for
 # infinities, and square roots without errno. Nothing that reorders sums, and nothing that a program notices by linking with
 # it.
-set(echopath_finite_numbers -fcx-limited-range -fno-math-errno)
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang has it from 18 on
+set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
 # echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one
 # GoogleTest program, test_NAME.

@@ -38,8 +38,8 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
     settings: SignalSettings that give the keywords which the call leaves out, or None
     probe: a SignalProbe, filled with spot checks of this signal, or None
     progress: callable (stage, fraction) or None
-    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W). Raises TypeError or ValueError naming the argument,
-    KeyboardInterrupt on Ctrl-C.
+    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W). Warns (RuntimeWarning) of what will take over 10 s. Raises
+    TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C.
     """
     return _core.synthesize(paths, radar, tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                             phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, progress=progress,

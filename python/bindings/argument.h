@@ -169,7 +169,7 @@ struct Instance {
   static constexpr auto type_name = py::detail::make_caster<T>::name;
   static T from(py::handle value, const char* argument) {
     py::detail::make_caster<T> caster;
-    if (!value.is_none() && caster.load(value, false)) return py::detail::cast_op<T>(std::move(caster));
+    if (!value.is_none() && caster.load(value, false)) return py::detail::cast_op<T>(caster);
     detail::refuse_instance(py::type::of<typename detail::BoundClass<T>::Type>(), argument, value);
   }
 };

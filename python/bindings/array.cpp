@@ -135,7 +135,9 @@ std::vector<IndexTriple> as_triangles(py::handle value, std::string_view argumen
 Transform as_transform(py::handle value, std::string_view argument) {
   const auto array = checked_array<double>(value, argument, "[4, 4]");
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(array.data());
-  require(matrix.allFinite(), argument, "must be finite", matrix);
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    require(matrix.row(row).allFinite(), argument, "must be finite, in row " + std::to_string(row), matrix.row(row));
+  }
   require(matrix.row(3) == Eigen::RowVector4d(0, 0, 0, 1), argument, "must have the last row 0 0 0 1", matrix.row(3));
   Transform transform;
   transform.matrix() = matrix;

@@ -6,12 +6,12 @@
 #include <sstream>
 #include <string>
 
-#include "array.h"
-#include "choice.h"
+#include "argument.h"
+#include "define.h"
 #include "echopath/base/errors.h"
 #include "echopath/motion/deformation.h"
-#include "keywords.h"
 #include "leaving.h"
+#include "value.h"
 
 namespace echopath::bindings {
 namespace {
@@ -31,31 +31,44 @@ std::string description(const char* kind, const TimeSpan& span, size_t num_times
   return text.str();
 }
 
-std::shared_ptr<LinearMotion> linear_motion(const py::object& velocity, const py::object& angular_velocity,
-                                            const py::kwargs& unknown) {
-  refuse_unknown(unknown, "LinearMotion", {"velocity", "angular_velocity"});
-  return std::make_shared<LinearMotion>(as_vec3(velocity, "velocity"), as_vec3(angular_velocity, "angular_velocity"));
+std::shared_ptr<LinearMotion> linear_motion(Arg<"velocity", Vector3> velocity,
+                                            Arg<"angular_velocity", Vector3> angular_velocity) {
+  return std::make_shared<LinearMotion>(*velocity, *angular_velocity);
 }
 
-std::shared_ptr<KeyframeMotion> keyframe_motion(const py::object& times, const py::object& translations,
-                                                const py::object& rotations, const std::string& interpolation,
-                                                const py::kwargs& unknown) {
-  refuse_unknown(unknown, "KeyframeMotion", {"times", "translations", "rotations", "interpolation"});
-  return std::make_shared<KeyframeMotion>(
-      as_vector<double>(times, "times"),
-      translations.is_none() ? std::vector<Vec3>{} : as_points(translations, "translations"),
-      rotations.is_none() ? std::vector<Quaternion>{} : as_quaternions(rotations, "rotations"),
-      kInterpolation.value_of(interpolation));
+std::shared_ptr<KeyframeMotion> keyframe_motion(Arg<"times", VectorOf<double>> times,
+                                                Arg<"translations", Optional<Points>> translations,
+                                                Arg<"rotations", Optional<UnitQuaternions>> rotations,
+                                                Arg<"interpolation", OneOf<kInterpolation>> interpolation) {
+  return std::make_shared<KeyframeMotion>(*times, translations->value_or(std::vector<Vec3>{}),
+                                          rotations->value_or(std::vector<Quaternion>{}), *interpolation);
 }
 
-std::shared_ptr<VertexSequence> vertex_sequence(const py::object& times, const py::object& vertices,
-                                                const std::string& interpolation, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "VertexSequence", {"times", "vertices", "interpolation"});
-  std::vector<double> seconds = as_vector<double>(times, "times");
-  std::vector<std::vector<Vec3>> frames = as_frames(vertices, "vertices");
-  const Interpolation kind = kInterpolation.value_of(interpolation);
+std::shared_ptr<VertexSequence> vertex_sequence(Arg<"times", VectorOf<double>> times, Arg<"vertices", Frames> vertices,
+                                                Arg<"interpolation", OneOf<kInterpolation>> interpolation) {
   const WithoutGil released;
-  return std::make_shared<VertexSequence>(std::move(seconds), std::move(frames), kind);
+  return std::make_shared<VertexSequence>(*times, *vertices, *interpolation);
+}
+
+py::dict keywords_of(const LinearMotion& self) {
+  return py::dict(py::arg("velocity") = to_numpy(self.velocity()),
+                  py::arg("angular_velocity") = to_numpy(self.angular_velocity()));
+}
+
+template <class Values>
+py::object or_none(const Values& values) {
+  return values.empty() ? py::object(py::none()) : py::object(to_numpy(values));
+}
+
+py::dict keywords_of(const KeyframeMotion& self) {
+  return py::dict(py::arg("times") = to_numpy(self.times()), py::arg("translations") = or_none(self.translations()),
+                  py::arg("rotations") = or_none(self.rotations()),
+                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()));
+}
+
+py::dict keywords_of(const VertexSequence& self) {
+  return py::dict(py::arg("times") = to_numpy(self.times()), py::arg("vertices") = to_numpy(self.vertices()),
+                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()));
 }
 
 constexpr const char* kTurnRateDoc = R"(Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
@@ -64,31 +77,37 @@ That of its angular speed or, where it goes to and fro between samples, pi by th
 next: the larger. 0: it goes straight on.)";
 
 template <class Moving>
-double turn_rate_of(const Moving& self, double begin, double end) {
-  return self.turn_rate({begin, end});
+double turn_rate_of(const Moving& self, Arg<"begin", Real> begin, Arg<"end", Real> end) {
+  return self.turn_rate({*begin, *end});
+}
+
+template <class Moving>
+py::array_t<double> at(const Moving& self, Arg<"time", Real> time) {
+  return to_numpy(self.at(*time));
 }
 
 void bind_motions(py::module_& m) {
-  py::class_<Motion, std::shared_ptr<Motion>>(
-      m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.")
-      .def(
-          "at", [](const Motion& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
-          "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.")
-      .def_property_readonly(
+  py::class_<Motion, std::shared_ptr<Motion>> type(
+      m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.");
+  define(type, "at", &at<Motion>, py::arg("time"),
+         "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.");
+  define(type, "turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
+  type.def_property_readonly(
           "breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
           "Times [N] in s, ascending, where the motion is not smooth.")
       .def_property_readonly(
           "span", [](const Motion& self) { return as_tuple(self.span()); },
-          "(begin, end) in s of the times it is defined on; infinite where unlimited.")
-      .def("turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
+          "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+}
 
-  py::class_<LinearMotion, Motion, std::shared_ptr<LinearMotion>>(m, "LinearMotion", R"(Constant velocity and rotation.
+void bind_linear(py::module_& m) {
+  py::class_<LinearMotion, Motion, std::shared_ptr<LinearMotion>> type(m, "LinearMotion", R"(Constant velocity and rotation.
 
 velocity: [3] in m/s
 angular_velocity: [3] in rad/s, right-handed about its own direction
-Raises ValueError for values that are not finite.)")
-      .def(py::init(&linear_motion), py::arg("velocity") = py::make_tuple(0.0, 0.0, 0.0),
-           py::arg("angular_velocity") = py::make_tuple(0.0, 0.0, 0.0))
+Raises TypeError or ValueError naming the argument.)");
+  define_init(type, &linear_motion, py::arg("velocity") = py::make_tuple(0.0, 0.0, 0.0),
+              py::arg("angular_velocity") = py::make_tuple(0.0, 0.0, 0.0))
       .def_property_readonly(
           "velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
       .def_property_readonly(
@@ -100,18 +119,20 @@ Raises ValueError for values that are not finite.)")
              << ", " << w.y() << ", " << w.z() << ") rad/s)";
         return text.str();
       });
+  define_value<LinearMotion>(type, &keywords_of);
+  define_replace<LinearMotion>(type, &keywords_of);
 }
 
 void bind_keyframes(py::module_& m) {
-  py::class_<KeyframeMotion, Motion, std::shared_ptr<KeyframeMotion>>(m, "KeyframeMotion", R"(Motion through keys.
+  py::class_<KeyframeMotion, Motion, std::shared_ptr<KeyframeMotion>> type(m, "KeyframeMotion", R"(Motion through keys.
 
 times: [T] in s, ascending, T >= 2
 translations: [T, 3] in m, or None for none
 rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
 interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; each inner time is a breakpoint)
-Between two keys a rotation goes the shorter way. Raises ValueError naming the argument.)")
-      .def(py::init(&keyframe_motion), py::arg("times"), py::arg("translations") = py::none(),
-           py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
+Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.)");
+  define_init(type, &keyframe_motion, py::arg("times"), py::arg("translations") = py::none(),
+              py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
       .def_property_readonly(
           "times", [](const KeyframeMotion& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly(
@@ -126,33 +147,34 @@ Between two keys a rotation goes the shorter way. Raises ValueError naming the a
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
       });
+  define_value<KeyframeMotion>(type, &keywords_of);
+  define_replace<KeyframeMotion>(type, &keywords_of);
 }
 
 void bind_deformation(py::module_& m) {
-  py::class_<Deformation, std::shared_ptr<Deformation>>(
-      m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.")
-      .def(
-          "at", [](const Deformation& self, double time) { return to_numpy(self.at(time)); }, py::arg("time"),
-          "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.")
-      .def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
+  py::class_<Deformation, std::shared_ptr<Deformation>> type(
+      m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.");
+  define(type, "at", &at<Deformation>, py::arg("time"),
+         "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.");
+  define(type, "turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
+  type.def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
       .def_property_readonly(
           "breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
           "Times [N] in s, ascending, where it is not smooth.")
       .def_property_readonly(
           "span", [](const Deformation& self) { return as_tuple(self.span()); },
-          "(begin, end) in s of the times it is defined on; infinite where unlimited.")
-      .def("turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
+          "(begin, end) in s of the times it is defined on; infinite where unlimited.");
 }
 
 void bind_sequence(py::module_& m) {
-  py::class_<VertexSequence, Deformation, std::shared_ptr<VertexSequence>>(m, "VertexSequence",
-                                                                           R"(Deforming mesh: time -> vertices.
+  py::class_<VertexSequence, Deformation, std::shared_ptr<VertexSequence>> type(m, "VertexSequence",
+                                                                                R"(Deforming mesh: time -> vertices.
 
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
 interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
-Raises ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)")
-      .def(py::init(&vertex_sequence), py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
+Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)");
+  define_init(type, &vertex_sequence, py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
       .def_property_readonly(
           "times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly(
@@ -164,12 +186,15 @@ Raises ValueError naming the argument. Cubic sequences take twice the memory of 
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";
         return kind + description("", self.span(), self.times().size(), self.interpolation()).substr(1);
       });
+  define_value<VertexSequence>(type, &keywords_of);
+  define_replace<VertexSequence>(type, &keywords_of);
 }
 
 }  // namespace
 
 void bind_motion(py::module_& m) {
   bind_motions(m);
+  bind_linear(m);
   bind_keyframes(m);
   bind_deformation(m);
   bind_sequence(m);

@@ -15,6 +15,7 @@
 #include "echopath/radar/radar.h"
 #include "in_package.h"
 #include "keywords.h"
+#include "value.h"
 
 namespace echopath::bindings {
 namespace {
@@ -57,20 +58,20 @@ AntennaPattern cosine_power(Arg<"exponent", Real> exponent, Arg<"peak_gain", Opt
   return AntennaPattern::cosine_power(*exponent, peak_gain->value_or(0.0));
 }
 
-AntennaPattern gain_table(const py::object& azimuth, const py::object& elevation, const py::object& gain,
-                          const py::object& phase, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "GainTable", {"azimuth", "elevation", "gain", "phase"});
-  std::vector<double> phases;
-  if (!phase.is_none()) phases = as_vector<double>(phase, "phase", "[E, A]");
-  const auto gains = checked_array<double>(gain, "gain", "[E, A]");
-  const std::vector<double> columns = as_vector<double>(azimuth, "azimuth", "[A]");
-  const std::vector<double> rows = as_vector<double>(elevation, "elevation", "[E]");
-  const bool fits =
-      gains.shape(0) == static_cast<py::ssize_t>(rows.size()) && gains.shape(1) == static_cast<py::ssize_t>(columns.size());
-  require(fits, "gain", "must have a row for each elevation and a column for each azimuth",
-          std::to_string(gains.shape(0)) + " x " + std::to_string(gains.shape(1)));
-  const std::vector<double> samples(gains.data(), gains.data() + gains.size());
-  return AntennaPattern::of_table(GainTable(columns, rows, samples, phases));
+AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevation", VectorOf<double>> elevation,
+                          Arg<"gain", Array<double, "[E, A]">> gain, Arg<"phase", Optional<Array<double, "[E, A]">>> phase,
+                          Arg<"normalize", Flag> normalize) {
+  const auto samples = [&](const py::array_t<double>& given, const char* argument) {
+    const bool fits = given.shape(0) == static_cast<py::ssize_t>(elevation->size()) &&
+                      given.shape(1) == static_cast<py::ssize_t>(azimuth->size());
+    require(fits, argument, "must have a row for each elevation and a column for each azimuth",
+            std::to_string(given.shape(0)) + " x " + std::to_string(given.shape(1)));
+    return std::vector<double>(given.data(), given.data() + given.size());
+  };
+  const std::vector<double> gains = samples(*gain, "gain");
+  const std::vector<double> phases = *phase ? samples(**phase, "phase") : std::vector<double>{};
+  return AntennaPattern::of_table(GainTable(*azimuth, *elevation, gains, phases,
+                                            *normalize ? GainTable::Scale::kMeanOfOne : GainTable::Scale::kAsGiven));
 }
 
 Antenna antenna(const py::object& position, const py::object& orientation, const std::optional<AntennaPattern>& pattern,
@@ -112,15 +113,45 @@ py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& 
                     {static_cast<py::ssize_t>(table.elevation().size()), static_cast<py::ssize_t>(table.azimuth().size())});
 }
 
-py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, const py::object& directions) {
+double gain_of(const AntennaPattern& pattern, Arg<"cos_boresight", Real> cos_boresight) {
+  return pattern.gain(*cos_boresight);
+}
+
+py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, Arg<"directions", Points> directions) {
   std::vector<std::complex<double>> field;
-  for (const Vec3& direction : as_points(directions, "directions")) {
+  for (const Vec3& direction : *directions) {
     const double norm = direction.norm();
     require(std::abs(norm - 1.0) <= kUnitTolerance, "directions", "must have norm 1 within 1e-6", norm);
     const AntennaGain gain = pattern.toward(direction);
     field.push_back(std::polar(std::sqrt(gain.power), gain.phase));
   }
   return numpy_take(std::move(field));
+}
+
+py::dict keywords_of(const ChirpSequence& w) {
+  return py::dict(py::arg("start_frequency") = w.start_frequency, py::arg("bandwidth") = w.bandwidth,
+                  py::arg("num_samples") = w.num_samples, py::arg("sampling_rate") = w.sampling_rate,
+                  py::arg("num_chirps") = w.num_chirps, py::arg("chirp_interval") = w.chirp_interval,
+                  py::arg("real") = w.real);
+}
+
+py::dict keywords_of(const AntennaPattern& pattern) {
+  if (pattern.kind == AntennaPattern::Kind::kIsotropic) return py::dict(py::arg("gain") = pattern.peak_gain);
+  if (!pattern.table) {
+    return py::dict(py::arg("exponent") = pattern.exponent, py::arg("peak_gain") = pattern.peak_gain);
+  }
+  return py::dict(py::arg("azimuth") = axis_of(pattern, &GainTable::azimuth),
+                  py::arg("elevation") = axis_of(pattern, &GainTable::elevation),
+                  py::arg("gain") = samples_of(pattern, &GainTable::gain),
+                  py::arg("phase") = samples_of(pattern, &GainTable::phase));
+}
+
+// The function that makes the pattern with those keywords.
+py::object maker_of_pattern(const py::dict& keywords) {
+  const char* name = keywords.contains("azimuth")    ? "GainTable"
+                     : keywords.contains("exponent") ? "CosinePower"
+                                                     : "Isotropic";
+  return py::module_::import("echopath._core").attr(name);
 }
 
 std::string text_of(const ChirpSequence& w) {
@@ -192,17 +223,22 @@ Raises TypeError or ValueError naming the argument.)");
          "m/s, when `num_slots` transmitters take turns");
   define(type, "max_velocity", &max_velocity, py::arg("num_slots") = 1,
          "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns");
+  define_value<ChirpSequence>(type, &keywords_of);
+  define_replace<ChirpSequence>(type, &keywords_of);
 }
 
 void bind_antenna(py::module_& m) {
-  py::class_<AntennaPattern>(m, "AntennaPattern", "Power gain over direction; made by Isotropic, CosinePower or GainTable.")
-      .def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
+  py::class_<AntennaPattern> type(m, "AntennaPattern",
+                                  "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
+  define(type, "gain", &gain_of, py::arg("cos_boresight"),
+         "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.");
+  define(type, "field", &field_of, py::arg("directions"),
+         "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.");
+  define_value<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
+  define_replace<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
+  type.def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
       .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear; of a table its largest sample")
       .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")
-      .def("gain", &AntennaPattern::gain, py::arg("cos_boresight"),
-           "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.")
-      .def("field", &field_of, py::arg("directions"),
-           "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.")
       .def_property_readonly("efficiency", &AntennaPattern::efficiency,
                              "integral of the gain over the sphere / 4 pi; at most 1 for a power gain")
       .def_property_readonly(
@@ -224,18 +260,21 @@ void bind_antenna(py::module_& m) {
          "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
          "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)\n"
          "Raises ValueError naming the argument.");
-  m.def("GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
-        py::arg("phase") = py::none(), R"(Gain sampled over direction; there is none outside the table.
+  define(m, "GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
+         py::arg("phase") = py::none(), py::arg("normalize") = false,
+         R"(Gain sampled over direction; there is none outside the table.
 
 azimuth: [A] rad, ascending, about z from the boresight +x to the left, over at most a turn
 elevation: [E] rad, ascending, from the xy-plane, in [-pi/2, pi/2]
 gain: [E, A] linear power gain
 phase: [E, A] rad of the far field (e^{+jwt}) relative to the antenna's position, or None: 0 everywhere. It turns the
     amplitudes of paths by e^{j phase}, in transmission and in reception.
+normalize: True scales the gain to a mean of 1 over the sphere, that of an antenna without losses, as for tables whose level
+    is unknown; False takes the gain as it is
 The field sqrt(gain) e^{j phase} is interpolated by bicubics; phases of neighbours should differ by less than 1 rad.
 Azimuths that cover the whole turn up to one step are closed to a ring.
-Returns an AntennaPattern. Raises ValueError naming the argument, also when the integral of the gain over the sphere is
-more than 1.02 times 4 pi.)");
+Returns an AntennaPattern. Raises TypeError or ValueError naming the argument, also where the mean gain over the sphere is more
+than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.)");
 
   py::class_<Antenna>(m, "Antenna", R"(One element of a radar.
 

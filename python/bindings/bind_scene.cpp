@@ -10,51 +10,38 @@
 #include <utility>
 #include <vector>
 
-#include "array.h"
+#include "argument.h"
+#include "define.h"
 #include "echopath/em/material.h"
 #include "echopath/scene/readers/readers.h"
-#include "keywords.h"
 #include "leaving.h"
 #include "shared.h"
+#include "value.h"
 
 namespace echopath::bindings {
 namespace {
 
-double as_number(const py::object& value, const char* argument) {
-  return *checked_array<double>(value, argument, "[]").data();
-}
-
-bool as_bool(const py::object& value, const char* argument) { return *checked_array<bool>(value, argument, "[]").data(); }
-
-std::optional<double> as_optional_number(const py::object& value, const char* argument) {
-  return value.is_none() ? std::nullopt : std::optional<double>(as_number(value, argument));
-}
-
 // --- Material ---
 
-const std::vector<std::string> kMaterialFields = {"conductor",        "permittivity", "conductivity",       "reflectivity",
-                                                  "roughness_height", "scattering",   "cross_polarization", "mirror"};
-
-std::shared_ptr<Material> material(const py::object& conductor, const py::object& permittivity,
-                                   const py::object& conductivity, const py::object& reflectivity,
-                                   const py::object& roughness_height, const py::object& scattering,
-                                   const py::object& cross_polarization, const py::object& mirror,
-                                   const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Material", kMaterialFields);
+std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permittivity", Optional<Complex>> permittivity,
+                                   Arg<"conductivity", Real> conductivity, Arg<"reflectivity", Optional<Real>> reflectivity,
+                                   Arg<"roughness_height", Real> roughness_height,
+                                   Arg<"scattering", Optional<Real>> scattering,
+                                   Arg<"cross_polarization", Real> cross_polarization, Arg<"mirror", Flag> mirror) {
   auto made = std::make_shared<Material>();
-  made->conductor = as_bool(conductor, "conductor");
-  if (!permittivity.is_none()) {
-    made->permittivity = *checked_array<std::complex<double>>(permittivity, "permittivity", "[]").data();
-  }
-  made->conductivity = as_number(conductivity, "conductivity");
-  made->reflectivity = as_optional_number(reflectivity, "reflectivity");
-  made->roughness_height = as_number(roughness_height, "roughness_height");
-  made->scattering = as_optional_number(scattering, "scattering");
-  made->cross_polarization = as_number(cross_polarization, "cross_polarization");
-  made->mirror = as_bool(mirror, "mirror");
+  made->conductor = *conductor;
+  made->permittivity = *permittivity;
+  made->conductivity = *conductivity;
+  made->reflectivity = *reflectivity;
+  made->roughness_height = *roughness_height;
+  made->scattering = *scattering;
+  made->cross_polarization = *cross_polarization;
+  made->mirror = *mirror;
   made->validate();
   return made;
 }
+
+std::shared_ptr<Material> metal(Arg<"mirror", Flag> mirror) { return std::make_shared<Material>(Material::metal(*mirror)); }
 
 py::dict fields_of(const Material& self) {
   py::dict fields;
@@ -69,12 +56,6 @@ py::dict fields_of(const Material& self) {
   return fields;
 }
 
-py::object replaced(const Material& self, const py::kwargs& changes) {
-  py::dict fields = fields_of(self);
-  for (const auto& [name, value] : changes) fields[name] = value;
-  return py::type::of<Material>()(**fields);
-}
-
 std::string material_text(const Material& self) {
   const py::dict fields = fields_of(self), defaults = fields_of(Material{});
   std::string text;
@@ -86,7 +67,7 @@ std::string material_text(const Material& self) {
 }
 
 void bind_material(py::module_& m) {
-  py::class_<Material, std::shared_ptr<Material>>(m, "Material", R"(What a surface does to a wave. Cannot be changed.
+  py::class_<Material, std::shared_ptr<Material>> type(m, "Material", R"(What a surface does to a wave. Cannot be changed.
 
 Exactly one of
 conductor: True for a perfect conductor
@@ -98,14 +79,10 @@ roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is th
 cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cross polarisation (polarised traces); 0.5 is
 full depolarisation, the most a reciprocal surface without a preferred axis does
 mirror: True for a plane larger than its Fresnel zone, which is treated by images
-Raises ValueError naming the field, the rule and the value.)")
-      .def(py::init(&material), py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
-           py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
-           py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false)
-      .def_static(
-          "metal", [](bool mirror) { return std::make_shared<Material>(Material::metal(mirror)); },
-          py::arg("mirror") = false, "A perfect conductor; mirror: a plane larger than its Fresnel zone.")
-      .def("replace", &replaced, "A copy with some fields changed: material.replace(mirror=True).")
+Raises TypeError or ValueError naming the field, the rule and the value.)");
+  define_init(type, &material, py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
+              py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
+              py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false)
       .def_readonly("conductor", &Material::conductor, "bool")
       .def_readonly("permittivity", &Material::permittivity, "complex, relative, or None")
       .def_readonly("conductivity", &Material::conductivity, "S/m")
@@ -114,25 +91,19 @@ Raises ValueError naming the field, the rule and the value.)")
       .def_readonly("scattering", &Material::scattering, "S in [0, 1], or None")
       .def_readonly("cross_polarization", &Material::cross_polarization, "K in [0, 0.5]")
       .def_readonly("mirror", &Material::mirror, "bool")
-      .def("__eq__",
-           [](const Material& self, const py::object& other) {
-             return py::isinstance<Material>(other) && fields_of(self).equal(fields_of(other.cast<const Material&>()));
-           })
-      .def("__hash__", [](const Material& self) { return py::hash(py::tuple(fields_of(self).attr("values")())); })
       .def("__repr__", &material_text);
+  define_static(type, "metal", &metal, py::arg("mirror") = false,
+                "A perfect conductor; mirror: a plane larger than its Fresnel zone.");
+  define_value<Material>(type, &fields_of);
+  define_replace<Material>(type, &fields_of);
 }
 
 // --- Mesh ---
 
-std::shared_ptr<Mesh> mesh(const py::object& vertices, const py::object& triangles, const py::object& original_triangle,
-                           const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Mesh", {"vertices", "triangles", "original_triangle"});
-  std::vector<Vec3> points = as_points(vertices, "vertices");
-  std::vector<Triangle> corners = as_triangles(triangles, "triangles");
-  std::vector<uint32_t> source;
-  if (!original_triangle.is_none()) source = as_vector<uint32_t>(original_triangle, "original_triangle");
+std::shared_ptr<Mesh> mesh(Arg<"vertices", Points> vertices, Arg<"triangles", Triangles> triangles,
+                           Arg<"original_triangle", Optional<VectorOf<uint32_t>>> original_triangle) {
   const WithoutGil released;
-  return std::make_shared<Mesh>(std::move(points), std::move(corners), std::move(source));
+  return std::make_shared<Mesh>(*vertices, *triangles, original_triangle->value_or(std::vector<uint32_t>{}));
 }
 
 std::string mesh_text(const Mesh& self) {
@@ -162,16 +133,47 @@ std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::objec
   return shared(Mesh::part(self, std::move(taken)));
 }
 
+// What makes the mesh again: the input, as far as it was kept. The same repair then gives the same vertices and triangles,
+// and triangles without an area at the end stand for those that were removed.
+py::dict keywords_of_whole(const Mesh& self) {
+  const auto num_kept = static_cast<py::ssize_t>(self.triangles().size());
+  std::vector<Vec3> vertices(static_cast<size_t>(self.num_input_vertices()), Vec3::Zero());
+  for (size_t v = 0; v < self.vertices().size(); ++v) vertices[self.original_vertex()[v]] = self.vertices()[v];
+  std::vector<Triangle> triangles(static_cast<size_t>(num_kept + self.num_removed_triangles()), Triangle{0, 0, 0});
+  std::vector<uint32_t> original(triangles.size(), 0);
+  for (size_t t = 0; t < self.triangles().size(); ++t) {
+    for (size_t k = 0; k < 3; ++k) triangles[t][k] = self.original_vertex()[self.triangles()[t][k]];
+    original[t] = self.original_triangle()[t];
+  }
+  return py::dict(py::arg("vertices") = to_numpy(vertices), py::arg("triangles") = to_numpy(triangles),
+                  py::arg("original_triangle") = to_numpy(original));
+}
+
+py::dict keywords_of(const Mesh& self) {
+  if (!self.whole()) return keywords_of_whole(self);
+  return py::dict(py::arg("whole") = shared(self.whole()), py::arg("triangles") = to_numpy(self.whole_triangle()));
+}
+
+py::object maker_of_mesh(const py::dict& keywords) {
+  const py::object type = py::type::of<Mesh>();
+  return keywords.contains("whole") ? py::object(type.attr("_part_of")) : type;
+}
+
+std::shared_ptr<Mesh> part_of_whole(Arg<"whole", Instance<std::shared_ptr<Mesh>>> whole, const py::object& triangles) {
+  return part_of(*whole, triangles);
+}
+
 void bind_mesh(py::module_& m) {
-  py::class_<Mesh, std::shared_ptr<Mesh>>(m, "Mesh", R"(One labelled surface. Cannot be changed; its arrays are views.
+  py::class_<Mesh, std::shared_ptr<Mesh>> type(m, "Mesh", R"(One labelled surface. Cannot be changed; its arrays are views.
 
 vertices: [V, 3] in m
 triangles: [F, 3] indices of vertices
 original_triangle: [F] integers, what `.original_triangle` shall name instead of the rows of `triangles`
 No face is lost except those without area, which are counted in `num_removed_triangles`. Sheets that meet in a
 non-manifold edge or vertex get vertices of their own there, appended to `vertices`. Vertices that no face uses are left
-out. Raises ValueError for indices out of range and where no face has an area.)")
-      .def(py::init(&mesh), py::arg("vertices"), py::arg("triangles"), py::arg("original_triangle") = py::none())
+out. Raises TypeError or ValueError naming the argument, also for indices out of range, for a vertex of a face that is not
+finite, and where no face has an area.)");
+  define_init(type, &mesh, py::arg("vertices"), py::arg("triangles"), py::arg("original_triangle") = py::none())
       .def_property_readonly("vertices", view_of(&Mesh::vertices), "[V, 3] in m")
       .def_property_readonly("triangles", view_of(&Mesh::triangles), "[F, 3] indices of vertices")
       .def_property_readonly("original_triangle", view_of(&Mesh::original_triangle), "[F] face of the input or file")
@@ -185,12 +187,14 @@ out. Raises ValueError for indices out of range and where no face has an area.)"
           "whole", [](const Mesh& self) { return shared(self.whole()); },
           "the Mesh that this is a part of, None for a whole")
       .def_property_readonly("whole_triangle", view_of(&Mesh::whole_triangle), "[F] triangle of `whole`, [0] for a whole")
-      .def("part", &part_of, py::arg("triangles"), R"(Some triangles as a mesh of their own, to be labelled.
+      .def("__repr__", &mesh_text);
+  define(type, "part", &part_of, py::arg("triangles"), R"(Some triangles as a mesh of their own, to be labelled.
 
 triangles: [N] indices of triangles, or a mask [F] of bool
 Returns a Mesh of these in their order. A smooth surface keeps its vertex normals across the cut, and a deformation of the
-whole deforms each part. Raises ValueError for none or one out of range.)")
-      .def("__repr__", &mesh_text);
+whole deforms each part. Raises ValueError for none or one out of range.)");
+  define_static(type, "_part_of", &part_of_whole, py::arg("whole"), py::arg("triangles"));
+  define_value<Mesh>(type, &keywords_of, &maker_of_mesh);
 }
 
 py::list meshes_of_file(const std::filesystem::path& path, double unit) {

@@ -56,7 +56,7 @@ std::string complaint(const std::vector<Parameter>& parameters, const py::args& 
 }
 
 PyCFunctionObject* function_of(py::handle scope, const char* name) {
-  py::object bound = scope.attr("__dict__")[name];
+  py::object bound = py::getattr(scope, name);
   if (PyInstanceMethod_Check(bound.ptr()))
     bound = py::reinterpret_borrow<py::object>(PyInstanceMethod_GET_FUNCTION(bound.ptr()));
   return reinterpret_cast<PyCFunctionObject*>(bound.ptr());
@@ -64,7 +64,7 @@ PyCFunctionObject* function_of(py::handle scope, const char* name) {
 
 }  // namespace
 
-void define_refusal(py::handle scope, const char* name, const Parameters& parameters, bool is_method) {
+void define_refusal(py::handle scope, const char* name, const Parameters& parameters, Bound bound) {
   PyCFunctionObject* function = function_of(scope, name);
   const std::string doc = function->m_ml->ml_doc ? function->m_ml->ml_doc : "";
   const bool is_init = std::strcmp(name, "__init__") == 0;
@@ -80,7 +80,7 @@ void define_refusal(py::handle scope, const char* name, const Parameters& parame
     py::cpp_function([refuse](py::detail::value_and_holder&, const py::args& values,
                               const py::kwargs& keywords) { refuse(values, keywords); },
                      named, py::is_method(scope), first, py::detail::is_new_style_constructor());
-  } else if (is_method) {
+  } else if (bound == Bound::kMethod) {
     py::cpp_function(
         [refuse](const py::object&, const py::args& values, const py::kwargs& keywords) { refuse(values, keywords); }, named,
         py::is_method(scope), first);

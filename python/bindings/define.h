@@ -54,7 +54,8 @@ consteval bool all_checked(Return (*)(Arguments...)) {
 }
 
 // Binds what `name` of `scope` answers where the arguments do not fit: an error. help() keeps showing the one signature.
-void define_refusal(py::handle scope, const char* name, const Parameters& parameters, bool is_method);
+enum class Bound { kFunction, kMethod, kStatic };
+void define_refusal(py::handle scope, const char* name, const Parameters& parameters, Bound bound);
 
 }  // namespace detail
 
@@ -65,8 +66,18 @@ Scope& define(Scope& scope, const char* name, Function&& function, const Extra&.
   using Signature = py::detail::function_signature_t<Function>;
   static_assert(detail::all_checked<is_method ? 1 : 0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   scope.def(name, std::forward<Function>(function), extra...);
-  detail::define_refusal(scope, name, detail::Parameters(extra...), is_method);
+  detail::define_refusal(scope, name, detail::Parameters(extra...),
+                         is_method ? detail::Bound::kMethod : detail::Bound::kFunction);
   return scope;
+}
+
+template <class Class, class Function, class... Extra>
+Class& define_static(Class& type, const char* name, Function&& function, const Extra&... extra) {
+  using Signature = py::detail::function_signature_t<Function>;
+  static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
+  type.def_static(name, std::forward<Function>(function), extra...);
+  detail::define_refusal(type, name, detail::Parameters(extra...), detail::Bound::kStatic);
+  return type;
 }
 
 // make: a function that returns the new object
@@ -75,7 +86,7 @@ Class& define_init(Class& type, Make make, const Extra&... extra) {
   using Signature = py::detail::function_signature_t<Make>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   type.def(py::init(make), extra...);
-  detail::define_refusal(type, "__init__", detail::Parameters(extra...), true);
+  detail::define_refusal(type, "__init__", detail::Parameters(extra...), detail::Bound::kMethod);
   return type;
 }
 

@@ -61,8 +61,15 @@ def test_other_patterns_have_no_table():
 
 
 def test_more_gain_than_the_sphere_has_is_an_error():
-    with pytest.raises(ValueError, match="^gain: .*1.02 times 4 pi"):
+    with pytest.raises(ValueError, match=r"^gain: must have a mean over the sphere of at most 1.02 \(0.09 dB\).*"
+                                         r"normalize=True.*, got a mean of 1\.1\d* \(0\.41\d* dB\)"):
         ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=1.1 * cosine4(grid()))
+
+
+def test_normalized_tables_have_a_mean_of_one():
+    pattern = ep.GainTable(azimuth=AZIMUTH, elevation=ELEVATION, gain=123.0 * cosine4(grid()), normalize=True)
+    assert pattern.efficiency == pytest.approx(1.0, abs=1e-12)
+    assert pattern.peak_gain == pytest.approx(10.0, rel=2e-3)  # of cos^4: 2 (4 + 1)
 
 
 def test_shapes_are_checked():
@@ -97,7 +104,7 @@ def test_file_means_what_its_units_say(tmp_path):
     (lambda text: text.replace("0,5,0.1", "0,-5,0.1"), "line 5: direction (0, -5) deg stands already in line 4"),
     (lambda text: text.rsplit("\n", 1)[0], "direction (20, 5) deg is missing"),
     (lambda text: text.splitlines()[0] + "".join(f"\n{a},{e},3.1,0" for a in (-90, 90, 270) for e in (-90, 0, 90)),
-     "gain: must have an integral"),
+     "gain: must have a mean over the sphere"),
 ])
 def test_what_is_wrong_with_a_file_is_named_with_its_line(tmp_path, change, complaint):
     assert complaint in fault_of(tmp_path, change(FILE))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "echopath/base/constants.h"
@@ -27,6 +28,14 @@ void require_samples(const std::vector<double>& values, size_t count, const std:
   require(values.size() == count, name, "must have a value for each elevation and azimuth, " + std::to_string(count),
           values.size());
   for (const double value : values) require(std::isfinite(value), name, "must be finite", value);
+}
+
+// "a mean of 1.2 (0.79 dB)"
+std::string in_words(double mean) {
+  std::ostringstream text;
+  text.precision(4);
+  text << "a mean of " << mean << " (" << 10.0 * std::log10(mean) << " dB)";
+  return text.str();
 }
 
 // Computes cubic Hermite weights at x between at[1] and at[2]. Slopes come from parabolas through three samples; at an end
@@ -59,7 +68,7 @@ void set_weights(const double at[4], bool has_before, bool has_behind, double x,
 }  // namespace
 
 GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
-                     std::vector<double> phase)
+                     std::vector<double> phase, Scale scale)
     : azimuth_(std::move(azimuth)), elevation_(std::move(elevation)), gain_(std::move(gain)), phase_(std::move(phase)) {
   require_axis(azimuth_, "azimuth");
   require_axis(elevation_, "elevation");
@@ -74,15 +83,29 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
   for (const double value : gain_) require(value >= 0.0, "gain", "must not be negative", value);
   require(peak_gain() > 0.0, "gain", "must not be 0 everywhere", peak_gain());
 
-  const double least = kNothing * peak_gain();
-  for (size_t i = 0; i < count; ++i) {
-    field_.push_back(std::polar(gain_[i] < least ? 0.0 : std::sqrt(gain_[i]), phase_.empty() ? 0.0 : phase_[i]));
-  }
+  set_field();
   close_ring();
   efficiency_ = integrate();
-  require(efficiency_ <= kMaxEfficiency, "gain", "must have an integral over the sphere of at most 1.02 times 4 pi",
-          efficiency_);
+  if (scale == Scale::kMeanOfOne) {
+    require(std::isfinite(efficiency_) && efficiency_ > 0.0, "gain",
+            "must have a mean over the sphere that a double can hold", efficiency_);
+    for (double& value : gain_) value /= efficiency_;
+    set_field();
+    efficiency_ = integrate();
+  }
+  require(efficiency_ <= kMaxEfficiency, "gain",
+          "must have a mean over the sphere of at most 1.02 (0.09 dB), as no antenna radiates more power than it is fed; "
+          "normalize=True scales it to a mean of 1",
+          in_words(efficiency_));
   dark_behind_ = all_cells_in_front();
+}
+
+void GainTable::set_field() {
+  const double least = kNothing * peak_gain();
+  field_.clear();
+  for (size_t i = 0; i < gain_.size(); ++i) {
+    field_.push_back(std::polar(gain_[i] < least ? 0.0 : std::sqrt(gain_[i]), phase_.empty() ? 0.0 : phase_[i]));
+  }
 }
 
 double GainTable::peak_gain() const { return *std::max_element(gain_.begin(), gain_.end()); }

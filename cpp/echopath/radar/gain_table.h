@@ -21,12 +21,13 @@ class GainTable {
   // gain [E, A] linear power gain, >= 0 and not all 0
   // phase [E, A] rad or empty: of the far field in the e^{+jwt} convention, relative to the antenna's position (an
   //   element that sits at d instead has +k d.u toward u)
-  // Raises invalid_argument naming the argument, also when the integral of the gain over the sphere exceeds 1.02 times
-  // 4 pi.
+  // kMeanOfOne: scales the gain to a mean of 1 over the sphere, that of an antenna without losses
+  // Raises invalid_argument naming the argument, also when the mean gain over the sphere exceeds 1.02.
+  enum class Scale { kAsGiven, kMeanOfOne };
   GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
-            std::vector<double> phase = {});
+            std::vector<double> phase = {}, Scale scale = Scale::kAsGiven);
 
-  // These return what the constructor was given.
+  // These return what the constructor was given, the gain as it was scaled.
   const std::vector<double>& azimuth() const { return azimuth_; }
   const std::vector<double>& elevation() const { return elevation_; }
   const std::vector<double>& gain() const { return gain_; }
@@ -35,7 +36,7 @@ class GainTable {
   // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
   double peak_gain() const;                             // of the samples
-  double efficiency() const { return efficiency_; }     // integral of the gain over the sphere / 4 pi
+  double efficiency() const { return efficiency_; }     // mean gain over the sphere: its integral / 4 pi
   bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 
  private:
@@ -50,6 +51,7 @@ class GainTable {
   size_t sample(int row, int column) const;
   std::complex<double> field_at(double azimuth, double elevation) const;
   bool has_gain(int row, int column) const;  // of the cell between a sample and the next row and column
+  void set_field();
   void close_ring();
   double integrate() const;
   bool all_cells_in_front() const;

@@ -101,6 +101,18 @@ TEST(GainTable, MoreThanTheSphereIsAnError) {
   EXPECT_NO_THROW(table_of(noisy, axis(-90, 90, 5), axis(-90, 90, 5)));
 }
 
+TEST(GainTable, NormalizedTablesHaveAMeanOfOneAndAreThoseOfTheirOwnGain) {
+  const auto azimuth = axis(-90, 90, 5), elevation = axis(-90, 90, 5);
+  for (const double factor : {1e-6, 0.3, 1.0, 7.0}) {
+    const Pattern scaled = [&](double a, double e) { return factor * cosine4(a, e); };
+    const GainTable table(azimuth, elevation, sampled(scaled, azimuth, elevation), {}, GainTable::Scale::kMeanOfOne);
+    EXPECT_NEAR(table.efficiency(), 1.0, 1e-12);
+    EXPECT_NEAR(table.peak_gain(), 10.0, 0.02);  // of cos^4: 2 (4 + 1)
+    const GainTable again(azimuth, elevation, table.gain());
+    EXPECT_EQ(again.field(Vec3(0.8, 0.6, 0.0)), table.field(Vec3(0.8, 0.6, 0.0)));
+  }
+}
+
 TEST(GainTable, ThereIsNoGainOutsideTheTable) {
   const GainTable table = table_of([](double, double) { return 1.0; }, axis(-60, 60, 10), axis(-20, 30, 10));
   EXPECT_EQ(table.field(toward(61 * kDegree, 0)), 0.0);

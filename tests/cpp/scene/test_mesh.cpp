@@ -153,14 +153,21 @@ TEST(Mesh, KeepsAllOfARandomSoup) {
 }
 
 TEST(Mesh, RemovesAndCountsTrianglesWithoutArea) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Vec3> vertices = {{0, 0, 0},   {1, 0, 0},       {0, 1, 0},     {2, 0, 0},
-                                      {nan, 0, 0}, {0.5, 1e-13, 0}, {0.5, 1e-9, 0}};
-  // two corners equal; three in a line; not finite; flatter than 1e-12; thin but a triangle
-  const std::vector<Triangle> triangles = {{0, 0, 1}, {0, 1, 3}, {0, 1, 2}, {0, 1, 4}, {0, 1, 5}, {0, 1, 6}};
+  const std::vector<Vec3> vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {0.5, 1e-13, 0}, {0.5, 1e-9, 0}};
+  // two corners equal; three in a line; flatter than 1e-12; thin but a triangle
+  const std::vector<Triangle> triangles = {{0, 0, 1}, {0, 1, 3}, {0, 1, 2}, {0, 1, 4}, {0, 1, 5}};
   const Mesh mesh(vertices, triangles);
-  EXPECT_EQ(mesh.num_removed_triangles(), 4);
-  EXPECT_EQ(mesh.original_triangle(), (std::vector<uint32_t>{2, 5}));
+  EXPECT_EQ(mesh.num_removed_triangles(), 3);
+  EXPECT_EQ(mesh.original_triangle(), (std::vector<uint32_t>{2, 4}));
+}
+
+TEST(Mesh, RefusesVerticesOfTrianglesThatAreNotFinite) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e71}) {
+    const std::vector<Vec3> vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, bad, 0}};
+    expect_error<std::invalid_argument>([&] { Mesh(vertices, {{0, 1, 2}, {0, 1, 3}}); },
+                                        {"vertices: vertex 3 must be finite"});
+    EXPECT_EQ(Mesh(vertices, {{0, 1, 2}}).triangles().size(), 1);  // what no triangle uses does no harm
+  }
 }
 
 TEST(Mesh, LeavesOutVerticesThatNoFaceUses) {

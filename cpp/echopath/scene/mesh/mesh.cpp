@@ -36,7 +36,13 @@ bool is_degenerate(const std::vector<Vec3>& vertices, const Triangle& triangle) 
   const Vec3 ab = b - a, ac = c - a, bc = c - b;
   const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
   const double height_times_edge = ab.cross(ac).norm();
-  return !(height_times_edge > kMinHeightPerEdge * longest2);  // also where a vertex is not finite
+  return height_times_edge <= kMinHeightPerEdge * longest2;
+}
+
+// Tells whether areas of triangles with this vertex have a double; NaN has none.
+bool has_area_around(const Vec3& vertex) {
+  constexpr double kFarthest = 1e70;  // m
+  return (vertex.array().abs() <= kFarthest).all();
 }
 
 // Renumbers the corners to the vertices in use, which keep their order; returns the old number of each.
@@ -124,12 +130,16 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
     : num_input_vertices_(static_cast<int64_t>(vertices.size())) {
   constexpr size_t kMaxCount = 0x7fffffff / 3;  // OpenMesh counts half-edges in an int
   require(triangles.size() < kMaxCount, "triangles", "must be fewer than 715 million", triangles.size());
-  require(source_triangle.empty() || source_triangle.size() == triangles.size(), "source_triangle",
+  require(source_triangle.empty() || source_triangle.size() == triangles.size(), "original_triangle",
           "must be empty or as long as triangles", source_triangle.size());
   for (uint32_t t = 0; t < triangles.size(); ++t) {
     for (const uint32_t vertex : triangles[t]) {
       require(vertex < vertices.size(), "triangles",
               "must hold indices below the number of vertices, " + std::to_string(vertices.size()), vertex);
+      if (!has_area_around(vertices[vertex])) {
+        require(false, "vertices", "vertex " + std::to_string(vertex) + " must be finite and within 1e70 m",
+                vertices[vertex].transpose());
+      }
     }
     if (is_degenerate(vertices, triangles[t])) continue;
     triangles_.push_back(triangles[t]);

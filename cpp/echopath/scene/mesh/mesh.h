@@ -20,8 +20,9 @@ using MeshPtr = std::shared_ptr<const Mesh>;
 class Mesh {
  public:
   // vertices [V] in m, triangles [F] of vertex indices; original_triangle() names source_triangle [F], where it is given,
-  // instead of the index in `triangles`. Triangles with a non-finite vertex or without area (height at most 1e-12 of the
-  // longest edge) are removed and counted. Raises invalid_argument for an index out of range or when no triangle is left.
+  // instead of the index in `triangles`. Triangles without area (height at most 1e-12 of the longest edge) are removed and
+  // counted. Raises invalid_argument for an index out of range, for a vertex of a triangle that is not finite or beyond
+  // 1e70 m, or when no triangle is left.
   Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle = {});
   ~Mesh();
   // Returns some triangles [N] of `whole` as a mesh of its own; they are sorted, and repeated ones are dropped. Vertices

@@ -42,7 +42,7 @@ class BuildWithCMake(build_ext):
 setup(
     packages=find_packages("python") + find_packages("viewer") + ["echopath.data"],
     package_dir={"": "python", "echopath_viewer": "viewer/echopath_viewer", "echopath.data": "data"},
-    package_data={"echopath.data": ["**/*"]},
+    package_data={"echopath": ["py.typed", "*.pyi"], "echopath.data": ["**/*"]},
     ext_modules=[Extension("echopath._core", sources=[])],
     cmdclass={"build_ext": BuildWithCMake},
 )

@@ -1,0 +1,52 @@
+"""Writes python/echopath/_core.pyi, which tells editors and type checkers what is in the extension, from the extension itself.
+
+    python python/bindings/make_stubs.py
+
+To be run after a change to the bindings, with the extension built; tests/python/test_stubs.py compares.
+"""
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TARGET = Path(__file__).resolve().parents[1] / "echopath" / "_core.pyi"
+HEAD = ('"""The C++ core of echopath; use it through the package.\n\n'
+        'Written by python/bindings/make_stubs.py: do not edit.\n"""\n')
+IMPORTS = "from collections.abc import Sequence\nfrom numpy.typing import ArrayLike\nimport types\n"
+# What pybind11-stubgen writes -> what a reader and a type checker make more of.
+PLAIN = [
+    (r"\A\"\"\".*?\"\"\"\n", HEAD),                                       # of the module
+    (r"from \. import bench\n", ""),
+    (r"(?m)^(__all__: )", r"bench: types.ModuleType\n\1"),                # only echopath.bench uses it
+    (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
+    (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
+    (r"typing\.SupportsIndex", "int"),
+    (r"\bos\.PathLike\b(?!\[)", "os.PathLike[str]"),
+    (r"(: |-> )\.\.\.(?=[,):])", r"\1typing.Any"),                        # types of C++ without a name in Python
+    (r"(?<![\w.\[])(dict|list|tuple|set)(?=[,):\n]| =| \|)", r"\1[typing.Any]"),
+    (r"dict\[typing\.Any\]", "dict[typing.Any, typing.Any]"),
+    (r"tuple\[typing\.Any\]", "tuple[typing.Any, ...]"),
+    (r"\*\*kwargs\)", "**kwargs: typing.Any)"),
+    (r"\*args,", "*args: typing.Any,"),
+    (r"(def __eq__\(self, [^:]*: )[^)]*\) -> [^:]*:", r"\1object) -> bool:"),
+    (r"numpy\.ndarray(?!\[)", "numpy.ndarray[typing.Any, typing.Any]"),
+    (r"(\w+: [A-Z]\w+) = None", r"\1 | None = None"),
+    (r"(?m)[ \t]+$", ""),
+]
+
+
+def stubs() -> str:
+    """The text that the file should hold. Raises CalledProcessError where pybind11-stubgen fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "pybind11_stubgen", "echopath._core", "-o", folder], check=True,
+                       capture_output=True)
+        text = (Path(folder) / "echopath" / "_core" / "__init__.pyi").read_text(encoding="utf-8")
+    for pattern, plain in PLAIN:
+        text = re.sub(pattern, plain, text, flags=re.DOTALL) if pattern.startswith(r"\A") else re.sub(pattern, plain, text)
+    return text.replace("from __future__ import annotations\n", f"from __future__ import annotations\n{IMPORTS}", 1)
+
+
+if __name__ == "__main__":
+    TARGET.write_text(stubs(), encoding="utf-8")
+    print(f"{TARGET}: written")

@@ -1,0 +1,2807 @@
+"""The C++ core of echopath; use it through the package.
+
+Written by python/bindings/make_stubs.py: do not edit.
+"""
+from __future__ import annotations
+from collections.abc import Sequence
+from numpy.typing import ArrayLike
+import types
+import collections.abc
+from echopath import DeviceError
+from echopath import FileError
+import numpy
+import numpy.typing
+import os
+import typing
+bench: types.ModuleType
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'Material', 'Mesh', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
+class Motion:
+    """
+    Time -> rigid transform, in the axes of the node's parent about the node's own origin.
+    """
+    def at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.
+        """
+    def turn_rate(self, begin: float, end: float) -> float:
+        """
+        Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
+
+        That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
+        next: the larger. 0: it goes straight on.
+        """
+    @property
+    def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Times [N] in s, ascending, where the motion is not smooth.
+        """
+    @property
+    def span(self) -> tuple[typing.Any, ...]:
+        """
+        (begin, end) in s of the times it is defined on; infinite where unlimited.
+        """
+class LinearMotion(Motion):
+    """
+    Constant velocity and rotation.
+
+    velocity: [3] in m/s
+    angular_velocity: [3] in rad/s, right-handed about its own direction
+    Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, velocity: ArrayLike = (0.0, 0.0, 0.0), angular_velocity: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> LinearMotion:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def angular_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] in rad/s
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] in m/s
+        """
+class KeyframeMotion(Motion):
+    """
+    Motion through keys.
+
+    times: [T] in s, ascending, T >= 2
+    translations: [T, 3] in m, or None for none
+    rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
+    interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; each inner time is a breakpoint)
+    Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, times: ArrayLike, translations: ArrayLike | None = None, rotations: ArrayLike | None = None, interpolation: str = 'cubic') -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> KeyframeMotion:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def interpolation(self) -> str:
+        """
+        "cubic" or "linear"
+        """
+    @property
+    def rotations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T] in s
+        """
+    @property
+    def translations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T, 3] in m, [0, 3] where none were given
+        """
+class Deformation:
+    """
+    Time -> vertices, which replace those of a mesh, in the node's own frame.
+    """
+    def at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.
+        """
+    def turn_rate(self, begin: float, end: float) -> float:
+        """
+        Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
+
+        That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
+        next: the larger. 0: it goes straight on.
+        """
+    @property
+    def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Times [N] in s, ascending, where it is not smooth.
+        """
+    @property
+    def num_vertices(self) -> int:
+        """
+        V, of each instant
+        """
+    @property
+    def span(self) -> tuple[typing.Any, ...]:
+        """
+        (begin, end) in s of the times it is defined on; infinite where unlimited.
+        """
+class VertexSequence(Deformation):
+    """
+    Deforming mesh: time -> vertices.
+
+    times: [T] in s, ascending, T >= 2
+    vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
+    interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+    Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: str = 'cubic') -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> VertexSequence:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def interpolation(self) -> str:
+        """
+        "cubic" or "linear"
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T] in s
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T, V, 3] in m, a copy
+        """
+class Material:
+    """
+    What a surface does to a wave. Cannot be changed.
+
+    Exactly one of
+    conductor: True for a perfect conductor
+    permittivity: complex, relative, eps' - j eps'' (imaginary part <= 0)
+    reflectivity: share of power in [0, 1] that is reflected at every angle
+    and further
+    conductivity: S/m, adds to the permittivity
+    roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
+    cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cross polarisation (polarised traces); 0.5 is
+    full depolarisation, the most a reciprocal surface without a preferred axis does
+    mirror: True for a plane larger than its Fresnel zone, which is treated by images
+    Raises TypeError or ValueError naming the field, the rule and the value.
+    """
+    @staticmethod
+    def metal(mirror: bool = False) -> Material:
+        """
+        A perfect conductor; mirror: a plane larger than its Fresnel zone.
+        """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, *, conductor: bool = False, permittivity: complex | None = None, conductivity: float = 0.0, reflectivity: float | None = None, roughness_height: float = 0.0, scattering: float | None = None, cross_polarization: float = 0.0, mirror: bool = False) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> Material:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def conductivity(self) -> float:
+        """
+        S/m
+        """
+    @property
+    def conductor(self) -> bool:
+        """
+        bool
+        """
+    @property
+    def cross_polarization(self) -> float:
+        """
+        K in [0, 0.5]
+        """
+    @property
+    def mirror(self) -> bool:
+        """
+        bool
+        """
+    @property
+    def permittivity(self) -> complex | None:
+        """
+        complex, relative, or None
+        """
+    @property
+    def reflectivity(self) -> float | None:
+        """
+        share of power in [0, 1], or None
+        """
+    @property
+    def roughness_height(self) -> float:
+        """
+        rms height in m
+        """
+    @property
+    def scattering(self) -> float | None:
+        """
+        S in [0, 1], or None
+        """
+class Mesh:
+    """
+    One labelled surface. Cannot be changed; its arrays are views.
+
+    vertices: [V, 3] in m
+    triangles: [F, 3] indices of vertices
+    original_triangle: [F] integers, what `.original_triangle` shall name instead of the rows of `triangles`
+    No face is lost except those without area, which are counted in `num_removed_triangles`. Sheets that meet in a
+    non-manifold edge or vertex get vertices of their own there, appended to `vertices`. Vertices that no face uses are left
+    out. Raises TypeError or ValueError naming the argument, also for indices out of range, for a vertex of a face that is not
+    finite, and where no face has an area.
+    """
+    @staticmethod
+    def _part_of(whole: Mesh, triangles: typing.Any) -> Mesh:
+        ...
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, original_triangle: ArrayLike | None = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def part(self, triangles: typing.Any) -> Mesh:
+        """
+        Some triangles as a mesh of their own, to be labelled.
+
+        triangles: [N] indices of triangles, or a mask [F] of bool
+        Returns a Mesh of these in their order. A smooth surface keeps its vertex normals across the cut, and a deformation of the
+        whole deforms each part. Raises ValueError for none or one out of range.
+        """
+    @property
+    def area(self) -> float:
+        """
+        m^2
+        """
+    @property
+    def is_closed(self) -> bool:
+        """
+        no boundary edge, no duplicated vertex
+        """
+    @property
+    def num_duplicated_vertices(self) -> int:
+        """
+        added where sheets meet
+        """
+    @property
+    def num_input_vertices(self) -> int:
+        """
+        what a Deformation must have
+        """
+    @property
+    def num_removed_triangles(self) -> int:
+        """
+        faces without area, left out
+        """
+    @property
+    def original_triangle(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [F] face of the input or file
+        """
+    @property
+    def original_vertex(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [V] vertex of the input
+        """
+    @property
+    def triangles(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [F, 3] indices of vertices
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [V, 3] in m
+        """
+    @property
+    def whole(self) -> Mesh:
+        """
+        the Mesh that this is a part of, None for a whole
+        """
+    @property
+    def whole_triangle(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [F] triangle of `whole`, [0] for a whole
+        """
+class Node:
+    """
+    A node of a scene; cannot be changed.
+    """
+    def __init__(self, *, name: str, parent: int = -1, placement: typing.Any = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def deformation(self) -> Deformation:
+        """
+        a VertexSequence, a Skin or None
+        """
+    @property
+    def material(self) -> Material:
+        """
+        a Material or None
+        """
+    @property
+    def material_name(self) -> str:
+        """
+        as given, "" for a material without a name
+        """
+    @property
+    def mesh(self) -> Mesh:
+        """
+        a Mesh or None
+        """
+    @property
+    def motion(self) -> Motion:
+        """
+        a motion or None
+        """
+    @property
+    def name(self) -> str:
+        """
+        full name, "street/pedestrian/head"
+        """
+    @property
+    def parent(self) -> int:
+        """
+        index of the parent, -1 for a child of the root
+        """
+    @property
+    def placement(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [4, 4] at rest, relative to the parent, m
+        """
+    @property
+    def smooth(self) -> bool:
+        """
+        whether the mesh stands for a curved surface
+        """
+class SceneMesh:
+    """
+    A mesh of a scene with its mesh ID.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def id(self) -> int:
+        """
+        mesh ID
+        """
+    @property
+    def material(self) -> Material:
+        """
+        the Material
+        """
+    @property
+    def material_name(self) -> str:
+        """
+        as given, "" for a material without a name
+        """
+    @property
+    def mesh(self) -> Mesh:
+        """
+        the Mesh
+        """
+    @property
+    def name(self) -> str:
+        """
+        full name of its node
+        """
+    @property
+    def node(self) -> int:
+        """
+        index into scene.nodes
+        """
+    @property
+    def triangles(self) -> typing.Any:
+        """
+        [F, 3] indices of vertices
+        """
+class CoplanarOverlap:
+    """
+    Where two meshes, or a mesh and itself, lie on each other.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        m^2, summed over pairs of triangles
+        """
+    @property
+    def distance(self) -> float:
+        """
+        m, largest between the two
+        """
+    @property
+    def mesh_ids(self) -> tuple[int, int]:
+        """
+        their mesh IDs, the lower one first
+        """
+    @property
+    def names(self) -> tuple[str, str]:
+        """
+        full names of the two meshes; twice the same for a mesh that lies on itself
+        """
+    @property
+    def num_triangles(self) -> int:
+        """
+        of both meshes, that lie on one of the other
+        """
+class Scene:
+    """
+    A tree of named nodes with placements, motions and meshes.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def _add_nodes(self, nodes: collections.abc.Sequence[Node]) -> None:
+        ...
+    def coplanar_overlaps(self, *, time: float = 0.0, max_distance: float = 1e-05) -> list[CoplanarOverlap]:
+        """
+        Where meshes lie on each other, or a mesh lies on itself.
+
+        time: s; max_distance: m, up to which two triangles count that are nowhere further apart where one lies over the other
+        Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
+        label are those of the one that is met. Where no ray reaches, as under a box on the ground, it does no harm.
+        Triangles that merely touch, overlap by less than max_distance, or cross do not count.
+        Of meshes that are copies of each other at the same place, the first stands for all: each copy is listed with it and with
+        nothing else.
+        Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
+        time outside a motion.
+        """
+    def find(self, name: str) -> int | None:
+        """
+        Index of the node with that full name, None where there is none.
+        """
+    def is_moving(self, mesh_id: int) -> bool:
+        """
+        Whether the mesh moves or deforms at some time. Raises IndexError.
+        """
+    def require_times(self, begin: float, end: float) -> None:
+        """
+        Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).
+        """
+    def world_vertices(self, mesh_id: int, time: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.
+        """
+    @property
+    def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Times [N] in s, ascending, where some motion is not smooth.
+        """
+    @property
+    def meshes(self) -> list[SceneMesh]:
+        """
+        list of SceneMesh by mesh ID
+        """
+    @property
+    def nodes(self) -> list[Node]:
+        """
+        list of Node, parents first
+        """
+    @property
+    def num_nodes(self) -> int:
+        ...
+    @property
+    def num_triangles(self) -> int:
+        ...
+class Joint:
+    """
+    A joint of a skin. Cannot be changed.
+
+    name: unique within its skin; the part of a mesh that it moves is named after it
+    parent: name of an earlier joint; None: it moves in the frame of the skin
+    position [3] in m, or transform [4, 4]: at rest, relative to the parent
+    motion: LinearMotion or KeyframeMotion about its own origin, as of a node of a scene; None: at rest
+    inverse_bind: [4, 4] frame of the skin -> frame of the joint where the vertices were bound to it; None: as the joints rest
+    With transform none and inverse_bind given, a motion is the joint's transform relative to its parent, as in glTF files.
+    Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, name: str, parent: str | None = None, *, position: ArrayLike | None = None, transform: ArrayLike | None = None, motion: Motion | None = None, inverse_bind: ArrayLike | None = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> Joint:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def inverse_bind(self) -> typing.Any:
+        """
+        [4, 4], or None where it follows from the joints at rest
+        """
+    @property
+    def motion(self) -> Motion:
+        """
+        a motion or None
+        """
+    @property
+    def name(self) -> str:
+        """
+        of the joint
+        """
+    @property
+    def parent(self) -> str | None:
+        """
+        name of the parent, or None
+        """
+    @property
+    def transform(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [4, 4] at rest, relative to the parent, m
+        """
+class Skin(Deformation):
+    """
+    Deforming mesh: its vertices follow joints.
+
+    Linear blend skinning: v(t) = sum over joints of weight * skin_from_joint(t) * inverse_bind * v, exact at every time.
+    vertices: [V, 3] in m as bound, in the node's frame and in the order of the vertices the mesh was made from
+    joints: list [J] of Joint, parents first
+    weights: [V, J], or [V, K] with joint_indices; >= 0, and each row adds up to 1 (less than 1e-4 off is scaled)
+    joint_indices: [V, K] which joint each weight is of; None: column j of weights is joint j
+    Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, vertices: ArrayLike, joints: typing.Sequence[Joint], weights: ArrayLike, joint_indices: ArrayLike | None = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def joint_transforms(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        What moves the vertices that follow one joint alone: skin_from_joint(time) * inverse_bind.
+
+        time: s. Returns [J, 4, 4], translations in m. Raises ValueError outside `span`.
+        """
+    def parts(self, mesh: Mesh) -> list[typing.Any]:
+        """
+        The regions of a skinned mesh: triangles by dominant joint.
+
+        mesh: a Mesh made from as many vertices [V] as the skin has
+        Returns a list of (name of joint, Mesh) of those joints that dominate any triangle; all are parts of `mesh`.
+        Raises ValueError for another number of vertices.
+        """
+    def replace(self, **kwargs: typing.Any) -> Skin:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def joint_indices(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [V, K] joint of each weight
+        """
+    @property
+    def joints(self) -> list[Joint]:
+        """
+        list [J] of Joint, each with its inverse_bind
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [V, 3] in m, as bound
+        """
+    @property
+    def weights(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [V, K], K the most joints that a vertex follows; filled up with 0
+        """
+class ChirpSequence:
+    """
+    A frame of linear up-chirps.
+
+    start_frequency: Hz, at the first sample
+    bandwidth: Hz, swept by the samples of a chirp
+    num_samples: of a chirp
+    sampling_rate: Hz
+    num_chirps: per transmitter
+    chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
+    real: real IF samples instead of complex ones
+    Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, *, start_frequency: float = 77000000000.0, bandwidth: float = 1000000000.0, num_samples: int = 512, sampling_rate: float = 20000000.0, num_chirps: int = 128, chirp_interval: float = 6e-05, real: bool = False) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def max_velocity(self, num_slots: int = 1) -> float:
+        """
+        m/s, unambiguous up to +- this, when `num_slots` transmitters take turns
+        """
+    def replace(self, **kwargs: typing.Any) -> ChirpSequence:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    def velocity_resolution(self, num_slots: int = 1) -> float:
+        """
+        m/s, when `num_slots` transmitters take turns
+        """
+    @property
+    def bandwidth(self) -> float:
+        """
+        Hz, sampled
+        """
+    @property
+    def centre_frequency(self) -> float:
+        """
+        Hz
+        """
+    @property
+    def chirp_duration(self) -> float:
+        """
+        s, sampled
+        """
+    @property
+    def chirp_interval(self) -> float:
+        """
+        s, between neighbouring slots
+        """
+    @property
+    def max_range(self) -> float:
+        """
+        m, unambiguous
+        """
+    @property
+    def num_chirps(self) -> int:
+        """
+        per transmitter
+        """
+    @property
+    def num_samples(self) -> int:
+        """
+        of a chirp
+        """
+    @property
+    def range_resolution(self) -> float:
+        """
+        m, c / (2 bandwidth)
+        """
+    @property
+    def real(self) -> bool:
+        """
+        whether samples are real
+        """
+    @property
+    def sampling_rate(self) -> float:
+        """
+        Hz
+        """
+    @property
+    def slope(self) -> float:
+        """
+        Hz/s
+        """
+    @property
+    def start_frequency(self) -> float:
+        """
+        Hz, at the first sample
+        """
+    @property
+    def wavelength(self) -> float:
+        """
+        m, at the centre frequency
+        """
+    @property
+    def window_centre(self) -> float:
+        """
+        s from the first sample to the middle
+        """
+class AntennaPattern:
+    """
+    Power gain over direction; made by Isotropic, CosinePower or GainTable.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def field(self, directions: ArrayLike) -> numpy.typing.NDArray[numpy.complex128]:
+        """
+        sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.
+        """
+    def gain(self, cos_boresight: float) -> float:
+        """
+        Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.
+        """
+    def replace(self, **kwargs: typing.Any) -> AntennaPattern:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def azimuth(self) -> typing.Any:
+        """
+        [A] rad of a table, else None
+        """
+    @property
+    def efficiency(self) -> float:
+        """
+        integral of the gain over the sphere / 4 pi; at most 1 for a power gain
+        """
+    @property
+    def elevation(self) -> typing.Any:
+        """
+        [E] rad of a table, else None
+        """
+    @property
+    def exponent(self) -> float:
+        """
+        of the cosine; 0 when isotropic
+        """
+    @property
+    def kind(self) -> str:
+        """
+        "isotropic", "cosine_power" or "table"
+        """
+    @property
+    def peak_gain(self) -> float:
+        """
+        linear; of a table its largest sample
+        """
+    @property
+    def table_gain(self) -> typing.Any:
+        """
+        [E, A] linear power gain of a table, else None
+        """
+    @property
+    def table_phase(self) -> typing.Any:
+        """
+        [E, A] rad of a table with phases, else None
+        """
+class Antenna:
+    """
+    One element of a radar.
+
+    position: [3] in m, in the radar's frame
+    orientation: unit quaternion (w, x, y, z), radar from antenna; the boresight is +x of the antenna's frame
+    pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
+    polarization: [3] unit vector in the antenna's frame
+    Raises ValueError naming the argument.
+    """
+    def __init__(self, position: typing.Any = (0.0, 0.0, 0.0), *, orientation: typing.Any = (1.0, 0.0, 0.0, 0.0), pattern: AntennaPattern | None = None, polarization: typing.Any = (0.0, 0.0, 1.0), **kwargs: typing.Any) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def orientation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [4] (w, x, y, z), radar from antenna
+        """
+    @property
+    def pattern(self) -> AntennaPattern:
+        """
+        AntennaPattern
+        """
+    @property
+    def polarization(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3], unit
+        """
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] in m
+        """
+class Radar:
+    """
+    Waveform, antennas and the platform that carries them.
+
+    waveform: ChirpSequence
+    transmitters, receivers: lists of Antenna, at least one each
+    transmit_power: W per transmitter
+    noise_figure_db: dB, single sideband
+    multiplexing: "tdm": transmitters take turns, one slot each
+    motion: Motion of the radar's frame in the world, or None at rest
+    Raises ValueError naming the argument.
+    """
+    def __init__(self, waveform: ChirpSequence, *, transmitters: collections.abc.Sequence[Antenna], receivers: collections.abc.Sequence[Antenna], transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: str = 'tdm', motion: Motion | None = None, **kwargs: typing.Any) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def chirp_time(self, tx: int, chirp: int) -> float:
+        """
+        Time of the middle of a chirp of transmitter tx (indices), s after the frame's start. Raises IndexError.
+        """
+    def world_from_radar(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Transform [4, 4] (translation in m) at `time` in s.
+        """
+    @property
+    def frame_duration(self) -> float:
+        """
+        s, from the first sample to the last
+        """
+    @property
+    def motion(self) -> Motion:
+        """
+        Motion of the radar's frame, or None
+        """
+    @property
+    def multiplexing(self) -> str:
+        """
+        "tdm"
+        """
+    @property
+    def noise_figure_db(self) -> float:
+        """
+        dB
+        """
+    @property
+    def receivers(self) -> list[Antenna]:
+        """
+        list of Antenna, a copy
+        """
+    @property
+    def transmit_power(self) -> float:
+        """
+        W per transmitter
+        """
+    @property
+    def transmitters(self) -> list[Antenna]:
+        """
+        list of Antenna, a copy
+        """
+    @property
+    def waveform(self) -> ChirpSequence:
+        """
+        ChirpSequence
+        """
+class RangeDoppler:
+    """
+    Range-Doppler maps with their axes; made by range_doppler.
+    """
+    @staticmethod
+    def to_xarray(map):
+        """
+        A map as xarray with named axes; its arrays are not copied.
+
+            map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
+                RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
+                the beams) and velocity (m/s, of the cells, where only some were taken)
+                Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
+                dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
+            Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no
+            map, ModuleNotFoundError without xarray.
+
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def is_tdm_compensated(self) -> bool:
+        """
+        whether compensate_tdm took out the phase between transmit slots
+        """
+    @property
+    def range(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [range] in m, ascending from 0
+        """
+    @property
+    def values(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [tx, rx, velocity, range] complex in sqrt(W), read-only
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [velocity] in m/s, ascending, receding positive
+        """
+    @property
+    def window(self) -> typing.Any:
+        """
+        of both axes, as range_doppler takes it: a name, or ("chebyshev", sidelobe level in dB)
+        """
+    @property
+    def zero_pad(self) -> int:
+        """
+        of both axes
+        """
+class VirtualArray:
+    """
+    Where the channels of a radar lie as one array; made by virtual_array.
+
+    Elements are ordered by row and column of their grid. A grid's rows count up and its columns count up to the left, as far
+    as the array's plane allows.
+    """
+    def __repr__(self) -> str:
+        ...
+    def default_angles(self, largest_step: float = 0.017453292519943295) -> tuple[typing.Any, ...]:
+        """
+        (azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
+
+        Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
+        quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.
+        """
+    @property
+    def centre(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] m, mean of the elements
+        """
+    @property
+    def element_of_channel(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [tx, rx] index into elements
+        """
+    @property
+    def elements(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [N, 3] m, the positions that differ by 0.01 wavelengths or more
+        """
+    @property
+    def gaps(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [G, 2] rows and columns of the grid without an element
+        """
+    @property
+    def grid_axes(self) -> typing.Any:
+        """
+        [2, 3] unit vectors along which rows and columns count up, or None
+        """
+    @property
+    def grid_deviation(self) -> typing.Any:
+        """
+        m, largest distance of an element from its point of the grid, or None
+        """
+    @property
+    def grid_index(self) -> typing.Any:
+        """
+        [N, 2] row and column of each element, or None
+        """
+    @property
+    def grid_shape(self) -> typing.Any:
+        """
+        (rows, columns) of the grid of equal steps, or None
+        """
+    @property
+    def grid_spacing(self) -> typing.Any:
+        """
+        (row, column) step in m, 0 where there is one, or None
+        """
+    @property
+    def num_overlaps(self) -> int:
+        """
+        channels beyond the first of each element
+        """
+    @property
+    def num_receivers(self) -> int:
+        """
+        receivers of the radar
+        """
+    @property
+    def num_transmitters(self) -> int:
+        """
+        transmitters of the radar
+        """
+    @property
+    def positions(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [tx, rx, 3] m, sums of the antennas' positions
+        """
+    @property
+    def wavelength(self) -> float:
+        """
+        m, at the centre frequency
+        """
+class CfarResult:
+    """
+    Cells of a range-Doppler map that exceed their thresholds; made by cfar.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def cells(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        [D, 2] (velocity, range) indices of the cells found, ascending
+        """
+    @property
+    def factor(self) -> float:
+        """
+        power over noise, linear, from which a cell away from the ends of the range axis is found
+        """
+    @property
+    def false_alarm_rate(self) -> float:
+        """
+        of one cell
+        """
+    @property
+    def guard(self) -> tuple[int, int]:
+        """
+        half widths along (velocity, range) in cells
+        """
+    @property
+    def mask(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        [velocity, range] bool, true in the cells found
+        """
+    @property
+    def method(self) -> str:
+        """
+        "ca" or "os"
+        """
+    @property
+    def noise(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [D] W, mean power of the noise about each cell found, as its training cells tell it
+        """
+    @property
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [velocity, range] W, mean over channels
+        """
+    @property
+    def training(self) -> tuple[int, int]:
+        """
+        cells beyond the guard cells on each side, along (velocity, range)
+        """
+class AngleSpectrum:
+    """
+    Angle spectra with their axes; made by angle_fft.
+
+    Axes are direction cosines along the columns and rows of the array's grid: for antennas in the y-z plane
+    sin(azimuth) cos(elevation) and sin(elevation).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [azimuth] rad at elevation 0, arcsin of sin_azimuth; NaN beyond +-1
+        """
+    @property
+    def elevation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [elevation] rad, arcsin of sin_elevation; NaN beyond +-1
+        """
+    @property
+    def range(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [range] m
+        """
+    @property
+    def sin_azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [azimuth] ascending, left positive
+        """
+    @property
+    def sin_elevation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [elevation] ascending, up positive
+        """
+    @property
+    def values(self) -> numpy.typing.NDArray[numpy.complex128]:
+        """
+        [elevation, azimuth, velocity, range] complex in sqrt(W), read-only; phase as at the array's centre
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [velocity] m/s, receding positive
+        """
+class BeamPower:
+    """
+    Power of beams with their axes; made by beamform.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [azimuth] rad, left positive
+        """
+    @property
+    def elevation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [elevation] rad, up positive
+        """
+    @property
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [elevation, azimuth, velocity, range] in W, read-only; of cells [elevation, azimuth, cell]
+        """
+    @property
+    def range(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [range] m, or [cell]
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [velocity] m/s, or [cell]
+        """
+class RangeAzimuth:
+    """
+    A range-azimuth map with its axes; made by range_azimuth.
+    """
+    @staticmethod
+    def to_xarray(map):
+        """
+        A map as xarray with named axes; its arrays are not copied.
+
+            map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
+                RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
+                the beams) and velocity (m/s, of the cells, where only some were taken)
+                Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
+                dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
+            Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no
+            map, ModuleNotFoundError without xarray.
+
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [azimuth] rad, ascending, left positive
+        """
+    @property
+    def elevation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [elevation] rad, of the beams
+        """
+    @property
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [azimuth, range] in W, read-only: the largest over elevation
+        """
+    @property
+    def range(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [range] m
+        """
+    @property
+    def velocity(self) -> float | None:
+        """
+        m/s, of the cells taken; None: all velocities together
+        """
+class AngleEstimates:
+    """
+    Directions of echoes, arrays over all peaks; made by estimate_angles.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M] rad, left positive
+        """
+    @property
+    def cell(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        [M] index into the cells given, ascending; the strongest peak of a cell first
+        """
+    @property
+    def elevation(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M] rad, up positive
+        """
+    @property
+    def points(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M, 3] m, in the radar's frame
+        """
+    @property
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M] W
+        """
+    @property
+    def range(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M] m, of the cell
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [M] m/s, of the cell and its fold
+        """
+class Selection:
+    """
+    Which paths are meant: path expressions joined by & | ~.
+
+    text: path expressions, and power > 1e-15 (W, at the trace time for the first antennas; also < <= >=), joined by
+        ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
+        path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
+        diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
+    selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under
+    the fault; matching raises one when a glob takes no mesh of the scene.
+    """
+    def __and__(self, arg0: Selection) -> Selection:
+        ...
+    def __bool__(self) -> bool:
+        ...
+    @typing.overload
+    def __init__(self, text: str) -> None:
+        ...
+    @typing.overload
+    def __init__(self, selection: Selection) -> None:
+        ...
+    def __invert__(self) -> Selection:
+        ...
+    def __or__(self, arg0: Selection) -> Selection:
+        ...
+    def __rand__(self, arg0: Selection) -> Selection:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __ror__(self, arg0: Selection) -> Selection:
+        ...
+    def __str__(self) -> str:
+        ...
+    def check(self, scene: Scene) -> None:
+        """
+        Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.
+        """
+    def matches(self, paths: typing.Any) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Bool [P]: which of the paths are selected.
+        """
+    @property
+    def text(self) -> str:
+        """
+        as written; joined ones as (T . R) & ~(T . . R)
+        """
+class Power:
+    """
+    The power of a path in W, at the trace time for the first antennas of the radar that traced.
+
+    ep.power > 1e-15 is a Selection; `paths.power` has the values.
+    """
+    __hash__: typing.ClassVar[None] = None
+    def __bool__(self) -> bool:
+        ...
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __ge__(self, arg0: float) -> Selection:
+        ...
+    def __gt__(self, arg0: float) -> Selection:
+        ...
+    def __le__(self, arg0: float) -> Selection:
+        ...
+    def __lt__(self, arg0: float) -> Selection:
+        ...
+    def __ne__(self, arg0: typing.Any) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+class NumBounces:
+    """
+    The number of hits of a path: ep.num_bounces >= 2 is a Selection.
+    """
+    __hash__: typing.ClassVar[None] = None
+    def __bool__(self) -> bool:
+        ...
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __ge__(self, arg0: int) -> Selection:
+        ...
+    def __gt__(self, arg0: int) -> Selection:
+        ...
+    def __le__(self, arg0: int) -> Selection:
+        ...
+    def __lt__(self, arg0: int) -> Selection:
+        ...
+    def __ne__(self, arg0: int) -> Selection:
+        ...
+    def __repr__(self) -> str:
+        ...
+class Stratum:
+    """
+    One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.
+    """
+    def __init__(self, *, axis: typing.Any, versine: float, num_rays: int, ray_density: float, name: str, across: typing.Any = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def across(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] unit, world axes, along the great circle of a strip; zeros of a cone
+        """
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] unit, world axes
+        """
+    @property
+    def focus_of(self) -> int:
+        """
+        index of the stratum of which it takes over a part, with rays that lie closer; -1: none
+        """
+    @property
+    def half_azimuth(self) -> float:
+        """
+        rad along the great circle on both sides of the axis; 0 of a cone
+        """
+    @property
+    def high(self) -> float:
+        """
+        largest sine of the elevation
+        """
+    @property
+    def low(self) -> float:
+        """
+        least sine of the elevation over the great circle, toward axis x across
+        """
+    @property
+    def name(self) -> str:
+        """
+        what it aims at
+        """
+    @property
+    def num_mirrors(self) -> int:
+        """
+        over which it aims there
+        """
+    @property
+    def num_rays(self) -> int:
+        """
+        launched in it
+        """
+    @property
+    def object(self) -> int:
+        """
+        index of the scene's node that it aims at; -1: none
+        """
+    @property
+    def ray_density(self) -> float:
+        """
+        rays per sr
+        """
+    @property
+    def solid_angle(self) -> float:
+        """
+        sr
+        """
+    @property
+    def versine(self) -> float:
+        """
+        1 - cos of the half angle of a cone; 2 is the whole sphere
+        """
+class TraceStatistics:
+    """
+    What a trace did.
+    """
+    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_beams: int = 0) -> None:
+        ...
+    @property
+    def num_false_hits(self) -> int:
+        """
+        not confirmed in double precision
+        """
+    @property
+    def num_grazing(self) -> int:
+        """
+        dropped: cosine of incidence below 1e-3
+        """
+    @property
+    def num_hits(self) -> int:
+        """
+        surface points found
+        """
+    @property
+    def num_near_antenna(self) -> int:
+        """
+        dropped: within 1 mm of an antenna
+        """
+    @property
+    def num_paths(self) -> int:
+        """
+        recorded; selections have fewer
+        """
+    @property
+    def num_queries(self) -> int:
+        """
+        closest-hit and shadow queries
+        """
+    @property
+    def num_rays(self) -> int:
+        """
+        launched
+        """
+    @property
+    def num_small_mirrors(self) -> int:
+        """
+        rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
+        """
+    @property
+    def num_unaimed(self) -> int:
+        """
+        objects and images that no rays aim at, because there are too many of them
+        """
+    @property
+    def num_unfollowed_beams(self) -> int:
+        """
+        sequences of mirrors whose further mirrors were not looked for, for want of memory
+        """
+class TraceFrame:
+    """
+    What amplitudes and lengths of paths are relative to.
+    """
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: typing.Any, receiver: typing.Any, strata: collections.abc.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice') -> None:
+        ...
+    @property
+    def error_db(self) -> float:
+        """
+        dB, the one that was reached, above the target where max_rays did not do; 0: not looked at
+        """
+    @property
+    def footprint(self) -> str:
+        """
+        "second_order", "edges", "first_order" or "none"
+        """
+    @property
+    def max_bounces(self) -> int:
+        """
+        hits of a path at most
+        """
+    @property
+    def num_batches(self) -> int:
+        """
+        independent parts of the rays
+        """
+    @property
+    def polarization(self) -> str:
+        """
+        "scalar" or "jones"
+        """
+    @property
+    def receiver(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] m, where hits were connected to, world
+        """
+    @property
+    def sampler(self) -> str:
+        """
+        "lattice", "fibonacci", "r2" or "random"
+        """
+    @property
+    def seed(self) -> int:
+        """
+        of directions and random phases
+        """
+    @property
+    def start_time(self) -> float:
+        """
+        s, first sample of the frame
+        """
+    @property
+    def statistics(self) -> TraceStatistics:
+        """
+        TraceStatistics
+        """
+    @property
+    def strata(self) -> list[Stratum]:
+        """
+        list of Stratum
+        """
+    @property
+    def target_error_db(self) -> float:
+        """
+        dB, error of the received power that was asked for; 0: none
+        """
+    @property
+    def trace_time(self) -> float:
+        """
+        s, the time that the rays saw
+        """
+    @property
+    def transmitter(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] m, where rays started, world
+        """
+class Paths:
+    """
+    The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
+
+    Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
+    share hits; selections share all hits of their trace.
+    """
+    @staticmethod
+    def from_arrays(*, hits: numpy.ndarray[typing.Any, typing.Any], offsets: numpy.ndarray[typing.Any, typing.Any], num_bounces: numpy.ndarray[typing.Any, typing.Any], diffuse: numpy.ndarray[typing.Any, typing.Any], weight: numpy.ndarray[typing.Any, typing.Any], stratum: numpy.ndarray[typing.Any, typing.Any], batch: numpy.ndarray[typing.Any, typing.Any], flags: numpy.ndarray[typing.Any, typing.Any], curved_cell: typing.Any = None, jones: typing.Any = None, scene: Scene, radar: Radar, frame: TraceFrame) -> Paths:
+        """
+        Paths of arrays as the properties give them.
+
+        hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
+        [P, 2, 2] complex or None
+        scene, radar, frame: what they belong to
+        Raises ValueError where an index leads nowhere.
+        """
+    @staticmethod
+    def load(*args: typing.Any, **kwds):
+        """
+        Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.
+        """
+    @staticmethod
+    def save(*args: typing.Any, **kwds) -> LeftOut:
+        """
+        Writes paths with their scene and radar to an HDF5 file.
+
+            path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
+            below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
+
+        """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def _select_with_own_hits(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
+        """
+        The paths where a mask, bool [P], is true, with only the hits that they use.
+        """
+    def amplitudes(self, times: typing.Any, tx: typing.Any = 0, rx: typing.Any = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); replay as in synthesize.
+        """
+    def lengths(self, times: typing.Any, transmitter: typing.Any = 0, receiver: typing.Any = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame; replay as in synthesize.
+        """
+    def partition(self, parts: dict[typing.Any, typing.Any]) -> dict[typing.Any, typing.Any]:
+        """
+        {name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is "other".
+        """
+    def points(self, time: float) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        Hits [H, 3] in m in the world at `time` in s.
+        """
+    @typing.overload
+    def select(self, selection: Selection) -> Paths:
+        """
+        The paths that `selection`, a path expression or a Selection, takes.
+        """
+    @typing.overload
+    def select(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
+        """
+        The paths where `selection`, a mask bool [P], is true.
+        """
+    @property
+    def amplitude(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length
+        """
+    @property
+    def batch(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        [P] batch of rays, 255: all of them (image method)
+        """
+    @property
+    def curved_cell(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat chains
+        """
+    @property
+    def diffuse(self) -> numpy.typing.NDArray[numpy.uint64]:
+        """
+        [P] bit k: hit k is diffuse; 0: coherent
+        """
+    @property
+    def effects(self, *, replay: str = 'material', evaluate: str = 'interpolated', retrace: str = 'never', noise_seed: int | None = None) -> list[Effect]:
+        """
+        list of Effect: what the trace modelled, what not, and why
+        """
+    @property
+    def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays
+        """
+    @property
+    def frame(self) -> TraceFrame:
+        """
+        times, antenna positions, strata and settings of the trace
+        """
+    @property
+    def hits(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [H] structured: mesh_id, triangle_id, u, v
+        """
+    @property
+    def jones(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter
+        """
+    @property
+    def mesh_id(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [H]
+        """
+    @property
+    def num_bounces(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        [P]
+        """
+    @property
+    def num_hits(self) -> int:
+        """
+        H, of all paths of the trace
+        """
+    @property
+    def num_paths(self) -> int:
+        """
+        P, their number
+        """
+    @property
+    def offsets(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        [P] first hit
+        """
+    @property
+    def power(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [P] W, |amplitude|^2
+        """
+    @property
+    def radar(self) -> Radar:
+        """
+        snapshot of the radar
+        """
+    @property
+    def scene(self) -> Scene:
+        """
+        snapshot of the scene
+        """
+    @property
+    def stratum(self) -> numpy.typing.NDArray[numpy.uint16]:
+        """
+        [P] index into frame.strata, 65535: image method
+        """
+    @property
+    def triangle_id(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        [H] triangle within the mesh
+        """
+    @property
+    def u(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [H] barycentric: p = (1 - u - v) v0 + u v1 + v v2
+        """
+    @property
+    def v(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [H] barycentric
+        """
+    @property
+    def weight(self) -> numpy.typing.NDArray[numpy.complex64]:
+        """
+        [P] complex, what neither motion nor antennas change
+        """
+class ReceivedPower:
+    """
+    Mean received power of a set of paths and how well the rays know it; all powers in W.
+
+    At the trace time, between two antennas, at the start frequency; the mean is over the random phases of diffuse
+    hits. [low, high] is the 95 % interval, of bias and chance together: what the footprint filter takes away, told by what
+    half the density of rays would take, and the spread of the batches or, of one batch, of the hits. The power is resolved if it
+    reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
+    and are NaN for one batch.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def between_rays(self) -> float:
+        """
+        W, coherent power that launch cells may hold between rays: of points of reflection and of edges
+        """
+    @property
+    def bias(self) -> float:
+        """
+        W, that finer launch cells may add to the coherent power
+        """
+    @property
+    def chance(self) -> float:
+        """
+        W, standard error; of one batch estimated from the record
+        """
+    @property
+    def coherent(self) -> float:
+        """
+        W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero
+        """
+    @property
+    def coherent_error(self) -> float:
+        """
+        W, standard error
+        """
+    @property
+    def diffuse(self) -> float:
+        """
+        W, sum over diffuse hits of |field of all paths over that hit|^2
+        """
+    @property
+    def diffuse_error(self) -> float:
+        """
+        W, standard error
+        """
+    @property
+    def error_db(self) -> float:
+        """
+        dB, 10 log10(1 + standard_error / power); infinite of one batch, which has no standard error, and where that is more than half the power
+        """
+    @property
+    def field(self) -> complex:
+        """
+        sqrt(W), sum of the coherent paths as they arrive
+        """
+    @property
+    def half_density_field(self) -> complex:
+        """
+        sqrt(W), the same through the footprint filter of launch cells sqrt(2) wider
+        """
+    @property
+    def high(self) -> float:
+        """
+        W, upper end of it
+        """
+    @property
+    def interval_db(self) -> float:
+        """
+        dB, half the interval, the larger one of its sides; infinite where it reaches down to nothing
+        """
+    @property
+    def low(self) -> float:
+        """
+        W, lower end of the 95 % interval, of bias and chance together
+        """
+    @property
+    def num_batches(self) -> int:
+        """
+        independent parts of the rays behind the errors
+        """
+    @property
+    def num_coherent_paths(self) -> int:
+        """
+        number of coherent paths
+        """
+    @property
+    def num_diffuse_hits(self) -> int:
+        """
+        number of diffuse hits
+        """
+    @property
+    def power(self) -> float:
+        """
+        W, coherent + diffuse
+        """
+    @property
+    def resolved(self) -> bool:
+        """
+        the interval reaches no further than 0.3 dB to either side
+        """
+    @property
+    def standard_error(self) -> float:
+        """
+        W, of the power
+        """
+    @property
+    def strongest_share(self) -> float:
+        """
+        share of the diffuse power of its strongest hit
+        """
+    @property
+    def unfiltered(self) -> float:
+        """
+        W, sum of |a|^2 of the coherent paths without the filter
+        """
+class KeptGeometry:
+    """
+    Geometry that goes from one trace of a scene to the next, no part of the public interface.
+    """
+    def __init__(self) -> None:
+        ...
+class Renewal:
+    """
+    A record brought up to another time; made by `renew`.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def num_blocked(self) -> int:
+        """
+        Paths left out because something stands in the way of a leg.
+        """
+    @property
+    def num_lost(self) -> int:
+        """
+        Paths left out because a point of reflection has left its surface.
+        """
+    @property
+    def num_moved(self) -> int:
+        """
+        Paths whose points of reflection were found anew.
+        """
+    @property
+    def paths(self) -> Paths:
+        """
+        Paths that are still there, in their order.
+        """
+class ValidityShares:
+    """
+    What one trace does not serve, as shares of the power of some paths.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def blocked(self) -> float:
+        """
+        share: something comes in the way
+        """
+    @property
+    def left(self) -> float:
+        """
+        share: points of reflection that leave the surface around their hit
+        """
+    @property
+    def new_surface(self) -> float:
+        """
+        share of single echoes of all that is seen: of what was hidden from the trace
+        """
+    @property
+    def power(self) -> float:
+        """
+        W, what the shares are of
+        """
+    @property
+    def slid(self) -> float:
+        """
+        share: phase error of points of reflection above 0.3 rad
+        """
+    @property
+    def turned(self) -> float:
+        """
+        share: a cosine of incidence or departure changes its sign or by more than a factor of two
+        """
+class ObjectValidity(ValidityShares):
+    """
+    What one trace does not serve of an object: of the paths that scattered on it last.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def disappears(self) -> float:
+        """
+        share of its power that is lost, mean over the times of the check
+        """
+    @property
+    def error_db(self) -> float:
+        """
+        dB, of its power over the frame: the replay over what is there with new surface; 0: not known
+        """
+    @property
+    def has_paths(self) -> bool:
+        """
+        False: it has no path that carries power
+        """
+    @property
+    def in_range(self) -> bool:
+        """
+        at most 60 dB below the strongest object, and above the noise of a range-Doppler cell
+        """
+    @property
+    def name(self) -> str:
+        """
+        of the object
+        """
+    @property
+    def ok(self) -> bool:
+        """
+        it is served, or out of the dynamic range
+        """
+    @property
+    def seen_power(self) -> float:
+        """
+        W, largest power with which the times of the check see it
+        """
+    @property
+    def turn(self) -> float:
+        """
+        rad, how far it turns within the frame at most
+        """
+class Validity:
+    """
+    Whether one trace serves a whole frame and a whole array; `str` tells it in words.
+
+    Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
+    the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band. An object
+    within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
+    over the frame is off by more than 0.5 dB, or it is seen but has no path.
+    """
+    def __repr__(self) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def blocked(self) -> numpy.typing.NDArray[numpy.uint64]:
+        """
+        [P] bit k: something comes in the way of the leg that arrives at hit k
+        """
+    @property
+    def cosine_change(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [P] largest of a cosine, linear
+        """
+    @property
+    def keyframes(self) -> int:
+        """
+        traces, each for its own part of the frame, that bring the error by motion below 0.3 rad
+        """
+    @property
+    def largest_cosine_change(self) -> float:
+        """
+        largest change of a cosine, linear
+        """
+    @property
+    def largest_phase_error(self) -> float:
+        """
+        rad, over paths, times and antennas
+        """
+    @property
+    def left(self) -> numpy.typing.NDArray[numpy.uint64]:
+        """
+        [P] bit k: the point of reflection of hit k leaves the surface around it
+        """
+    @property
+    def left_share(self) -> float:
+        """
+        share of the power whose points of reflection leave the surface around their hit
+        """
+    @property
+    def motion_phase_error(self) -> float:
+        """
+        rad, largest for the trace's own antennas
+        """
+    @property
+    def new_surface_share(self) -> float:
+        """
+        share of single echoes of all that is seen: of what was hidden from the trace
+        """
+    @property
+    def num_paths(self) -> int:
+        """
+        P, their number
+        """
+    @property
+    def objects(self) -> dict[typing.Any, typing.Any]:
+        """
+        {name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength
+        """
+    @property
+    def occluded_share(self) -> float:
+        """
+        share of the power that something blocks
+        """
+    @property
+    def ok(self) -> bool:
+        """
+        no warnings: every object in the dynamic range is served
+        """
+    @property
+    def path_stepped_phase_error(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [P] rad, what a Newton step leaves
+        """
+    @property
+    def phase_error(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [P] rad, largest where no point of reflection has left its surface
+        """
+    @property
+    def phase_error_share(self) -> float:
+        """
+        share of the power whose points of reflection make an error above 0.3 rad
+        """
+    @property
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [P] W
+        """
+    @property
+    def receiver_blocked(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        [P] 1: something comes in the way of the leg to the receiver
+        """
+    @property
+    def replay(self) -> str:
+        """
+        "material" or "fermat": the replay that was certified
+        """
+    @property
+    def rms_phase_error(self) -> float:
+        """
+        rad, weighted by power
+        """
+    @property
+    def shares(self) -> ValidityShares:
+        """
+        ValidityShares of all paths
+        """
+    @property
+    def stepped_phase_error(self) -> float:
+        """
+        rad, largest that a Newton step to the moved points of reflection leaves
+        """
+    @property
+    def times(self) -> list[float]:
+        """
+        [T] s, of the check
+        """
+    @property
+    def turned(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        [P] 1: a cosine changes too much
+        """
+    @property
+    def turned_share(self) -> float:
+        """
+        share of the power of surfaces that turn to or away from the rays
+        """
+    @property
+    def warnings(self) -> list[str]:
+        """
+        list of sentences; empty where one trace serves
+        """
+class Family:
+    """
+    Paths of one object that went the same way.
+
+    After the Radar Ghost Dataset (Kraus et al. 2021).
+
+    object: name, "" for the background: paths that touch no object
+    ghost_type: 0 for real echoes (and the background), 1 for ghosts whose last bounce is on the object, 2 on something else
+    order: number of bounces; hits that follow each other on one object are one. 1 for real echoes, 0 for the background
+    via: names of what mirrored it, each once, in the order of the first bounce there
+    """
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> tuple[str, int, int, tuple]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, object: str, ghost_type: int, order: int, via: collections.abc.Sequence[str]) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def class_code(self) -> int:
+        """
+        Label of the Radar Ghost Dataset without the object's class, to which 1000 C is to be added
+        (C: 1 pedestrian, 2 cyclist, 3 car, 4 large vehicle, 5 motorcycle): 111 real, 112 type 1 of order 2, 122 type 2 of order
+        2, 124 type 2 of order 3; 100 every other ghost, which the dataset leaves undecided; 0 background (no class).
+        """
+    @property
+    def ghost_type(self) -> int:
+        """
+        0: real echo or background; 1, 2: of a ghost
+        """
+    @property
+    def is_ghost(self) -> bool:
+        """
+        neither real nor background
+        """
+    @property
+    def object(self) -> str:
+        """
+        name of the object, "" for the background
+        """
+    @property
+    def order(self) -> int:
+        """
+        number of bounces; 0: background
+        """
+    @property
+    def via(self) -> tuple[typing.Any, ...]:
+        """
+        tuple of the names of what mirrored it
+        """
+class Grouping:
+    """
+    A rule that sorts the paths of any record of a scene into parts, for decompose.
+    """
+    @staticmethod
+    def all_of(groupings: collections.abc.Sequence[Grouping]) -> Grouping:
+        """
+        Combinations that occur. Keys: tuples of keys.
+        """
+    @staticmethod
+    def batches() -> Grouping:
+        """
+        Keys: (batch, "coherent") and (batch, "diffuse"); last (None, "coherent"), paths by images, which stand in each batch's estimate in full.
+        """
+    @staticmethod
+    def selections(parts: collections.abc.Sequence[tuple[str, Selection]]) -> Grouping:
+        """
+        parts: [(name, selection), ...]; the first that takes a path has it. Keys: names, "other" last.
+        """
+class SignalProbe:
+    """
+    Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
+
+    A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each
+    as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
+    there.
+    """
+    def __init__(self, *, seed: int = 1) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def amplitude_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] rms of the differences of amplitudes in sqrt(W) over their rms
+        """
+    @property
+    def amplitude_sum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] in sqrt(W), sum of |amplitude| of all echoes in the chirp
+        """
+    @property
+    def chirp(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        [N] index of the chirp in the frame
+        """
+    @property
+    def largest_phase_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] in rad
+        """
+    @property
+    def num_echoes(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        [N] moving echoes that were evaluated exactly
+        """
+    @property
+    def phase_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] in rad at the start frequency, rms over these echoes, weighted by power
+        """
+    @property
+    def power_sum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] in W, sum of |amplitude|^2 of all paths
+        """
+    @property
+    def rx(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        [N] index of the receiver
+        """
+    @property
+    def sample(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        [N, 8] indices of samples
+        """
+    @property
+    def seed(self) -> int:
+        """
+        of the chirps and samples that are drawn
+        """
+    @property
+    def share_field(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, of both halves of the rays of each batch in turn, then of the paths that rays did not find
+        """
+    @property
+    def share_power(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        [2 batches + 1] in W: sums of |amplitude|^2 of the paths over rough surfaces, likewise
+        """
+    @property
+    def strongest(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [N] in W, the largest |amplitude|^2 of a path that rays found
+        """
+    @property
+    def tx(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        [N] index of the transmitter
+        """
+    @property
+    def value(self) -> numpy.typing.NDArray[numpy.complex128]:
+        """
+        [N, 8] in sqrt(W), what the samples should be
+        """
+def CosinePower(exponent: float, peak_gain: float | None = None) -> AntennaPattern:
+    """
+    Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.
+
+    exponent: 0 or more
+    peak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)
+    """
+def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phase: ArrayLike | None = None, normalize: bool = False) -> AntennaPattern:
+    """
+    Gain sampled over direction; there is none outside the table.
+
+    azimuth: [A] rad, ascending, about z from the boresight +x to the left, over at most a turn
+    elevation: [E] rad, ascending, from the xy-plane, in [-pi/2, pi/2]
+    gain: [E, A] linear power gain
+    phase: [E, A] rad of the far field (e^{+jwt}) relative to the antenna's position, or None: 0 everywhere. It turns the
+        amplitudes of paths by e^{j phase}, in transmission and in reception.
+    normalize: True scales the gain to a mean of 1 over the sphere, that of an antenna without losses, as for tables whose level
+        is unknown; False takes the gain as it is
+    The field sqrt(gain) e^{j phase} is interpolated by bicubics; phases of neighbours should differ by less than 1 rad.
+    Azimuths that cover the whole turn up to one step are closed to a ring.
+    Returns an AntennaPattern. Raises TypeError or ValueError naming the argument, also where the mean gain over the sphere is more
+    than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.
+    """
+def Isotropic(gain: float = 1.0) -> AntennaPattern:
+    """
+    The same linear power gain in every direction.
+    """
+def _wait(seconds: float, progress: typing.Any = None) -> None:
+    ...
+def add_noise(cube: typing.Any, radar: Radar, *, seed: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    Adds the receiver's thermal noise to a cube.
+
+    Circular Gaussian of k T0 F fs per complex sample, half of it for real samples, independent between samples.
+    cube: [tx, rx, chirp, sample] in sqrt(W)
+    seed: 0 or more; the same seed gives the same noise
+    Returns a new cube. Raises ValueError unless the cube has the shape that the radar gives it.
+    """
+def angle_fft(spectrum: RangeDoppler, radar: Radar, *, window: typing.Any = 'hann', zero_pad: int = 4, overlaps: str = 'average', compensate: bool = True, progress: typing.Any = None, **kwargs: typing.Any) -> AngleSpectrum:
+    """
+    Angle spectra of a uniform array: a Fourier transform over its rows and columns.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    window: as in range_doppler, over rows and columns; here symmetric and nowhere zero
+    zero_pad: 1 to 64, transforms of so many times the rows and columns
+    overlaps: "average" of channels at one position, or the "first" of them; gaps count as zeros
+    compensate: take out the phase between transmit slots (compensate_tdm)
+    progress: callable(stage, fraction) or None
+    Returns an AngleSpectrum with values [elevation, azimuth, velocity, range] in sqrt(W). |value|^2 of a far point at its
+    direction is its received power in W, averaged over channels; noise falls to 1/N for N elements without a window.
+    Raises ValueError where the array is no grid of equal steps (beamform takes any) or the map is not the radar's.
+    """
+def beamform(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, cells: typing.Any = None, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> BeamPower:
+    """
+    Power that beams toward a grid of directions pass, for any array.
+
+    Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency. An echo from
+    the steered direction passes unchanged: a far point gives its received power in W, averaged over channels.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    elevation: [E] or one in rad, up from the xy-plane; None likewise
+    cells: [N, 2] (velocity, range) indices, or None: all
+    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
+        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
+    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
+    overlaps: "average" of channels at one position, or the "first" of them
+    compensate: take out the phase between transmit slots (compensate_tdm)
+    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
+    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
+    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
+    progress: callable(stage, fraction) or None
+    Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
+    Raises ValueError or IndexError naming the argument.
+    """
+def cell_masks(power: typing.Any, noise_floor: float, dynamic_range: float) -> tuple[typing.Any, ...]:
+    """
+    (above_noise, labelled), bool [V, R], of powers [V, R].
+    """
+def cell_noise_power(radar: Radar, window: typing.Any) -> float:
+    """
+    Mean power of the receiver's noise in a cell of a range-Doppler map, W.
+    """
+def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, progress: typing.Any = None, **kwargs: typing.Any) -> CfarResult:
+    """
+    Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
+
+    A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
+    right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
+    channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
+    false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
+    guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
+        the window's main lobe; None: just that
+    training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the map
+        is small
+    rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
+    progress: callable(stage, fraction) or None
+    Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each side,
+    "os" several times that; Ctrl-C is heard.
+    Returns a CfarResult. Raises ValueError naming the argument, also for windows of more than 2000 cells, counted without
+    padding.
+    """
+def check_cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75) -> None:
+    """
+    Raises what cfar would for these settings, at no cost.
+    """
+def check_objects(scene: Scene, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]]) -> None:
+    """
+    Raises what find_families would for objects [(name, [glob, ...]), ...].
+    """
+def check_part_names(parts: collections.abc.Sequence[tuple[str, Selection]]) -> None:
+    """
+    Raises ValueError where a name of [(name, selection), ...] is empty, "other" or given twice.
+    """
+def compensate_tdm(spectrum: RangeDoppler, radar: Radar, fold: int = 0) -> RangeDoppler:
+    """
+    A map without the phase that motion adds between transmit slots (TDM).
+
+    Transmitter m sends m chirp intervals after the first: a cell of velocity v (receding positive) is turned by
+    e^{-j 2 pi (2 v / wavelength) m chirp_interval}. M transmitters divide the unambiguous velocity by M; an echo of
+    v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`.
+    spectrum: RangeDoppler of that radar, with values [tx, rx, velocity, range]
+    fold: whole number; the velocities of the result are those assumed, v + 2 fold v_max in m/s
+    Returns a RangeDoppler. The functions of angles do this themselves unless it is done. Raises ValueError.
+    """
+def decompose(paths: Paths, radar: Radar, views: collections.abc.Sequence[Grouping], *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None, **kwargs: typing.Any) -> list[typing.Any]:
+    """
+    The signals of parts of the paths, several views of them replayed once.
+
+    views: list of Grouping
+    Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
+    tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes, progress and probe are as in synthesize.
+    """
+def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> AngleEstimates:
+    """
+    Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
+    elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
+    cells: [N, 2] (velocity, range) indices
+    max_peaks: of a cell, the strongest; peak_range_db: dB below the strongest of the cell, within which others count
+    folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
+        tell apart; less than half the number of transmitters
+    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
+        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
+    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
+    overlaps: "average" of channels at one position, or the "first" of them
+    compensate: take out the phase between transmit slots (compensate_tdm)
+    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
+    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
+    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
+    progress: callable(stage, fraction) or None
+    Returns AngleEstimates, arrays [M]: none for a cell without power. Raises ValueError or IndexError naming the argument.
+    """
+def find_families(paths: Paths, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None) -> tuple[typing.Any, ...]:
+    """
+    The family of each path.
+
+    objects: [(name, [glob, ...]), ...] or None for the children of the scene's root that do not surround the antenna
+    Returns the names of the objects, the families that occur (background last), uint32 [P] indices into them, and the
+    Grouping by them.
+    """
+def find_peaks(spectrum: RangeDoppler, radar: Radar, found: CfarResult, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
+    """
+    Local maxima among the cells found, and where between the cells they lie.
+
+    found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
+    Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
+    channels), velocity_offset, range_offset (cells). Raises ValueError.
+    """
+def first(glob: str) -> Selection:
+    """
+    Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.
+    """
+def glob_takes(glob: str, full_name: str) -> bool:
+    """
+    Whether a glob takes a mesh name: its full name or an ancestor's; * is any text, / too, and ? one character.
+    """
+def hits(glob: str) -> Selection:
+    """
+    Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.
+    """
+def instruction_set() -> str:
+    """
+    That of the inner loops: baseline, avx2 or avx512; the environment variable ECHOPATH_INSTRUCTION_SET forces one.
+    """
+def label_regions(label: typing.Any, power: typing.Any, rows_wrap: bool) -> list[typing.Any]:
+    """
+    Cells, peak and box of each label: list of dict or None.
+    """
+def last(glob: str) -> Selection:
+    """
+    Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.
+    """
+def load_mesh(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> Mesh:
+    """
+    All faces of a mesh file as one mesh.
+
+    path: an OBJ or PLY file (ASCII or binary); unit: metres per file unit
+    Returns a Mesh; its original_triangle counts the faces of the file from 0.
+    Raises FileError naming the file, and the line where it is text.
+    """
+def load_meshes(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> list[typing.Any]:
+    """
+    The groups of a mesh file.
+
+    path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file
+    unit: metres per file unit
+    Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
+    out. Raises FileError naming the file, and the line where it is text.
+    """
+def looks_for_signals() -> bool:
+    """
+    Whether work of the core is looking for signals right now: an exception that a handler raises then ends it.
+    """
+def mean_power(spectrum: RangeDoppler) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    Mean over the channels of |value|^2, [V, R] in W.
+    """
+def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: str = 'H') -> float:
+    """
+    Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.
+
+    The Mie series, to 1e-9: the reference for curved metal. For ka = 2 pi radius frequency / c up to 1e6.
+    radius: m; frequency: Hz
+    bistatic_angle: rad in [0, pi] between the directions to transmitter and receiver, 0 is monostatic
+    plane: "E" or "H": the field that the plane of both directions holds (alike in the monostatic case)
+    Raises ValueError. Source: Mie 1908; Harrington, Time-Harmonic Electromagnetic Fields, 1961, section 6-9.
+    """
+def nearest_names(word: str, candidates: collections.abc.Sequence[str], count: int = 3) -> list[str]:
+    """
+    The candidates most like `word` by edit distance, best first, at most `count`.
+    """
+def noise_power(radar: Radar) -> float:
+    """
+    Noise power of one IF sample, W.
+    """
+def noise_power_in_cell(radar: Radar) -> float:
+    """
+    Noise power of the range-Doppler cell that all samples of a frame make with even weights, W, against the received power of an echo there.
+    """
+def num_threads() -> int:
+    """
+    Number of threads of the parallel loops.
+    """
+def partition_groups(paths: typing.Any, parts: collections.abc.Sequence[tuple[str, Selection]]) -> tuple[typing.Any, ...]:
+    """
+    The part of each path in a partition.
+
+    parts: [(name, selection), ...]; the first that takes a path has it
+    Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty,
+    "other" or given twice.
+    """
+def power_shares(power: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    Shares of the powers [K, V, R] in their sums.
+    """
+def range_azimuth(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, velocity: float | None = None, combine: str = 'sum', method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> RangeAzimuth:
+    """
+    Received power by range and azimuth.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
+    velocity: m/s, of the cells to take; None: all velocities
+    combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
+        case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
+        about ln(num_chirps) times that of a cell.
+    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
+        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
+    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
+    overlaps: "average" of channels at one position, or the "first" of them
+    compensate: take out the phase between transmit slots (compensate_tdm)
+    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
+    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
+    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
+    progress: callable(stage, fraction) or None
+    Returns a RangeAzimuth with power [azimuth, range] in W. Raises ValueError naming the argument.
+    """
+def range_doppler(cube: typing.Any, radar: Radar, window: typing.Any = 'hann', zero_pad: int = 1) -> RangeDoppler:
+    """
+    Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
+
+    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
+    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes
+    zero_pad: 1 to 64, transforms of so many times the samples and chirps
+    Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
+    Raises ValueError naming the argument.
+    """
+def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, components: bool = False, return_error: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> typing.Any:
+    """
+    Radar cross section of a scene in m^2, far field, at time 0.
+
+    Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
+    the mean over realisations of the roughness.
+    frequency: Hz
+    incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
+    observation: toward the receiver, likewise; None: monostatic
+    polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
+        (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of these. Of
+        a vector its part across the line of sight counts
+    model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
+    num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
+    seed, footprint, sampler: as in trace
+    batches: as in trace; 8 for return_error, else 1
+    target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as trace does, until each
+        cross section, of a list of polarizations the first with each transmitter, is known that well
+    components: True returns {"coherent": typing.Any, "diffuse": ...}, which add up to the cross section
+    return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
+        and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
+        smaller than its error
+    progress: callable(stage, fraction) or None
+    Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction and
+    transmit polarization costs a trace of its own. Warns (RuntimeWarning) where max_rays did not do. Raises ValueError for bad
+    settings, a zero direction, one along the polarization, an empty scene, and mirrors, which have no cross section.
+    """
+def received_power(paths: Paths, *, tx: int = 0, rx: int = 0, progress: typing.Any = None) -> ReceivedPower:
+    """
+    Mean received power of paths with its interval, for the whole of a trace or any selection of it.
+
+    paths: of a trace, with batches for standard errors; progress: callable(stage, fraction) or None
+    tx, rx: indices of the antennas
+    Returns a ReceivedPower, in W. Raises IndexError for antennas that are not there, KeyboardInterrupt on Ctrl-C.
+    """
+def received_powers(paths: Paths, group_of_path: typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], num_groups: int, *, tx: int = 0, rx: int = 0, progress: typing.Any = None) -> list[ReceivedPower]:
+    """
+    The same of groups of paths in one pass, each as `received_power` of its paths alone.
+
+    paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the antennas
+    progress: callable(stage, fraction) or None
+    Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
+    are not there, KeyboardInterrupt on Ctrl-C.
+    """
+def received_powers_of_sortings(paths: Paths, sortings: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], int]], progress: typing.Any = None) -> list[list[ReceivedPower]]:
+    """
+    received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.
+    """
+def renew(paths: Paths, radar: Radar | None = None, *, time: float, progress: typing.Any = None, **kwargs: typing.Any) -> Renewal:
+    """
+    A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
+
+    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view
+    has no paths here; `synthesize(retrace="invalid")` adds it.
+
+    paths: of a trace
+    radar: whose motion carries the antennas of the trace along, or None: that of the trace
+    time: s
+    progress: callable (stage, fraction) or None
+    Returns a Renewal. Raises ValueError when a motion does not cover the time.
+    """
+def set_num_threads(num_threads: int) -> None:
+    """
+    Number of threads of all parallel loops from now on.
+
+    num_threads: 0 (one per core) or more. Results do not depend on it, not by a bit.
+    Raises ValueError if negative.
+    """
+def share_errors(cross: typing.Any, coherent: typing.Any, diffuse: typing.Any, dominant: typing.Any) -> tuple[typing.Any, ...]:
+    """
+    (power, its error, share, its error [K, V, R], certain [V, R]) from sums of batches [K, B, V, R].
+    """
+def strongest_part(power: typing.Any, mask: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    Index of the largest of [K, V, R], -1 outside.
+    """
+def synthesize(paths: Paths, radar: Radar | None = None, *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None, **kwargs: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    The noise-free IF signal of paths.
+
+    radar: another waveform, array or motion than that of the trace, or None
+    tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
+    method: "auto", "direct" (the reference), "recurrence" or "nufft"
+    replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with their
+        triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
+    evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
+        each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
+        every sample: for fast rotors, a sine and a cosine per path and sample)
+    retrace: for each of `keyframes` stretches of chirps, "never" (one record serves the frame), "invalid" (shadows and points of
+        reflection are renewed, see `renew`; surface that comes into view gets paths of its own if `paths` are those of a whole
+        trace, and none if they are a selection) or "always" (the scene is traced anew with the same settings and seed; random
+        phases of rough surfaces then differ from one stretch to the next, which suits coherent echoes; not for selections)
+    keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
+    progress: callable(stage, fraction) or None
+    probe: a SignalProbe, filled with spot checks of this signal, or None
+    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).
+    """
+def synthesize_echoes(waveform: ChirpSequence, delays: typing.Any, amplitudes: typing.Any, *, method: str = 'auto', tolerance: float = 1e-07, num_slots: int = 1) -> numpy.ndarray[typing.Any, typing.Any]:
+    """
+    The IF signal of echoes given by their delays and amplitudes, for one channel.
+
+    delays: [1, P] (at rest) or [chirps, P] (at the middle of each chirp) in s, round trip
+    amplitudes: the same shape, complex in sqrt(W), without the phase of the delay
+    method: "auto", "direct" (the reference), "recurrence" or "nufft"
+    tolerance: rms error over the samples relative to the sum of |amplitudes|, 1e-13 to 0.1
+    num_slots: transmitters that take turns; rows are num_slots * chirp_interval apart
+    Returns [chirp, sample], complex128 in sqrt(W). Raises ValueError naming the argument.
+    """
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, **kwargs: typing.Any) -> Paths:
+    """
+    Shoots rays from the radar through the scene at mid-frame and records what they hit.
+
+    num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away, tells how
+    many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get more; up to half of
+    those of each lie closer about its points of reflection (strata with focus_of). Unless given,
+    and without target_error_db, there are as many as bring the echo of each object that stands above the noise to 0.3 dB (95 %
+    interval of bias and chance), 1 000 000 at most; max_bounces: 1 to 64, hits on mirrors count. Between a target
+    and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces
+    seed: the same seed gives the same bits
+    start_time: s, first sample of the frame
+    polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised),
+    "jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or, unless given, "auto": field vectors where the
+    scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas of several
+    polarisations; `paths.effects` tells which and why
+    footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a flatter
+    second order, for curved surfaces whose edges make the echo (a dish along its axis)
+    sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
+    batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
+    fine as its share of the rays; 1 unless given
+    target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the echo of
+    each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval (`received_power`). A
+    RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
+    progress: callable(stage, fraction) or None
+    kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for
+    about 200 bytes a triangle while the scene lives
+    Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.
+    """
+def validity(paths: Paths, radar: Radar | None = None, *, replay: str = 'material', times: typing.Any = None, arrays: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> Validity:
+    """
+    Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
+
+    Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two for
+    each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points of
+    reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene at these
+    times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase
+    error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256
+    times would have to follow is a warning.
+
+    paths: of a trace, all or a selection of them, which asks about these alone
+    radar: another waveform, array or motion than that of the trace, or None
+    replay: of the replay that is to be certified, as in synthesize
+    times: [T] s, of the check, or None: as above
+    arrays: keep what is found of each path, [P] each; then all are looked at
+    progress: callable(stage, fraction) or None
+    Returns a Validity. Raises ValueError for motions that do not cover the times, KeyboardInterrupt on Ctrl-C.
+    """
+def virtual_array(radar: Radar) -> VirtualArray:
+    """
+    The virtual array of a radar's transmitters and receivers.
+
+    Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
+    0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
+    found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
+    Returns a VirtualArray with positions [tx, rx, 3] in m.
+    """
+def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
+    """
+    [(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.
+    """
+def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, progress: typing.Any) -> list[typing.Any]:
+    """
+    As visibility, at the time of a trace and of the objects that find_families has for it.
+    """
+def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Samples [n] of a window: cosines periodic; "chebyshev" symmetric, sidelobes `sidelobe_db` dB down.
+    """
+AMPLITUDE_TOLERANCE: float = 0.0001
+PHASE_TOLERANCE: float = 1e-05
+__version__: str = '0.1.0'
+boltzmann: float = 1.380649e-23
+num_bounces: NumBounces
+power: Power
+reference_temperature: float = 290.0
+speed_of_light: float = 299792458.0
+vacuum_permittivity: float = 8.8541878128e-12

@@ -198,7 +198,7 @@ TEST(Mesh, RefusesBadInputByName) {
   expect_error<Invalid>([&] { Mesh(kCube, {}); }, {"triangles", "area"});
   expect_error<Invalid>([&] { Mesh(kCube, {{0, 1, 1}}); }, {"triangles", "area"});
   expect_error<Invalid>([&] { Mesh({}, {{0, 1, 2}}); }, {"triangles", "got 0"});
-  expect_error<Invalid>([&] { Mesh(kCube, kCubeFaces, {1, 2}); }, {"source_triangle", "got 2"});
+  expect_error<Invalid>([&] { Mesh(kCube, kCubeFaces, {1, 2}); }, {"original_triangle", "got 2"});
 }
 
 }  // namespace

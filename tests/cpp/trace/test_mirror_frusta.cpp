@@ -106,11 +106,11 @@ TEST(MirrorFrusta, LightWhatSpecularPointsReach) {
 
 TEST(MirrorFrusta, NumbersTellSequencesApart) {
   const size_t num_mirrors = 7;
-  std::set<MirrorSequence> numbers = {kDirect};
+  std::set<MirrorSequence> numbers = {kNoMirrors};
   for (int first = 0; first < 7; ++first) {
-    numbers.insert(extended(kDirect, first, num_mirrors));
+    numbers.insert(extended(kNoMirrors, first, num_mirrors));
     for (int second = 0; second < 7; ++second) {
-      numbers.insert(extended(extended(kDirect, first, num_mirrors), second, num_mirrors));
+      numbers.insert(extended(extended(kNoMirrors, first, num_mirrors), second, num_mirrors));
     }
   }
   EXPECT_EQ(numbers.size(), 1u + 7u + 49u);

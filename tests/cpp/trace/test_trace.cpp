@@ -222,7 +222,7 @@ TEST(Launch, OwnersCoverEachSurfaceOnce) {
     const Vec3 direction = directions.direction(stratum, plan.point_of(stratum, ray));
     EXPECT_TRUE(plan.strata[static_cast<size_t>(stratum)].contains((1.0 - 1e-12) * direction)) << ray;
     shoot(direction, [&](uint32_t mesh) {
-      if (plan.owners.owner(mesh, kDirect) == stratum) owned[mesh] += 1.0 / plan.density(stratum);
+      if (plan.owners.owner(mesh, kNoMirrors) == stratum) owned[mesh] += 1.0 / plan.density(stratum);
     });
   }
   constexpr int64_t kEven = 1000000;  // directions over the whole sphere, for comparison

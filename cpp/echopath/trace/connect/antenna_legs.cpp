@@ -22,7 +22,7 @@ void AntennaLegs::find_receive(const SurfaceHit& surface, int max_mirrors, HitLe
 
 void AntennaLegs::find_transmit(const SurfaceHit& surface, int max_mirrors, MirrorSequence skip, HitLegs& legs) const {
   legs.transmit.clear();
-  if (skip == kDirect && transmitter_.frusta.empty()) return;
+  if (skip == kNoMirrors && transmitter_.frusta.empty()) return;
   const RayHit& point = surface.point;
   finder_.find({point.position, point.normal, max_mirrors, skip, ShadowState::kUnknown}, transmitter_, legs.transmit,
                legs.search);

@@ -6,7 +6,7 @@ namespace echopath {
 
 void RayOwners::assign(int object, MirrorSequence sequence, int stratum) {
   const auto k = static_cast<size_t>(object);
-  if (sequence == kDirect) {
+  if (sequence == kNoMirrors) {
     direct_[k] = stratum;
     return;
   }

@@ -73,7 +73,7 @@ class RayTargetFinder {
     stratum->object = target.node;
     stratum->num_mirrors = num_mirrors;
     RayTarget made{std::move(*stratum), target.object, {}, target.moves};
-    if (num_mirrors == 0) made.sequences.push_back(kDirect);
+    if (num_mirrors == 0) made.sequences.push_back(kNoMirrors);
     return made;
   }
 

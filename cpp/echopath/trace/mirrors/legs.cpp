@@ -26,7 +26,7 @@ AntennaView LegFinder::view_of(const Vec3& antenna, int max_mirrors) const {
 void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {
   legs.clear();
   search.segments.clear();
-  if (query.skip != kDirect && query.direct != ShadowState::kBlocked) add_direct(query, antenna, legs, search);
+  if (query.skip != kNoMirrors && query.direct != ShadowState::kBlocked) add_direct(query, antenna, legs, search);
   const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const int index : antenna.locator.near(query.point)) {
     const MirrorFrustum& frustum = antenna.frusta[static_cast<size_t>(index)];

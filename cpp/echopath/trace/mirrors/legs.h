@@ -19,7 +19,7 @@ struct LegBounce {
 };
 
 struct Leg {
-  MirrorSequence sequence = kDirect;
+  MirrorSequence sequence = kNoMirrors;
   int num_bounces = 0;
   std::array<LegBounce, kMaxLegMirrors> bounces;  // from the point toward the antenna
   double length = 0.0;                            // m, unfolded

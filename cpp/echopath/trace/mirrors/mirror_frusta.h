@@ -16,7 +16,7 @@ inline constexpr size_t kMaxFrusta = 250'000;  // of one antenna, about 0.2 GiB;
 
 // A sequence of mirrors in travel order from the antenna to the surface is kept as a number; 0 means no mirror.
 using MirrorSequence = int64_t;
-inline constexpr MirrorSequence kDirect = 0;
+inline constexpr MirrorSequence kNoMirrors = 0;
 inline constexpr MirrorSequence kLongSequence = -2;  // of more than kMaxLegMirrors, which have no number
 // Returns `sequence` followed by `mirror` (an index into `num_mirrors` mirrors).
 inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_mirrors) {
@@ -26,7 +26,7 @@ inline MirrorSequence extended(MirrorSequence sequence, int mirror, size_t num_m
 // Describes the space that an antenna lights over one sequence of mirrors: all that lies behind the window as seen from the
 // last image.
 struct MirrorFrustum {
-  MirrorSequence sequence = kDirect;
+  MirrorSequence sequence = kNoMirrors;
   std::vector<int> mirrors;  // in travel order from the antenna
   std::vector<Vec3> images;  // of the antenna over the first 1, 2, .. of these mirrors
   Vec3 lit_normal;           // of the last mirror, unit, on the side that is lit

@@ -89,7 +89,7 @@ bool PacketFront::counts(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
   const uint32_t mesh = first.hits.met[k].mesh_id;
   const bool passes_on = context_.is_passed(first.places.strata[k], mesh);
-  first.is_owned[k] = !passes_on && context_.is_owner(first.places.strata[k], mesh, kDirect);
+  first.is_owned[k] = !passes_on && context_.is_owner(first.places.strata[k], mesh, kNoMirrors);
   return (first.is_owned[k] || passes_on) && std::isfinite(first.densities[lane]);  // else foci have it all
 }
 

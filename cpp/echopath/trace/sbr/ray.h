@@ -45,14 +45,14 @@ struct Ray {
   int stratum = 0;
   Vec3 direction, launch_direction;
   RayHits hits;
-  int depth = 0;                      // hits so far
-  uint64_t diffuse = 0;               // bit per hit
-  bool coherent = true;               // the ray carries a field, not a power (sbr.h)
-  MirrorSequence sequence = kDirect;  // the mirrors over which the ray left the transmitter
-  double chain_share = 1.0;           // product of s_m^2 of these mirrors
-  bool is_owned = false;              // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
-  double launch_density = 0.0;        // rays per sr of its stratum; in a focus, of the stratum that this is in
-  double stands_for = 1.0;            // number of such rays that this one stands for (LaunchFoci)
+  int depth = 0;                         // hits so far
+  uint64_t diffuse = 0;                  // bit per hit
+  bool coherent = true;                  // the ray carries a field, not a power (sbr.h)
+  MirrorSequence sequence = kNoMirrors;  // the mirrors over which the ray left the transmitter
+  double chain_share = 1.0;              // product of s_m^2 of these mirrors
+  bool is_owned = false;                 // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
+  double launch_density = 0.0;           // rays per sr of its stratum; in a focus, of the stratum that this is in
+  double stands_for = 1.0;               // number of such rays that this one stands for (LaunchFoci)
   // Both count from the last anchor (the transmitter or the last diffuse hit): the unfolded length in m, and the rays per sr
   // with continuation probabilities.
   double leg_length = 0.0, leg_density = 0.0;

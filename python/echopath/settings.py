@@ -26,7 +26,7 @@ Retrace = Literal["never", "invalid", "always"]
 Plane = Literal["range_doppler", "range_azimuth"]
 
 MOST_BOUNCES = MOST_BATCHES = 64
-MOST_RAYS = 2**34  # a budget that is a slip of the keyboard beyond it
+MOST_RAYS = 10_000_000_000  # as the core has it
 Kind = TypeVar("Kind", bound="Settings")
 
 

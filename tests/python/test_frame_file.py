@@ -7,8 +7,9 @@ import pytest
 
 import echopath as ep
 from echopath import frame_file, path_subset
-from echopath.frame_file import paths as frame_paths
+from echopath.frame_file import h5, paths as frame_paths
 from echopath.path_subset import power_of_strongest, strongest, subset
+from support.frame_edits import edited
 from support.radars import build_radar
 from support.shapes import lambert, quad
 
@@ -229,13 +230,25 @@ def test_other_files_are_refused(tmp_path):
 
 
 def change(path, edit):
-    with h5py.File(path, "r+") as file:
+    with edited(path) as file:
         edit(file)
 
 
 def replace(file, name, values):
     del file[name]
     file[name] = values
+
+
+def replace_by_group(file, name):
+    del file[name]
+    file.create_group(name)
+
+
+def replace_by_nothing(file, name, shape):
+    """A dataset that says it is very long and has no values."""
+    dtype = file[name].dtype
+    del file[name]
+    file.create_dataset(name, shape, dtype, chunks=(1 << 20,))
 
 
 EDITS = {
@@ -248,6 +261,19 @@ EDITS = {
     "wild triangle": (lambda file: file["record/hits/triangle_id"].__setitem__(0, 7777), "must be below"),
     "wild parent": (lambda file: file["scene/parent"].__setitem__(0, 3), "must name an earlier node"),
     "bad material": (lambda file: file["scene/materials/0"].attrs.modify("scattering", 7.0), "scattering"),
+    "unknown replay": (lambda file: file["signal"].attrs.modify("replay", np.bytes_("newton")), "'replay' must be one of"),
+    "unknown setting": (lambda file: file["spectra"].attrs.modify("settings", np.bytes_('{"windw": 1}')), "no keys but window"),
+    "settings of another map": (lambda file: file["spectra"].attrs.modify("settings", np.bytes_('{"zero_pad": 4000000}')),
+                                "make a map of 16 velocities"),
+    "settings that are no table": (lambda file: file["spectra"].attrs.modify("settings", np.bytes_("[1]")), "no keys but"),
+    "wild part": (lambda file: file["partitions/0/part_of_path"].__setitem__(0, 9), "must be below 3, the number of parts"),
+    "last offset": (lambda file: file["record/paths/offsets"].__setitem__(0, 2**63 - 1), "must lie within"),
+    "array as setting": (lambda file: file["record/frame"].attrs.create("seed", [1, 2]), "'seed' must be a int"),
+    "group as array": (lambda file: replace_by_group(file, "record/paths/offsets"), "offsets: no such dataset"),
+    "array as group": (lambda file: replace(file, "scene/materials", np.zeros(3)), "scene/materials: no such group"),
+    "values without end": (lambda file: replace_by_nothing(file, "record/hits/u", (1 << 40,)), "record/hits"),
+    "unknown column": (lambda file: file["record/paths"].move("flags", "flogs"), "flogs: unknown column|flags: no such"),
+    "damaged keyframes": (lambda file: file["scene/motions/0/times"].__setitem__(0, np.nan), "/scene/motions/0: times"),
     "cube of another radar": (lambda file: file["radar/waveform"].attrs.modify("num_chirps", 5), "must have the shape"),
 }
 
@@ -259,15 +285,84 @@ def test_files_that_contradict_themselves_are_refused(saved, name):
     refuse(saved, reason)
 
 
-@pytest.mark.hard
-@pytest.mark.parametrize("name", ["record/paths/weight", "record/hits/u", "signal/cube"])
+def position_of(path, name: str) -> int:
+    """Byte of the file at which the values of a dataset begin."""
+    with h5py.File(path) as file:
+        dataset = file[name].id
+        return dataset.get_offset() if file[name].chunks is None else dataset.get_chunk_info(0).byte_offset
+
+
+@pytest.mark.parametrize("name", ["record/paths/weight", "record/paths/offsets", "signal/cube", "scene/name", "scene/parent",
+                                  "radar/receivers/position"])
 def test_a_flipped_bit_is_noticed(saved, name):
-    with h5py.File(saved) as file:
-        position = file[name].id.get_chunk_info(0).byte_offset
+    position = position_of(saved, name)
     content = bytearray(saved.read_bytes())
-    content[position + 100] ^= 0x10
+    content[position + 5] ^= 0x10
     saved.write_bytes(content)
-    refuse(saved, "damaged")
+    refuse(saved, name)
+
+
+def test_values_that_a_lost_sector_made_zeros_are_noticed(saved):
+    """A check sum of sums, such as Fletcher's, is that of zeros for zeros."""
+    with h5py.File(saved) as file:
+        size = file["scene/parent"].nbytes
+    position = position_of(saved, "scene/parent")
+    content = bytearray(saved.read_bytes())
+    content[position:position + size] = bytes(size)
+    saved.write_bytes(content)
+    refuse(saved, "scene/parent: damaged")
+
+
+def test_settings_of_a_file_are_checked_bytes(saved):
+    """HDF5 keeps attributes in headers, whose check sums it holds against them."""
+    content = saved.read_bytes()
+    position = content.index(b'"zero_pad": 1')
+    saved.write_bytes(content[:position + 12] + b"2" + content[position + 13:])
+    refuse(saved, "incorrect metadata checksum")
+
+
+def test_no_text_of_a_file_has_a_variable_length(saved):
+    def look(_, item):
+        kinds = [item.attrs.get_id(name).dtype.kind for name in item.attrs]
+        assert "O" not in (kinds if isinstance(item, h5py.Group) else [*kinds, item.dtype.kind]), item.name
+
+    with h5py.File(saved) as file:
+        file.visititems(look)
+
+
+def test_texts_of_variable_length_are_not_read(saved):
+    """The library runs in circles in damaged ones."""
+    change_without_check_sums(saved, lambda file: replace(file, "scene/name", ["wall", "fan", "carrier", "a", "b"]))
+    refuse(saved, "scene/name must hold texts of fixed length")
+    with h5py.File(saved, "r+") as file:
+        file.attrs["format"] = "echopath frame"
+    refuse(saved, "attribute 'format' must be a str")
+
+
+def change_without_check_sums(path, edit):
+    with h5py.File(path, "r+") as file:
+        edit(file)
+
+
+def test_files_of_the_layout_before_are_told_why_not(tmp_path):
+    with h5py.File(tmp_path / "frame.h5", "w") as file:
+        file.attrs["format"], file.attrs["schema_version"] = "echopath frame", 3
+    refuse(tmp_path / "frame.h5", "has schema version 3, this program reads 4; .*check sums")
+
+
+def test_names_that_hold_a_nul_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="title: must not hold a NUL character, got 'a.x00b'"):
+        with h5.writing(tmp_path / "frame.h5") as file:
+            h5.write_texts(file, "title", ["a\0b"])
+
+
+def test_long_settings_come_back(tmp_path):
+    """Attributes beyond 64 KiB are kept elsewhere in the file."""
+    text = "x" * 100_000
+    with h5.writing(tmp_path / "long.h5") as file:
+        h5.write_attribute(file, "settings", text)
+    with h5.reading(tmp_path / "long.h5") as file:
+        assert h5.read_attribute(file, "settings", str) == text
 
 
 @pytest.mark.hard

@@ -15,6 +15,7 @@ import echopath as ep
 from echopath.cli import main
 from echopath.labels.images import colours_of
 from echopath.plots import plot_ghosts, plot_labels
+from support.frame_edits import edited
 from support.scene_text import WAVEFORM
 
 SAME_SHARES = 1e-9  # of doubles summed by other groups; of the strongest cell
@@ -134,7 +135,7 @@ DAMAGES = {
     "a ghost that is not there": (lambda group: group["ghost_map"].write_direct(
         np.full(group["ghost_map"].shape, -2, np.int16)),
                                   "ghost_map: must be -1 to"),
-    "another plane": (lambda group: group.attrs.modify("plane", "range_elevation"), "unknown plane 'range_elevation'"),
+    "another plane": (lambda group: group.attrs.modify("plane", np.bytes_("range_height")), "unknown plane 'range_height'"),
     "powers of other parts": (lambda group: group.move("mean_power", "power2"), "mean_power: no such dataset"),
     "an occluder of nobody": (lambda group: group["objects/occluded"].write_direct(
         np.full(group["objects/occluded"].shape, 7, np.int32)), "occluded: must be 0 to 1"),
@@ -144,7 +145,7 @@ DAMAGES = {
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_labels_that_contradict_themselves_are_refused(saved, damage):
     change, message = DAMAGES[damage]
-    with h5py.File(saved, "r+") as file:
+    with edited(saved) as file:
         change(file["labels/0"])
     with pytest.raises(ep.FileError, match=message):
         ep.load_frame(saved)
@@ -181,7 +182,7 @@ def test_detections_of_a_frame_file_are_the_same_bits_and_know_their_paths(frame
 
 
 def test_detections_outside_of_the_map_are_refused(saved):
-    with h5py.File(saved, "r+") as file:
+    with edited(saved) as file:
         file["detections/cells"][0, 1] = 64
     with pytest.raises(ep.FileError, match="detections/cells: must lie within"):
         ep.load_frame(saved)

@@ -42,7 +42,7 @@ def test_frame_file(folder):
     with h5py.File(folder / "frame.h5") as file:
         assert int(file["record/frame"].attrs["seed"]) == SEED
         assert int(file["signal"].attrs["noise_seed"]) == NOISE_SEED
-        assert file.attrs["software_version"] == ep.__version__
+        assert file.attrs["software_version"].decode() == ep.__version__
     frame = ep.load_frame(folder / "frame.h5")
     assert (frame.detections.seed, frame.detections.noise_seed) == (SEED, NOISE_SEED)
     assert {labels.seed for labels in frame.labels.values()} == {SEED}

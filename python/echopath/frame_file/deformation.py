@@ -4,24 +4,25 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
 
 def write_deformation(group, deformation) -> None:
     """Writes a vertex sequence or a skin."""
     if isinstance(deformation, _core.Skin):
-        group.attrs["kind"] = "skin"
+        write_attribute(group, "kind", "skin")
         _write_skin(group, deformation)
         return
     if not isinstance(deformation, _core.VertexSequence):
         raise ValueError(f"motion: must be a VertexSequence or a Skin to deform a mesh, got {deformation!r}")
-    group.attrs["kind"] = "vertices"
-    group.attrs["interpolation"] = deformation.interpolation
+    write_attribute(group, "kind", "vertices")
+    write_attribute(group, "interpolation", deformation.interpolation)
     write_array(group, "times", deformation.times, unit="s")
     write_array(group, "vertices", deformation.vertices, unit="m")
 
 
+@blames_group
 def read_deformation(group):
     """The vertex sequence or skin of a group."""
     kind = read_attribute(group, "kind", str)

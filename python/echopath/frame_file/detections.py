@@ -6,7 +6,7 @@ import numpy as np
 from .. import _core
 from ..detections.detections import Detections
 from ..detections.echo_fields import EchoFields
-from .h5 import read_array, read_texts, write_array, write_texts
+from .h5 import blames_group, read_array, read_texts, write_array, write_texts
 
 NUMBERS = {"range": (np.float64, "m"), "velocity": (np.float64, "m/s"), "azimuth": (np.float64, "rad"),
            "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"),
@@ -27,6 +27,7 @@ def write_detections(group, detections: Detections) -> None:
         write_texts(group, name, [str(text) for text in getattr(detections, name)])
 
 
+@blames_group
 def read_detections(group, paths, spectrum, noise_seed) -> Detections:
     """The detections of a group; paths, spectrum, noise_seed: of the frame, whose paths are behind them."""
     cells = read_array(group, "cells", np.int64, (None, 2))

@@ -6,27 +6,37 @@ import json
 import os
 from collections.abc import Mapping
 from contextlib import contextmanager
+from typing import get_args
 
 import numpy as np
 
 from .. import _core
+from ..azimuth_map import checked_settings
 from ..checks import an, checked, real, refused, text
 from ..files import written_whole
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..labels.labels import Labels
+from ..settings import Evaluate, Replay, Retrace
 from ..simulate import Frame, with_spectra
 from .detections import read_detections, write_detections
-from .h5 import read_array, read_attribute, read_group, read_texts, reading, write_array, write_stack, write_texts, writing
+from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, reading, write_array,
+                 write_attribute, write_stack, write_texts, writing)
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
 
 FORMAT = "echopath frame"
-SCHEMA_VERSION = 3  # grows when a reader of the old layout would misread the new one
+FOREIGN = "is an HDF5 file, but no frame file of echopath"
+SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
+OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
 CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
-SIGNAL_SETTINGS = ("replay", "evaluate", "retrace")
+# Settings of a signal and the values that each may have.
+SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
+SPECTRUM_KEYS = ("window", "zero_pad")
+ANGLE_KEYS = ("method", "azimuth", "elevation", "velocity", "combine", "window", "diagonal_loading", "range_neighbours",
+              "forward_backward")
 
 
 def _labels(argument: str, value) -> dict:
@@ -100,7 +110,8 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         _read_signal(file, frame)
         frame.checks = _read_checks(file)
         _read_partitions(file, frame)
-        with_spectra(frame)
+        with blaming(read_group(file, "spectra")):
+            with_spectra(frame)
         if "labels" in file:
             frame.labels = read_all_labels(read_group(file, "labels"))
         if "detections" in file:
@@ -138,9 +149,9 @@ def left_out(path) -> LeftOut:
 def _new_file(path):
     """A new HDF5 file of ours that takes its place when the block ends well."""
     with written_whole(path) as temporary, writing(temporary) as file:
-        file.attrs["format"] = FORMAT
-        file.attrs["schema_version"] = SCHEMA_VERSION
-        file.attrs["software_version"] = _core.__version__
+        write_attribute(file, "format", FORMAT)
+        write_attribute(file, "schema_version", SCHEMA_VERSION)
+        write_attribute(file, "software_version", _core.__version__)
         yield file
 
 
@@ -148,11 +159,14 @@ def _new_file(path):
 def _our_file(path):
     """A frame file open for reading, its format and version checked."""
     with reading(path) as file:
-        if file.attrs.get("format") != FORMAT:
-            raise _core.FileError("is an HDF5 file, but no frame file of echopath")
+        if "format" not in file.attrs or "schema_version" not in file.attrs:
+            raise _core.FileError(FOREIGN)
         version = read_attribute(file, "schema_version", int)
         if version != SCHEMA_VERSION:
-            raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}")
+            raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}"
+                                  f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
+        if read_attribute(file, "format", str) != FORMAT:
+            raise _core.FileError(FOREIGN)
         yield file
 
 
@@ -179,6 +193,7 @@ def _read_record(file):
     return read_paths(read_group(file, "record"), scene, radar)
 
 
+@blames_group
 def _left_out(group) -> LeftOut:
     return LeftOut(min_power=read_attribute(group, "min_power", float),
                    num_paths=read_attribute(group, "num_left_out", int),
@@ -190,10 +205,10 @@ def _write_signal(file, frame: Frame) -> None:
     write_array(group, "cube", frame.cube, unit="sqrt(W)")
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
     for name in SIGNAL_SETTINGS:
-        group.attrs[name] = getattr(frame, name)
-    group.attrs["keyframes"] = frame.keyframes
+        write_attribute(group, name, getattr(frame, name))
+    write_attribute(group, "keyframes", frame.keyframes)
     if frame.noise_seed is not None:
-        group.attrs["noise_seed"] = np.uint64(frame.noise_seed)
+        write_attribute(group, "noise_seed", np.uint64(frame.noise_seed))
 
 
 def _write_checks(file, checks) -> None:
@@ -205,9 +220,6 @@ def _write_checks(file, checks) -> None:
 
 
 def _read_checks(file) -> list:
-    """Of frames that were written before there were any: []."""
-    if "checks" not in file:
-        return []
     group = read_group(file, "checks")
     names = read_texts(group, "name")
     columns = {"name": names, "unit": read_texts(group, "unit", len(names))}
@@ -217,7 +229,7 @@ def _read_checks(file) -> list:
 
 def _write_spectra(file, frame: Frame) -> None:
     group = file.create_group("spectra")
-    group.attrs["settings"] = json.dumps(frame.spectrum_settings)
+    write_attribute(group, "settings", json.dumps(frame.spectrum_settings))
     write_array(group, "velocity", frame.spectrum.velocity, unit="m/s")
     write_array(group, "range", frame.spectrum.range, unit="m")
     write_array(group, "values", frame.spectrum.values, unit="sqrt(W)")
@@ -227,7 +239,7 @@ def _write_range_azimuth(file, frame: Frame) -> None:
     if frame.range_azimuth is None:
         return
     group = file.create_group("range_azimuth")
-    group.attrs["settings"] = json.dumps(frame.angle_settings, default=np.ndarray.tolist)
+    write_attribute(group, "settings", json.dumps(frame.angle_settings, default=np.ndarray.tolist))
     for name in ("azimuth", "elevation"):
         write_array(group, name, getattr(frame.range_azimuth, name), unit="rad")
     write_array(group, "range", frame.range_azimuth.range, unit="m")
@@ -239,7 +251,7 @@ def _write_partitions(file, frame: Frame, is_kept) -> None:
     folder = file.create_group("partitions")
     for index, (partition, cubes) in enumerate(frame.parts.items()):
         group = folder.create_group(str(index))
-        group.attrs["name"] = partition
+        write_attribute(group, "name", partition)
         selections = frame.selections[partition]
         write_texts(group, "part", list(cubes))
         write_texts(group, "expression", [selections.get(part, "") for part in cubes])
@@ -253,21 +265,46 @@ def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
-    for name in SIGNAL_SETTINGS:
-        setattr(frame, name, read_attribute(group, name, str) if name in group.attrs else getattr(Frame, name))
-    frame.keyframes = read_attribute(group, "keyframes", int) if "keyframes" in group.attrs else Frame.keyframes
-    frame.spectrum_settings = _read_settings(read_group(file, "spectra"))
+    for name, known in SIGNAL_SETTINGS.items():
+        setattr(frame, name, _one_of(group, name, known))
+    frame.keyframes = read_attribute(group, "keyframes", int)
+    frame.spectrum_settings = _read_settings(read_group(file, "spectra"), SPECTRUM_KEYS)
+    _check_spectrum_size(read_group(file, "spectra"), frame)
     if "range_azimuth" in file:
-        frame.angle_settings = _read_settings(read_group(file, "range_azimuth"))
+        frame.angle_settings = _read_angle_settings(read_group(file, "range_azimuth"), frame.radar)
 
 
-def _read_settings(group) -> dict:
-    """Keywords of a map."""
+def _one_of(group, name: str, known: tuple) -> str:
+    value = read_attribute(group, name, str)
+    if value not in known:
+        raise _core.FileError(f"{group.name}: attribute '{name}' must be one of {', '.join(known)}, is {value!r}")
+    return value
+
+
+@blames_group
+def _read_settings(group, known: tuple) -> dict:
+    """Keywords of a map, all of which must be known."""
     settings = json.loads(read_attribute(group, "settings", str))
+    if not isinstance(settings, dict) or not set(settings) <= set(known):
+        raise _core.FileError(f"{group.name}: attribute 'settings' must have no keys but {', '.join(known)}, is {settings!r}")
     window = settings.get("window")
     return settings | {"window": tuple(window)} if isinstance(window, list) else settings
 
 
+@blames_group
+def _read_angle_settings(group, radar) -> dict:
+    return checked_settings(radar, _read_settings(group, ANGLE_KEYS))
+
+
+def _check_spectrum_size(group, frame: Frame) -> None:
+    """The map is computed again: before that, its settings must give the one that the file has."""
+    zero_pad, length = frame.spectrum_settings.get("zero_pad"), length_of(group, "velocity")
+    if not isinstance(zero_pad, int) or zero_pad * frame.radar.waveform.num_chirps != length:
+        raise _core.FileError(f"{group.name}: attribute 'settings' must make a map of {length} velocities, has zero_pad "
+                              f"{zero_pad!r}")
+
+
+@blames_group
 def _read_partitions(file, frame: Frame) -> None:
     folder = read_group(file, "partitions")
     for index in range(len(folder)):
@@ -277,7 +314,14 @@ def _read_partitions(file, frame: Frame) -> None:
         frame.parts[partition] = dict(zip(names, cubes))
         expressions = read_texts(group, "expression", len(names))
         frame.selections[partition] = {name: text for name, text in zip(names, expressions) if name != "other"}
-        frame.part_of_path[partition] = read_array(group, "part_of_path", np.uint16, (frame.paths.num_paths,))
+        frame.part_of_path[partition] = _read_part_of_path(group, frame.paths.num_paths, len(names))
+
+
+def _read_part_of_path(group, num_paths: int, num_parts: int):
+    parts = read_array(group, "part_of_path", np.uint16, (num_paths,))
+    if len(parts) and parts.max() >= num_parts:
+        raise _core.FileError(f"{group.name}/part_of_path: must be below {num_parts}, the number of parts")
+    return parts
 
 
 def _cube_shape(radar) -> tuple:

@@ -1,8 +1,14 @@
-"""Datasets of HDF5 files: written in blocks with check sums, read with their type and shape checked."""
+"""Datasets of HDF5 files: written in blocks with check sums, read with their type, shape and check sum held against the file.
+
+HDF5 itself checks what it writes about groups, types and attributes, in the layout of its version 1.10. Numbers and texts
+have a CRC-32 here. Texts have a fixed length: the library runs in circles in damaged ones of variable length.
+"""
 from __future__ import annotations
 
+import functools
 import math
 import os
+import zlib
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,11 +19,17 @@ from .. import _core
 from ..interrupts import heed, interrupts_are_kept
 
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
-CHUNK_BYTES = 1 << 20   # of compression and of check sums
-SMALL_BYTES = 1 << 12   # below it a dataset is one piece without compression
+CHUNK_BYTES = 1 << 20   # of compression
+SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
 SPARE_BYTES = 1 << 18   # kept free beyond each dataset, for what HDF5 writes about it and the groups that follow
+MOST_COMPRESSION = 1100  # bytes that gzip can make of one
+CHECK_SUM = "crc32"     # attribute of each dataset
+LAYOUT = ("v110", "v110")  # the first whose headers all have check sums
 
-_TEXT = h5py.string_dtype("utf-8")
+# Letters of the NumPy types that an attribute of a kind may have.
+_LETTERS = {int: "iu", float: "fiu", bool: "b", complex: "c", str: "S"}
+# What reading a damaged file may raise, in this program, in h5py and in the core.
+_FAULTS = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RuntimeError, MemoryError)
 
 
 @contextmanager
@@ -28,7 +40,7 @@ def writing(path):
     an OSError, and the file is cut to its size at the end.
     """
     _take_space(path)
-    with h5py.File(path, "w") as file:
+    with h5py.File(path, "w", libver=LAYOUT) as file:
         _reserve(file, 0)
         yield file
         file.flush()
@@ -54,29 +66,31 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
     """
     values = np.asarray(values)
     options = {}
-    if values.nbytes > SMALL_BYTES:
-        options = {"chunks": _chunks(values.shape, values.itemsize), "fletcher32": True}
-        if compress:
-            options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    if compress and values.nbytes > SMALL_BYTES:
+        options = {"chunks": _chunks(values.shape, values.itemsize), "compression": "gzip", "compression_opts": 1,
+                   "shuffle": True}
     _reserve(group, values.nbytes)
     dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
-    dataset.attrs["unit"] = unit
-    for rows in _row_blocks(values.shape, values.itemsize):
-        dataset[rows] = values[rows]
-        heed()
+    _fill(dataset, ((rows, values[rows]) for rows in _row_blocks(values.shape, values.itemsize)), unit)
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
     """Writes arrays of one shape as one array [N, ...], one after the other."""
-    shape = (len(arrays), *arrays[0].shape)
-    dtype = arrays[0].dtype
     _reserve(group, sum(values.nbytes for values in arrays))
-    dataset = group.create_dataset(name, shape=shape, dtype=dtype, fletcher32=True,
-                                   chunks=_chunks(shape, dtype.itemsize))
-    dataset.attrs["unit"] = unit
-    for index, values in enumerate(arrays):
-        dataset[index] = values
+    dataset = group.create_dataset(name, shape=(len(arrays), *arrays[0].shape), dtype=arrays[0].dtype)
+    _fill(dataset, enumerate(arrays), unit)
+
+
+def _fill(dataset, blocks, unit: str) -> None:
+    """Writes (place, values) in turn, and what is known of the whole."""
+    check_sum = 0
+    for place, values in blocks:
+        values = np.ascontiguousarray(values)
+        dataset[place] = values
+        check_sum = zlib.crc32(values, check_sum)
         heed()
+    write_attribute(dataset, "unit", unit)
+    write_attribute(dataset, CHECK_SUM, np.uint32(check_sum))
 
 
 def _row_blocks(shape: tuple, itemsize: int):
@@ -94,44 +108,116 @@ def _chunks(shape: tuple, itemsize: int) -> tuple:
 
 
 def write_texts(group, name: str, texts) -> None:
-    """Writes a list of texts as a [N] array of UTF-8."""
-    group.create_dataset(name, data=np.array(list(texts), dtype=object), dtype=_TEXT, shape=(len(texts),))
+    """Writes a list of texts as a [N] array of UTF-8; raises ValueError for one that holds NUL, which would end it."""
+    encoded = [_encoded(name, text) for text in texts]
+    length = max((len(text) for text in encoded), default=1)
+    write_array(group, name, np.array(encoded, dtype=h5py.string_dtype("utf-8", max(1, length))), compress=True)
+
+
+def write_attribute(item, name: str, value) -> None:
+    """Writes an attribute: a number, or a text in UTF-8 of fixed length."""
+    if isinstance(value, str):
+        text = _encoded(name, value)
+        item.attrs.create(name, text, dtype=h5py.string_dtype("utf-8", max(1, len(text))))
+    else:
+        item.attrs[name] = value
+
+
+def _encoded(name: str, text: str) -> bytes:
+    if "\0" in text:
+        raise ValueError(f"{name}: must not hold a NUL character, got {text!r}")
+    return text.encode("utf-8")
+
+
+@contextmanager
+def blaming(item):
+    """Makes an ep.FileError that names a group or dataset of whatever its content makes go wrong."""
+    try:
+        yield
+    except _core.FileError:
+        raise
+    except _FAULTS as error:
+        raise _core.FileError(f"{item.name}: {_first_line(error)}") from None
+
+
+def blames_group(function):
+    """For functions whose first argument is the group that they read."""
+    @functools.wraps(function)
+    def read(group, *arguments):
+        with blaming(group):
+            return function(group, *arguments)
+    return read
 
 
 def read_array(group, name: str, dtype, shape: tuple):
-    """The array `name` of a group; raises ep.FileError when its type or shape is another one.
+    """The array `name` of a group; raises ep.FileError when its type, its shape or its check sum is another one.
 
     shape: numbers, or None where any length will do.
     """
     dataset = _item(group, name, h5py.Dataset)
-    if dataset.dtype != np.dtype(dtype):
-        raise _core.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
-    if len(dataset.shape) != len(shape) or any(want not in (None, got) for want, got in zip(shape, dataset.shape)):
-        wanted = ", ".join("any" if want is None else str(want) for want in shape)
-        raise _core.FileError(f"{dataset.name} must have the shape [{wanted}], has {list(dataset.shape)}")
-    values = np.empty(dataset.shape, dataset.dtype)
-    for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
-        values[rows] = dataset[rows]
-        heed()
-    return values
+    with blaming(dataset):
+        if dataset.dtype != np.dtype(dtype):
+            raise _core.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
+        if not _has_shape(dataset, shape):
+            wanted = ", ".join("any" if want is None else str(want) for want in shape)
+            raise _core.FileError(f"{dataset.name} must have the shape [{wanted}], has {_shape_text(dataset)}")
+        return _values(dataset)
 
 
 def read_texts(group, name: str, length: int | None = None) -> list[str]:
     """The [N] texts `name` of a group."""
     dataset = _item(group, name, h5py.Dataset)
-    if len(dataset.shape) != 1 or (length is not None and len(dataset) != length):
-        raise _core.FileError(f"{dataset.name} must have {length} texts, has the shape {list(dataset.shape)}")
-    return [text.decode("utf-8") for text in dataset[...]]
+    with blaming(dataset):
+        if dataset.dtype.kind != "S":
+            raise _core.FileError(f"{dataset.name} must hold texts of fixed length, holds {dataset.dtype}")
+        if not _has_shape(dataset, (length,)):
+            wanted = "any" if length is None else length
+            raise _core.FileError(f"{dataset.name} must have {wanted} texts, has the shape {_shape_text(dataset)}")
+        return [text.decode("utf-8") for text in _values(dataset)]
 
 
-def read_attribute(group, name: str, kind):
-    """The attribute `name` as a `kind` (int, float, bool, str)."""
-    if name not in group.attrs:
-        raise _core.FileError(f"{group.name} has no attribute '{name}'")
-    try:
-        return kind(group.attrs[name])
-    except (TypeError, ValueError):
-        raise _core.FileError(f"{group.name}: attribute '{name}' must be a {kind.__name__}") from None
+def length_of(group, name: str) -> int:
+    """Number of rows of the dataset `name` of a group."""
+    shape = _item(group, name, h5py.Dataset).shape
+    if not shape:
+        raise _core.FileError(f"{group.name}/{name} must have rows, has none")
+    return shape[0]
+
+
+def _has_shape(dataset, shape: tuple) -> bool:
+    sizes = dataset.shape
+    return sizes is not None and len(sizes) == len(shape) and all(want in (None, got) for want, got in zip(shape, sizes))
+
+
+def _shape_text(dataset) -> str:
+    return "none" if dataset.shape is None else str(list(dataset.shape))
+
+
+def _values(dataset):
+    """All values of a dataset, when they are those that its check sum was made of."""
+    stored = dataset.id.get_storage_size()
+    if dataset.nbytes > (stored if dataset.chunks is None else MOST_COMPRESSION * stored):
+        raise _core.FileError(f"{dataset.name}: damaged, {stored} bytes cannot hold its {dataset.size} values")
+    values, check_sum = np.empty(dataset.shape, dataset.dtype), 0
+    for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
+        values[rows] = dataset[rows]
+        check_sum = zlib.crc32(values[rows], check_sum)
+        heed()
+    if check_sum != read_attribute(dataset, CHECK_SUM, int):
+        raise _core.FileError(f"{dataset.name}: damaged, its values do not have its check sum")
+    return values
+
+
+def read_attribute(item, name: str, kind):
+    """The attribute `name` of a group or dataset as a `kind` (int, float, bool, complex, str)."""
+    if name not in item.attrs:
+        raise _core.FileError(f"{item.name} has no attribute '{name}'")
+    with blaming(item):
+        attribute = item.attrs.get_id(name)
+        if attribute.shape != () or attribute.dtype.kind not in _LETTERS[kind]:
+            raise _core.FileError(f"{item.name}: attribute '{name}' must be a {kind.__name__}")
+        value = item.attrs[name]
+        return bytes(value).decode("utf-8") if kind is str else kind(value)
 
 
 def read_group(group, name: str):
@@ -140,7 +226,8 @@ def read_group(group, name: str):
 
 
 def _item(group, name: str, kind):
-    item = group.get(name)
+    with blaming(group):
+        item = group[name] if name in group else None
     if not isinstance(item, kind):
         raise _core.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind.__name__.lower()}")
     return item
@@ -156,7 +243,7 @@ def reading(path):
         raise _core.FileError(f"{path}: {error}") from None
     except FileNotFoundError:
         raise _core.FileError(f"{path}: no such file") from None
-    except (OSError, KeyError, RuntimeError, ValueError, IndexError) as error:
+    except _FAULTS as error:
         if Path(path).suffix.lower() == ".toml":
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
                                   "DIR` makes DIR/frame.h5 of it") from None

@@ -8,7 +8,7 @@ import numpy as np
 from .. import _core
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
 from ..resolution import Interval
-from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 
 
 
@@ -34,24 +34,25 @@ def write_all_labels(group, labels: dict) -> None:
     """Writes {partition: Labels}, a group for each."""
     for index, (partition, one) in enumerate(labels.items()):
         target = group.create_group(str(index))
-        target.attrs["partition"] = partition
+        write_attribute(target, "partition", partition)
         write_labels(target, one)
 
 
+@blames_group
 def read_all_labels(group) -> dict:
     """{partition: Labels}; the same bits that were written."""
-    folders = (read_group(group, str(index)) for index in range(len(group)))
+    folders = [read_group(group, str(index)) for index in range(len(group))]
     return {read_attribute(folder, "partition", str): read_labels(folder) for folder in folders}
 
 
 def write_labels(group, labels: Labels) -> None:
     """Writes the labels of one partition."""
     plane = PLANES[labels.plane]
-    group.attrs["plane"] = labels.plane
+    write_attribute(group, "plane", labels.plane)
     for name in SETTINGS:
-        group.attrs[name] = getattr(labels, name)
+        write_attribute(group, name, getattr(labels, name))
     if labels.seed is not None:
-        group.attrs["seed"] = np.uint64(labels.seed)
+        write_attribute(group, "seed", np.uint64(labels.seed))
     write_array(group, plane.rows, getattr(labels, plane.rows), unit=plane.unit)
     write_array(group, "range", labels.range, unit="m")
     write_texts(group, "part", labels.part_names)
@@ -67,6 +68,7 @@ def write_labels(group, labels: Labels) -> None:
     _write_ghosts(group.create_group("ghosts"), labels.ghosts)
 
 
+@blames_group
 def read_labels(group) -> Labels:
     """The labels of one partition; shares are computed from the powers as they were."""
     plane = _read_plane(group)
@@ -80,9 +82,10 @@ def read_labels(group) -> Labels:
     _check_indices(group, cells, {"dominant": len(names), "object_map": len(objects), "ghost_map": len(ghosts)})
     settings = {name: read_attribute(group, name, float) for name in SETTINGS}
     settings["seed"] = read_attribute(group, "seed", int) if "seed" in group.attrs else None
-    return Labels(plane=group.attrs["plane"], **axes, part_names=names, power=power, share=_core.power_shares(power),
-                  objects=objects, ghosts=ghosts, part_received=_read_received(group, "part_received", len(names)),
-                  **settings, **cells, **_read_errors(group, power.shape))
+    return Labels(plane=read_attribute(group, "plane", str), **axes, part_names=names, power=power,
+                  share=_core.power_shares(power), objects=objects, ghosts=ghosts,
+                  part_received=_read_received(group, "part_received", len(names)), **settings, **cells,
+                  **_read_errors(group, power.shape))
 
 
 def _read_plane(group) -> Plane:

@@ -4,25 +4,26 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from .h5 import read_array, read_attribute, write_array
+from .h5 import blames_group, read_array, read_attribute, write_array, write_attribute
 
 
 def write_motion(group, motion) -> None:
     """Writes a linear motion or keyframes."""
     if isinstance(motion, _core.LinearMotion):
-        group.attrs["kind"] = "linear"
+        write_attribute(group, "kind", "linear")
         write_array(group, "velocity", motion.velocity, unit="m/s")
         write_array(group, "angular_velocity", motion.angular_velocity, unit="rad/s")
         return
     if not isinstance(motion, _core.KeyframeMotion):
         raise ValueError(f"motion: must be a LinearMotion or KeyframeMotion, got {motion!r}")
-    group.attrs["kind"] = "keyframes"
-    group.attrs["interpolation"] = motion.interpolation
+    write_attribute(group, "kind", "keyframes")
+    write_attribute(group, "interpolation", motion.interpolation)
     write_array(group, "times", motion.times, unit="s")
     write_array(group, "translations", motion.translations, unit="m")
     write_array(group, "rotations", motion.rotations)
 
 
+@blames_group
 def read_motion(group):
     """The motion of a group."""
     kind = read_attribute(group, "kind", str)

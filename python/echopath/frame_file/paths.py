@@ -5,7 +5,8 @@ import numpy as np
 
 from .. import _core
 from ..path_subset import subset
-from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .h5 import (blames_group, length_of, read_array, read_attribute, read_group, read_texts, write_array, write_attribute,
+                 write_texts)
 
 HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
@@ -28,9 +29,9 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
     """
     power = paths.power if power is None else power
     keep = power >= min_power
-    group.attrs["min_power"] = min_power
-    group.attrs["num_left_out"] = int(np.count_nonzero(~keep))
-    group.attrs["power_left_out"] = float(power.sum(where=~keep))
+    write_attribute(group, "min_power", float(min_power))
+    write_attribute(group, "num_left_out", int(np.count_nonzero(~keep)))
+    write_attribute(group, "power_left_out", float(power.sum(where=~keep)))
     written = paths if min_power <= 0.0 else subset(paths, keep)
     _write_frame(group.create_group("frame"), written.frame)
     for fields, folder in ((HIT_FIELDS, "hits"), (PATH_FIELDS, "paths")):
@@ -43,22 +44,31 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
     return keep
 
 
+@blames_group
 def read_paths(group, scene, radar):
     """The paths of a group; the same bits that were written."""
     source = read_group(group, "hits")
-    num_hits = len(source["mesh_id"])
+    num_hits = length_of(source, "mesh_id")
     hits = np.empty(num_hits, HIT)
     for name, dtype in HIT_FIELDS.items():
         hits[name] = read_array(source, name, dtype, (num_hits,))
     source = read_group(group, "paths")
-    num_paths = len(source["offsets"])
+    num_paths = length_of(source, "offsets")
     columns = {name: read_array(source, name, dtype, (num_paths,)) for name, dtype in PATH_FIELDS.items()}
     for name, (dtype, shape) in OPTIONAL_FIELDS.items():
         if name in source:
             columns[name] = read_array(source, name, dtype, (num_paths, *shape))
+    _check_names(source)
     _check_indices(group, hits, columns, scene)
     frame = _read_frame(read_group(group, "frame"))
     return _core.Paths.from_arrays(hits=hits, **columns, scene=scene, radar=radar, frame=frame)
+
+
+def _check_names(group) -> None:
+    """What nobody would read may be a column whose name is damaged."""
+    for name in group:
+        if name not in PATH_FIELDS and name not in OPTIONAL_FIELDS:
+            raise _core.FileError(f"{group.name}/{name}: unknown column of the paths")
 
 
 def _check_indices(group, hits, columns: dict, scene) -> None:
@@ -76,11 +86,11 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 
 def _write_frame(group, frame) -> None:
     for name in FRAME_VALUES:
-        group.attrs[name] = np.uint64(frame.seed) if name == "seed" else getattr(frame, name)
+        write_attribute(group, name, np.uint64(frame.seed) if name == "seed" else getattr(frame, name))
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
     for name in STATISTICS:
-        group.attrs[name] = getattr(frame.statistics, name)
+        write_attribute(group, name, getattr(frame.statistics, name))
     strata = list(frame.strata)
     write_texts(group, "stratum_name", [stratum.name for stratum in strata])
     write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
@@ -96,6 +106,7 @@ def _write_frame(group, frame) -> None:
     write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
 
 
+@blames_group
 def _read_frame(group):
     names = read_texts(group, "stratum_name")
     axis = read_array(group, "stratum_axis", np.float64, (len(names), 3))

@@ -5,24 +5,25 @@ import numpy as np
 
 from .. import _core
 from ..same_radar import WAVEFORM_KINDS, table_key
-from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
 
 def write_radar(group, radar) -> None:
     """Writes waveform, antennas, power, noise figure and motion."""
-    group.attrs["transmit_power"] = radar.transmit_power
-    group.attrs["noise_figure_db"] = radar.noise_figure_db
-    group.attrs["multiplexing"] = radar.multiplexing
+    write_attribute(group, "transmit_power", radar.transmit_power)
+    write_attribute(group, "noise_figure_db", radar.noise_figure_db)
+    write_attribute(group, "multiplexing", radar.multiplexing)
     waveform = group.create_group("waveform")
     for field in WAVEFORM_KINDS:
-        waveform.attrs[field] = getattr(radar.waveform, field)
+        write_attribute(waveform, field, getattr(radar.waveform, field))
     _write_antennas(group.create_group("transmitters"), radar.transmitters)
     _write_antennas(group.create_group("receivers"), radar.receivers)
     if radar.motion is not None:
         write_motion(group.create_group("motion"), radar.motion)
 
 
+@blames_group
 def read_radar(group):
     """The radar of a group."""
     source = read_group(group, "waveform")
@@ -32,7 +33,7 @@ def read_radar(group):
                        transmit_power=read_attribute(group, "transmit_power", float),
                        noise_figure_db=read_attribute(group, "noise_figure_db", float),
                        multiplexing=read_attribute(group, "multiplexing", str),
-                       motion=read_motion(group["motion"]) if "motion" in group else None)
+                       motion=read_motion(read_group(group, "motion")) if "motion" in group else None)
 
 
 def _write_antennas(group, antennas) -> None:
@@ -64,6 +65,7 @@ def _write_tables(group, patterns) -> None:
             write_array(table, "phase", pattern.table_phase, unit="rad")
 
 
+@blames_group
 def _read_antennas(group) -> list:
     kinds = read_texts(group, "pattern")
     count = len(kinds)
@@ -82,9 +84,13 @@ def _read_tables(group, count: int) -> list:
     """The table of each antenna, None for those without."""
     patterns = [_read_table(read_group(read_group(group, "tables"), str(number)))
                 for number in range(len(read_group(group, "tables")))]
-    return [patterns[number] if number >= 0 else None for number in read_array(group, "table", np.int32, (count,))]
+    numbers = read_array(group, "table", np.int32, (count,))
+    if count and not -1 <= numbers.min() <= numbers.max() < len(patterns):
+        raise _core.FileError(f"{group.name}/table: must be -1 to {len(patterns) - 1}")
+    return [patterns[number] if number >= 0 else None for number in numbers]
 
 
+@blames_group
 def _read_table(group):
     azimuth = read_array(group, "azimuth", np.float64, (None,))
     elevation = read_array(group, "elevation", np.float64, (None,))

@@ -6,7 +6,7 @@ import numpy as np
 from .. import _core
 from ..scene import Scene
 from .deformation import read_deformation, write_deformation
-from .h5 import read_array, read_attribute, read_group, read_texts, write_array, write_texts
+from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"
@@ -47,6 +47,7 @@ def write_scene(group, scene) -> None:
         _write_pool(group.create_group(folder), pool, write)
 
 
+@blames_group
 def read_scene(group):
     """The scene of a group, with the mesh IDs it had."""
     names = read_texts(group, "name")
@@ -94,7 +95,7 @@ def _read_shared(group, kind: str, count: int) -> list:
 def _write_mesh(group, mesh, pool: _Pool) -> None:
     """As before vertices were duplicated: deformations go by those, and the same repair follows on reading."""
     if mesh.whole is not None:
-        group.attrs["whole"] = pool.index(mesh.whole)
+        write_attribute(group, "whole", pool.index(mesh.whole))
         write_array(group, "whole_triangle", mesh.whole_triangle, compress=True)
         return
     vertices = np.zeros((mesh.num_input_vertices, 3))
@@ -104,6 +105,7 @@ def _write_mesh(group, mesh, pool: _Pool) -> None:
     write_array(group, "original_triangle", mesh.original_triangle, compress=True)
 
 
+@blames_group
 def _read_mesh(group, earlier: list):
     if "whole" in group.attrs:
         index = read_attribute(group, "whole", int)
@@ -127,9 +129,10 @@ def _write_material(group, material) -> None:
     for field in _MATERIAL_KINDS:
         value = getattr(material, field)
         if value is not None:
-            group.attrs[field] = value
+            write_attribute(group, field, value)
 
 
+@blames_group
 def _read_material(group):
     return _core.Material(**{field: read_attribute(group, field, kind) for field, kind in _MATERIAL_KINDS.items()
                              if field in group.attrs})

@@ -28,7 +28,7 @@ def load_antenna(path: str | os.PathLike[str]) -> _core.AntennaPattern:
     """
     path = Path(path)
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()  # with a byte-order mark, too
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:

@@ -1,5 +1,6 @@
 #pragma once
-// What is fed to the readers of files and texts: a target takes any bytes, and returns unless a reader does what it must not.
+// What is fed to the readers of files and texts: a target takes any bytes, and returns unless a reader does what it must
+// not.
 // It ends the process where a reader lets through what it should refuse, so that both libFuzzer and a test see it.
 #include <array>
 #include <string>

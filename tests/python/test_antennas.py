@@ -110,6 +110,12 @@ def test_what_is_wrong_with_a_file_is_named_with_its_line(tmp_path, change, comp
     assert complaint in fault_of(tmp_path, change(FILE))
 
 
+def test_a_byte_order_mark_is_no_part_of_the_first_column(tmp_path):
+    text = "azimuth_deg,elevation_deg,gain_db\n" + "".join(f"{a},{e},0\n" for a in (-90, 90) for e in (-90, 90))
+    (tmp_path / "antenna.csv").write_bytes(b"\xef\xbb\xbf" + text.encode())
+    assert ep.load_antenna(tmp_path / "antenna.csv").table_gain.shape == (2, 2)
+
+
 def test_missing_file_is_a_file_error(tmp_path):
     with pytest.raises(ep.FileError, match="nowhere.csv"):
         ep.load_antenna(tmp_path / "nowhere.csv")

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -230,6 +231,30 @@ def test_every_fault_is_named_at_once(write):
 def test_syntax_errors_name_the_file_and_the_line(write):
     path = write("[trace\n", radar="title = 'ok'\n")
     assert str(path) in fault_of(path) and "line 2" in fault_of(path)
+
+
+def test_a_scene_file_may_begin_with_a_byte_order_mark(write):
+    path = write("")
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert ep.load_scene(path).title == ""
+
+
+def test_a_gain_instead_of_a_loss_is_shown_as_the_file_has_it(write):
+    fault = fault_of(write(mesh_object("material = {permittivity = [5, -0.1]}")))
+    assert "objects[0].material.permittivity: " in fault and fault.endswith("must not be negative, got [5, -0.1]")
+
+
+def test_names_must_not_hold_nul(write):
+    fault = fault_of(write('[[objects]]\nname = "a\\u0000b"\nactor = "sphere"\nparameters = {radius = 1.0}\n'))
+    assert "objects[0].name: must not hold a NUL character, got 'a\\x00b'" in fault
+
+
+@pytest.mark.parametrize("text, message", [("a = " + "[" * 100_000, "nested too deeply"),
+                                           ("a = " + "1" * 10_000, "digits")])
+def test_texts_that_the_parser_cannot_take_name_the_file(tmp_path, text, message):
+    (tmp_path / "scene.toml").write_text(text)
+    with pytest.raises(ValueError, match=f"^{re.escape(str(tmp_path))}.*{message}"):
+        ep.load_scene(tmp_path / "scene.toml")
 
 
 def test_a_missing_scene_file_is_a_file_error(tmp_path):

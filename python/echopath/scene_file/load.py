@@ -134,12 +134,14 @@ def _with_file(path: Path, line: str) -> str:
 
 def _parse(path: Path) -> dict:
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8"))
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))  # with a byte-order mark, too
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError:
+        raise ValueError(f"{path}: its tables or arrays are nested too deeply") from None
+    except ValueError as error:  # of the syntax, or a number of too many digits
         raise ValueError(f"{path}: {error}") from None
 
 

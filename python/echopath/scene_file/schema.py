@@ -45,6 +45,8 @@ def _permittivity(value):
     pair = isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
     if not (pair or _is_number(value)):
         raise ValueError("must be a number eps' or a pair [eps', eps''] for eps' - j eps''")
+    if pair and value[1] < 0:
+        raise ValueError("is [eps', eps''] for eps' - j eps'': eps'' must not be negative")
     return value
 
 
@@ -85,6 +87,15 @@ def by_kind(kind: str):
     def tag(data):
         return f"<{data.get(kind)}>" if isinstance(data, dict) else None
     return tag
+
+
+def _name(value: str) -> str:
+    if "\0" in value:
+        raise ValueError("must not hold a NUL character")
+    return value
+
+
+Name = Annotated[str, Field(min_length=1), AfterValidator(_name)]
 
 
 class WaveformTable(Table):
@@ -185,7 +196,7 @@ MaterialValue = Annotated[
 
 
 class ObjectTable(Table):
-    name: str = Field(min_length=1, description="its name in path expressions")
+    name: Name = Field(description="its name in path expressions")
     mesh: str | None = Field(None, description="OBJ or PLY file, relative to the scene file")
     unit: Positive | None = Field(None, description="m, length of one unit of the mesh file; none: 1")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
@@ -328,7 +339,7 @@ class DetectionsTable(Table):
 
 
 PartsValue = Annotated[
-    Annotated[dict[str, str], Tag("<partition>")] | Annotated[str, Tag("<expression>")],
+    Annotated[dict[Name, str], Tag("<partition>")] | Annotated[str, Tag("<expression>")],
     Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
 
 
@@ -342,7 +353,7 @@ class SceneTable(Table):
     spectrum: SpectrumTable = SpectrumTable()
     angle: AngleTable = AngleTable()
     noise: NoiseTable = NoiseTable()
-    parts: dict[str, PartsValue] = Field(
+    parts: dict[Name, PartsValue] = Field(
         {}, description="name = path expression: one partition; tables of these: several")
     labels: LabelsTable | None = Field(None, description="labels of the map; none: they are not made")
     detections: DetectionsTable | None = Field(None, description="detections in the map; none: they are not made")

@@ -28,8 +28,8 @@ constexpr double kSmallest = std::numeric_limits<double>::min();
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 // Hands a file to the parser line by line, so that errors can name the line. It refuses vertices and faces that the parser
-// would read as zeros, and mends what the parser does not know: a byte-order mark, continued lines, comments behind values, a
-// bare `g`.
+// would read as zeros, and mends what the parser does not know: a byte-order mark, continued lines, comments behind values,
+// a bare `g`.
 class ObjLines : public std::streambuf {
  public:
   ObjLines(std::istream& file, const std::string& path) : path_(path), file_(file) {}

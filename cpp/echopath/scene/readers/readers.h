@@ -20,8 +20,8 @@ struct NamedMesh {
 // unit <= 0.
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit = 1.0);
 
-// Reads the same from a stream that is open already. `name` stands for the path: its extension tells the format, and messages
-// begin with it.
+// Reads the same from a stream that is open already. `name` stands for the path: its extension tells the format, and
+// messages begin with it.
 std::vector<NamedMesh> read_meshes(std::istream& stream, const std::string& name, double unit = 1.0);
 
 // Reads all groups of a file as one mesh.

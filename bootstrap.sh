@@ -8,11 +8,13 @@ packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libe
   libtinyobjloader-dev libeigen3-dev libfftw3-dev libtbb-dev libgtest-dev)
 # A Qt window with OpenGL, and a virtual screen for its tests.
 screen_packages=(xvfb xauth)
+fuzz_packages=(clang libclang-rt-14-dev)
 viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
 sanitized_dir=$PWD/build/asan
 tidy_dir=$PWD/build/tidy
+fuzz_dir=$PWD/build/fuzz
 # The same tests on one instruction set after the other are not run sanitized.
 per_instruction_set='_(baseline|avx2)$'
 python=.venv/bin/python
@@ -24,6 +26,7 @@ usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> o
        ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest), those in C++
                                        once more under the address and undefined-behaviour sanitizers
        ./bootstrap.sh docs             install, build, then the documentation site with its gallery -> out/docs/index.html
+       ./bootstrap.sh fuzz [SECONDS]   install clang, build the fuzzers of the readers, and run each for so long (60 s)
        ./bootstrap.sh tidy             install, then clang-tidy over the core and its bindings (.clang-tidy lists the checks)
 TEXT
 }
@@ -169,6 +172,30 @@ build_docs() {
   say "out/docs/index.html"
 }
 
+# What libFuzzer finds and makes stays in build/fuzz/found: a finding is a file there, which the target takes as its argument.
+run_fuzzer() {
+  local target=$1 seconds=$2 found=$fuzz_dir/found/$1 status=0
+  mkdir -p "$found"
+  "$fuzz_dir/tests/fuzz/fuzz_$target" -timeout=10 -rss_limit_mb=4096 -max_len=4096 -max_total_time="$seconds" \
+    -print_final_stats=1 -artifact_prefix="$fuzz_dir/found/$target-" "$found" "tests/fuzz/corpus/$target" \
+    >"$found.log" 2>&1 || status=$?
+  printf '%s: %s runs, ' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$found.log")"
+  if [ "$status" -eq 0 ]; then echo "0 findings"
+  else printf 'a finding, see %s\n' "$found.log"; return 1
+  fi
+}
+
+run_fuzzers() {
+  local seconds=$1 status=0 target
+  say "building the fuzzers (minutes the first time)"
+  cmake --preset fuzz >/dev/null
+  cmake --build "$fuzz_dir" --parallel "$(nproc)"
+  say "fuzzers, $seconds s each"
+  for target in obj ply expression; do run_fuzzer "$target" "$seconds" || status=1; done
+  (cd tests && "../$python" -m fuzz "$seconds") || status=1
+  [ "$status" -eq 0 ] || fail "the fuzzers found something"
+}
+
 run_tests() {
   local cpp_status=0 sanitized_status=0 python_status=0 lint_status=0
   say "linting"
@@ -210,6 +237,10 @@ case $verb in
   docs)
     prepare docs "${packages[@]}"
     build_docs
+    ;;
+  fuzz)
+    prepare test "${packages[@]}" "${fuzz_packages[@]}"
+    run_fuzzers "${1:-60}"
     ;;
   tidy)
     install_packages "${packages[@]}"

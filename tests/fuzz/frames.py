@@ -1,0 +1,183 @@
+"""Frame files: damaged bytes, and changes of their structure."""
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from random import Random
+
+import h5py
+import numpy as np
+
+import echopath as ep
+from fuzz.mutate import damaged
+from fuzz.seeds import frames
+from support.frame_edits import seal_all
+
+MEMORY_FOLDER = "/dev/shm" if Path("/dev/shm").is_dir() else None  # files are flushed to the disk, which takes long
+ODD_VALUES = [0, -1, 1, 2**31, 2**63 - 1, -2**63, 255, 65535, 0.0, -0.1, float("nan"), float("inf"), 1e308, 1e19, 1 + 2j, True,
+              "", "x", "linear", "T . R", "{}", "[]",
+              "null", '{"zero_pad": 1000000}', '{"window": "hann", "zero_pad": 1}', "a" * 70000]
+ODD_ATTRIBUTES = [*ODD_VALUES, np.zeros(3), np.array([[1, 2]]), h5py.Empty("f8"), ["a", "b"], np.bytes_(b"\xff\xfe"),
+                  np.void(b"abc")]
+ODD_TYPES = ["f4", "f8", ">f8", "i1", "i4", "i8", "u1", "u2", "u4", "u8", "c8", "c16", "S3", "V5", h5py.string_dtype(), "b1",
+             h5py.vlen_dtype("i4"), h5py.ref_dtype, [("a", "f8"), ("b", "i4")]]
+
+
+class _Seeds:
+    """The files of the seeds, their bytes and what a file holds that is written from each frame once it was read."""
+
+    def __init__(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", dir=MEMORY_FOLDER)
+        self.folder = Path(self._folder.name)
+        self.contents, self.expected = [], []
+        for index, frame in enumerate(frames()):
+            path = self.folder / f"seed{index}.h5"
+            ep.save_frame(frame, path)
+            self.contents.append(path.read_bytes())
+            self.expected.append(self.written_again(ep.load_frame(path)))
+            assert self.expected[-1] == everything_in(path), "a frame read back is written as it was"
+
+    def written_again(self, frame) -> dict:
+        path = self.folder / "again.h5"
+        ep.save_frame(frame, path)
+        return everything_in(path)
+
+    def check(self, path: Path, index: int, *, may_differ: bool) -> None:
+        """Holds what a damaged file gives to what it must be: an error that names it, or the frame as it was."""
+        try:
+            frame = ep.load_frame(path)
+        except ep.FileError as error:
+            assert str(error).startswith(f"{path}: ") and len(str(error)) > len(str(path)) + 8, f"says little: {error}"
+            return
+        try:
+            again = self.written_again(frame)
+        except (ValueError, ep.FileError):
+            assert may_differ, "loads but cannot be written"
+            return
+        if not may_differ:
+            different = [name for name in again.keys() | self.expected[index].keys()
+                         if again.get(name) != self.expected[index].get(name)]
+            assert not different, f"loads with another {', '.join(sorted(different)[:3])}"
+
+
+def everything_in(path) -> dict:
+    """{name: bytes} of all datasets and attributes of a file."""
+    found = {}
+
+    def look(name, item):
+        for key, value in item.attrs.items():
+            found[f"{name}@{key}"] = np.asarray(value).tobytes()
+        if isinstance(item, h5py.Dataset):
+            found[name] = (str(item.dtype), item.shape, item[...].tobytes())
+
+    with h5py.File(path) as file:
+        file.visititems(look)
+    return found
+
+
+def feed_frame_bytes():
+    """Cases in which bytes of a file are damaged: it is refused, or loads with all its values."""
+    seeds = _Seeds()
+    path = seeds.folder / "frame.h5"
+
+    def case(number: int) -> None:
+        random = Random(f"frame_bytes {number}")
+        index = random.randrange(len(seeds.contents))
+        path.write_bytes(damaged(seeds.contents[index], random))
+        seeds.check(path, index, may_differ=False)
+
+    return case
+
+
+def feed_frame_structure():
+    """Cases in which somebody edits a file: it is refused by ep.FileError, or loads; without its check sum as it was."""
+    seeds = _Seeds()
+    path = seeds.folder / "frame.h5"
+
+    def case(number: int) -> None:
+        random = Random(f"frame_structure {number}")
+        index, is_sealed = random.randrange(len(seeds.contents)), random.random() < 0.6
+        path.write_bytes(seeds.contents[index])
+        with h5py.File(path, "r+") as file:
+            values_only = [_edit(file, random) for _ in range(random.choice((1, 1, 2)))]
+            if is_sealed:
+                seal_all(file)
+        seeds.check(path, index, may_differ=is_sealed or not all(values_only))
+
+    return case
+
+
+def _edit(file, random: Random) -> bool:
+    """Changes something; returns whether that was no more than values of a dataset."""
+    names = []
+    file.visit(names.append)
+    name = random.choice(names)
+    item = file[name]
+    kind = random.randrange(10)
+    if kind <= 3 and isinstance(item, h5py.Dataset):
+        return _change_value(item, random)
+    if kind <= 5:
+        _change_attribute(random.choice((item, item.parent)), random)
+    elif kind == 6:
+        del file[name]
+    elif kind == 7:
+        file.move(name, name + random.choice("x0 "))
+    elif kind == 8 and isinstance(item, h5py.Dataset):
+        _retype(file, name, random)
+    else:
+        _put_other(file, name, random.choice(names), random)
+    return False
+
+
+def _change_value(dataset, random: Random) -> bool:
+    if not dataset.size or dataset.dtype.kind not in "iufcbS":
+        return False
+    values = dataset[...]
+    at = random.randrange(values.size)
+    value = random.choice(ODD_VALUES)
+    try:
+        with np.errstate(all="ignore"):
+            values.flat[at] = value.encode() if isinstance(value, str) else value
+    except (ValueError, OverflowError, TypeError):
+        values.flat[at] = values.flat[random.randrange(values.size)]
+    dataset[...] = values
+    return True
+
+
+def _change_attribute(item, random: Random) -> None:
+    names = list(item.attrs) or ["new"]
+    name = random.choice(names)
+    if random.random() < 0.15 and name in item.attrs:
+        del item.attrs[name]
+        return
+    value = random.choice(ODD_ATTRIBUTES)
+    if isinstance(value, str) and random.random() < 0.8:
+        value = np.bytes_(value.encode() or b" ")
+    item.attrs[name] = value
+
+
+def _retype(file, name: str, random: Random) -> None:
+    shape, attributes = file[name].shape or (), dict(file[name].attrs)
+    del file[name]
+    dtype = random.choice(ODD_TYPES)
+    shape = random.choice([shape, (0,), (1,), (), (3, 2), shape[1:], (*shape, 1), tuple(2 * size for size in shape), (1 << 40,)])
+    is_huge = shape == (1 << 40,)
+    dataset = file.create_dataset(name, shape, dtype, chunks=(1 << 20,) if is_huge else None)
+    for key, value in attributes.items():
+        dataset.attrs[key] = value
+
+
+def _put_other(file, name: str, other: str, random: Random) -> None:
+    """Something else stands where `name` was: another item, a link, an empty group."""
+    del file[name]
+    kind = random.randrange(5)
+    if kind == 0 or other not in file:
+        file.create_group(name)
+    elif kind == 1:
+        file[name] = file[other]
+    elif kind == 2:
+        file[name] = h5py.SoftLink("/" + random.choice((other, name, "nowhere")))
+    elif kind == 3:
+        file[name] = h5py.ExternalLink(random.choice(("nowhere.h5", "seed0.h5")), "/" + other)
+    else:
+        file.create_dataset(name, data=h5py.Empty("f8"))

@@ -1,0 +1,66 @@
+"""Small frames that have every group and column of a frame file between them."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+TIMES = [-1.0, 0.0, 1.0, 2.0]
+
+
+def _radar(**more):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=150e6, num_samples=32, sampling_rate=5e6, num_chirps=16,
+                                chirp_interval=50e-6)
+    table = ep.GainTable(azimuth=[-1.0, 0.0, 1.0], elevation=[-0.5, 0.5], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
+    receivers = [ep.Antenna((0, 0.002 * i, 0), pattern=table if i else ep.CosinePower(2.0)) for i in range(2)]
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=receivers, **more)
+
+
+def _plate(*corners):
+    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
+
+
+def _wall():
+    return _plate((-5, 3, -5), (20, 3, -5), (20, 3, 6), (-5, 3, 6))
+
+
+def _arm():
+    """A tube of two triangles, bent by a joint that turns."""
+    vertices = np.array([[4, 0, 0], [4, 1, 0], [4, 0, 1], [4, 1, 1.0]])
+    spin = ep.KeyframeMotion(times=TIMES, translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
+    joints = [ep.Joint("shoulder"), ep.Joint("elbow", "shoulder", motion=spin)]
+    skin = ep.Skin(vertices, joints, [[1, 0], [1, 0], [0, 1], [0, 1]])
+    return ep.Mesh(vertices, [[0, 1, 2], [1, 3, 2]]), skin
+
+
+def _moving_scene():
+    scene = ep.Scene()
+    rough = ep.Material(permittivity=5 - 0.3j, scattering=0.3, cross_polarization=0.2, mirror=True)
+    scene.add(_wall(), name="wall", material=rough)
+    sheet = _plate((6, -1, -1), (6, 1, -1), (6, 1, 1), (6, -1, 1))
+    frames = np.stack([sheet.vertices * [1, 1 + 0.1 * i, 1] for i in range(4)])
+    scene.add(sheet, name="sheet", material="concrete",
+              motion=ep.VertexSequence(times=TIMES, vertices=frames, interpolation="linear"))
+    scene.add(None, name="carrier", position=(8, 1, 0), yaw=0.3,
+              motion=ep.LinearMotion(velocity=(-1, 0, 0), angular_velocity=(0, 0, 0.5)))
+    scene.add(_plate((0, -1, -1), (0, 1, -1), (0, 1, 1), (0, -1, 1)), name="plate", material="metal", parent="carrier")
+    mesh, skin = _arm()
+    scene.add(mesh, name="arm", material="metal", motion=skin)
+    return scene
+
+
+def _curved_scene():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(5, 0, 0), smooth=True)
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(4.5, 1.2, 0), yaw=1.0)
+    return scene
+
+
+def frames() -> list:
+    """Frames of ep.simulate: one with everything that moves, parts, labels and detections; one curved and polarised."""
+    parts = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"plate": "T .* 'carrier/*' .* R"}}
+    moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=600, batches=2, seed=7,
+                         parts=parts, noise_seed=3, labels={"errors": True}, window=("chebyshev", 60),
+                         detections={"false_alarm_rate": 0.1}, angles={"azimuth": [-0.1, 0.0, 0.15]})
+    curved = ep.simulate(_curved_scene(), _radar(), num_rays=3000, max_bounces=2, polarization="jones", noise_seed=None)
+    return [moving, curved]

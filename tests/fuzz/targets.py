@@ -1,0 +1,9 @@
+"""What the fuzzers in Python feed to the readers: {name: function that makes the seeds and returns case(number)}."""
+from __future__ import annotations
+
+from fuzz.arrays import feed_arrays
+from fuzz.frames import feed_frame_bytes, feed_frame_structure
+from fuzz.texts import feed_antenna, feed_scene
+
+TARGETS = {"frame_bytes": feed_frame_bytes, "frame_structure": feed_frame_structure, "arrays": feed_arrays,
+           "scene": feed_scene, "antenna": feed_antenna}

@@ -1,0 +1,55 @@
+"""A short run of the fuzzers of the readers in Python; a long one: `./bootstrap.sh fuzz`."""
+import os
+import time
+
+import pytest
+
+import echopath as ep
+from fuzz import targets, worker
+
+CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300}
+
+
+def test_each_target_has_a_short_run():
+    assert CASES.keys() == targets.TARGETS.keys()
+
+
+@pytest.mark.hard
+@pytest.mark.parametrize("target", CASES)
+def test_readers_refuse_or_read_whatever_comes(target):
+    count, findings = worker.run(target, range(CASES[target]))
+    assert count == CASES[target] and findings == []
+
+
+def _faulty():
+    """Breaks its promise in case 1, ends its process in case 2, hangs in case 3."""
+    def case(number):
+        if number == 1:
+            raise KeyError("mesh")
+        if number == 2:
+            os._exit(3)
+        if number == 3:
+            time.sleep(60)
+
+    return case
+
+
+@pytest.mark.hard
+def test_a_worker_tells_errors_crashes_and_hangs_and_goes_on(monkeypatch):
+    monkeypatch.setattr(worker, "HANG", 0.5)
+    count, findings = worker.run("faulty", range(6), make=_faulty)
+    assert count == 6
+    assert [finding.number for finding in findings] == [1, 2, 3]
+    assert [finding.what[:12] for finding in findings] == ["KeyError: 'm", "ended the pr", "took more th"]
+
+
+@pytest.mark.parametrize("offset", [2**63 - 1, -2**63, -1])
+def test_an_offset_that_leads_nowhere_is_refused_by_name(plates_and_wall, offset):
+    paths = plates_and_wall[0]
+    columns = {name: getattr(paths, name) for name in ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum",
+                                                       "batch", "flags", "scene", "radar", "frame")}
+    columns |= {name: getattr(paths, name) for name in ("jones", "curved_cell") if len(getattr(paths, name))}
+    columns["offsets"] = paths.offsets.copy()
+    columns["offsets"][0] = offset
+    with pytest.raises(ValueError, match=f"offsets: must lead to hits, got {offset}"):
+        ep.Paths.from_arrays(**columns)

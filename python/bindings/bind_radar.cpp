@@ -20,18 +20,9 @@
 namespace echopath::bindings {
 namespace {
 
-// A vector of unit length up to `kUnitTolerance` is scaled to it; one that already is keeps its bits.
-constexpr double kUnitTolerance = 1e-6, kUnitRounding = 1e-14;
+constexpr double kUnitTolerance = 1e-6;  // of directions
 
-constexpr auto kMultiplexing = choice<Multiplexing>("multiplexing", "tdm");
 constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
-
-template <class Vector>
-void make_unit(Vector& vector, const char* argument) {
-  const double norm = vector.norm();
-  require(std::abs(norm - 1.0) <= kUnitTolerance, argument, "must have norm 1 within 1e-6", norm);
-  if (std::abs(norm - 1.0) > kUnitRounding) vector /= norm;
-}
 
 ChirpSequence chirp_sequence(Arg<"start_frequency", Real> start_frequency, Arg<"bandwidth", Real> bandwidth,
                              Arg<"num_samples", Positive> num_samples, Arg<"sampling_rate", Real> sampling_rate,
@@ -72,30 +63,6 @@ AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevati
   const std::vector<double> phases = *phase ? samples(**phase, "phase") : std::vector<double>{};
   return AntennaPattern::of_table(GainTable(*azimuth, *elevation, gains, phases,
                                             *normalize ? GainTable::Scale::kMeanOfOne : GainTable::Scale::kAsGiven));
-}
-
-Antenna antenna(const py::object& position, const py::object& orientation, const std::optional<AntennaPattern>& pattern,
-                const py::object& polarization, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Antenna", {"position", "orientation", "pattern", "polarization"});
-  Antenna made;
-  made.position = as_vec3(position, "position");
-  made.orientation = as_quaternion(orientation, "orientation");
-  made.polarization = as_vec3(polarization, "polarization");
-  made.pattern = pattern.value_or(AntennaPattern{});
-  make_unit(made.orientation.coeffs(), "orientation");
-  make_unit(made.polarization, "polarization");
-  return made;
-}
-
-Radar radar(const ChirpSequence& waveform, const std::vector<Antenna>& transmitters, const std::vector<Antenna>& receivers,
-            double transmit_power, double noise_figure_db, const std::string& multiplexing,
-            const std::shared_ptr<Motion>& motion, const py::kwargs& unknown) {
-  refuse_unknown(unknown, "Radar",
-                 {"waveform", "transmitters", "receivers", "transmit_power", "noise_figure_db", "multiplexing", "motion"});
-  Radar made{waveform, transmitters, receivers, transmit_power, noise_figure_db, kMultiplexing.value_of(multiplexing),
-             motion};
-  made.validate();
-  return made;
 }
 
 const char* kind_of(const AntennaPattern& pattern) { return kPatternKind.name_of(pattern.kind); }
@@ -172,21 +139,6 @@ std::string text_of(const AntennaPattern& pattern) {
   } else {
     text << "CosinePower(exponent=" << pattern.exponent << ", peak_gain=" << pattern.peak_gain << ")";
   }
-  return text.str();
-}
-
-std::string text_of(const Antenna& a) {
-  std::ostringstream text;
-  text << "Antenna((" << a.position.x() << ", " << a.position.y() << ", " << a.position.z()
-       << ") m, pattern=" << text_of(a.pattern) << ")";
-  return text.str();
-}
-
-std::string text_of(const Radar& r) {
-  std::ostringstream text;
-  text << "Radar(" << text_of(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
-       << " receivers, " << r.transmit_power << " W, noise figure " << r.noise_figure_db << " dB"
-       << (r.motion ? ", moving" : "") << ")";
   return text.str();
 }
 
@@ -275,26 +227,6 @@ The field sqrt(gain) e^{j phase} is interpolated by bicubics; phases of neighbou
 Azimuths that cover the whole turn up to one step are closed to a ring.
 Returns an AntennaPattern. Raises TypeError or ValueError naming the argument, also where the mean gain over the sphere is more
 than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.)");
-
-  py::class_<Antenna>(m, "Antenna", R"(One element of a radar.
-
-position: [3] in m, in the radar's frame
-orientation: unit quaternion (w, x, y, z), radar from antenna; the boresight is +x of the antenna's frame
-pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
-polarization: [3] unit vector in the antenna's frame
-Raises ValueError naming the argument.)")
-      .def(py::init(&antenna), py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(),
-           py::arg("orientation") = py::make_tuple(1.0, 0.0, 0.0, 0.0), py::arg("pattern") = py::none(),
-           py::arg("polarization") = py::make_tuple(0.0, 0.0, 1.0))
-      .def_property_readonly(
-          "position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] in m")
-      .def_property_readonly(
-          "orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
-          "[4] (w, x, y, z), radar from antenna")
-      .def_readonly("pattern", &Antenna::pattern, "AntennaPattern")
-      .def_property_readonly(
-          "polarization", [](const Antenna& self) { return to_numpy(self.polarization); }, "[3], unit")
-      .def("__repr__", [](const Antenna& self) { return text_of(self); });
 }
 
 }  // namespace
@@ -302,36 +234,6 @@ Raises ValueError naming the argument.)")
 void bind_radar(py::module_& m) {
   bind_waveform(m);
   bind_antenna(m);
-  py::class_<Radar>(m, "Radar", R"(Waveform, antennas and the platform that carries them.
-
-waveform: ChirpSequence
-transmitters, receivers: lists of Antenna, at least one each
-transmit_power: W per transmitter
-noise_figure_db: dB, single sideband
-multiplexing: "tdm": transmitters take turns, one slot each
-motion: Motion of the radar's frame in the world, or None at rest
-Raises ValueError naming the argument.)")
-      .def(py::init(&radar), py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
-           py::arg("transmit_power") = 0.01, py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm",
-           py::arg("motion") = py::none())
-      .def_readonly("waveform", &Radar::waveform, "ChirpSequence")
-      .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
-      .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
-      .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
-      .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB")
-      .def_property_readonly(
-          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
-      .def_property_readonly(
-          "motion", [](const Radar& self) { return std::const_pointer_cast<Motion>(self.motion); },
-          "Motion of the radar's frame, or None")
-      .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
-      .def("chirp_time", &Radar::chirp_time, py::arg("tx"), py::arg("chirp"),
-           "Time of the middle of a chirp of transmitter tx (indices), s after the frame's start. Raises IndexError.")
-      .def(
-          "world_from_radar", [](const Radar& self, double time) { return to_numpy(self.world_from_radar(time)); },
-          py::arg("time"), "Transform [4, 4] (translation in m) at `time` in s.")
-      .def("_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.")
-      .def("__repr__", [](const Radar& self) { return text_of(self); });
 }
 
 }  // namespace echopath::bindings

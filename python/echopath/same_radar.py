@@ -25,8 +25,10 @@ def difference(radar, other, start_time: float = 0.0) -> str:
         if list(map(_antenna_key, getattr(radar, name))) != list(map(_antenna_key, getattr(other, name))):
             return name
     times = start_time + np.linspace(0.0, radar.frame_duration, _NUM_TIMES)
-    moves_alike = all(np.array_equal(radar.world_from_radar(time), other.world_from_radar(time)) for time in times)
-    return "" if moves_alike else "motion"
+    if all(np.array_equal(radar.world_from_radar(time), other.world_from_radar(time)) for time in times):
+        return ""
+    return next((name for name in ("position", "yaw", "pitch")
+                 if not np.array_equal(getattr(radar, name), getattr(other, name))), "motion")
 
 
 def table_key(pattern) -> tuple:

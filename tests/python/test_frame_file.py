@@ -1,6 +1,8 @@
 """Frame files: what is written is what is read, whole or not at all, and damage is noticed."""
 from __future__ import annotations
 
+import shutil
+
 import h5py
 import numpy as np
 import pytest
@@ -57,7 +59,8 @@ def curved_scene():
 def make_radar():
     receivers = [ep.Antenna((0, 0.01 * (i + 1), 0), pattern=ep.CosinePower(2.0)) for i in range(2)]
     return build_radar([ep.Antenna(polarization=(0, 1, 0))], receivers, num_chirps=16, chirp_interval=1e-4,
-                       transmit_power=0.02, noise_figure_db=9.0, motion=ep.LinearMotion(velocity=(1, 0, 0)))
+                       transmit_power=0.02, noise_figure_db=9.0, position=(0.1, -0.2, 0.3), yaw=0.05, pitch=-0.02,
+                       motion=ep.LinearMotion(velocity=(1, 0, 0)))
 
 
 @pytest.fixture(scope="module")
@@ -121,6 +124,22 @@ def test_a_radar_read_back_is_the_same(frame, saved):
         assert antenna.pattern.peak_gain == other.pattern.peak_gain
     assert_same_bits(expected.transmitters[0].polarization, radar.transmitters[0].polarization)
     assert_same_bits(expected.motion.velocity, radar.motion.velocity)
+    assert_same_bits(expected.position, radar.position)
+    assert (radar.yaw, radar.pitch) == (expected.yaw, expected.pitch)
+
+
+def test_radars_of_files_of_version_3_stand_at_the_origin(saved, tmp_path):
+    old = tmp_path / "old.h5"
+    shutil.copy(saved, old)
+    with h5py.File(old, "r+") as file:
+        file.attrs.modify("schema_version", 3)
+        del file["radar/position"], file["radar"].attrs["yaw"], file["radar"].attrs["pitch"]
+    radar, expected = ep.Paths.load(old).radar, ep.Paths.load(saved).radar
+    assert_same_bits(radar.world_from_radar(0.3), expected.replace(position=(0, 0, 0), yaw=0, pitch=0).world_from_radar(0.3))
+    with h5py.File(old, "r+") as file:
+        file.attrs.modify("schema_version", 4)
+    with pytest.raises(ep.FileError, match="/radar/position"):
+        ep.Paths.load(old)
 
 
 def test_a_frame_read_back_is_the_same(frame, saved):

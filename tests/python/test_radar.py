@@ -88,7 +88,49 @@ def test_bad_radar_names_the_field():
         ep.Radar(reference(), transmitters=one, receivers=one, reciever=one)
 
 
+WRONG = ["abc", b"abc", object(), {}, set(), [[]], (1, 2), np.zeros((2, 2)), np.nan, np.inf, -np.inf, 1j, "\ud800", 1e400,
+         [np.nan] * 3, ("a", "b", "c"), np.array("x"), int, lambda: 0, ep.Isotropic()]
+NUMBERS_FIT = ("yaw", "pitch", "transmit_power", "noise_figure_db", "speed")
+
+
+@pytest.mark.parametrize("name", ["waveform", "transmitters", "receivers", "position", "motion", "multiplexing", *NUMBERS_FIT])
+@pytest.mark.parametrize("value", WRONG, ids=repr)
+def test_a_wrong_argument_of_a_radar_is_named(name, value):
+    arguments = {"waveform": reference(), "transmitters": [ep.Antenna()], "receivers": [ep.Antenna()], name: value}
+    with pytest.raises((ValueError, TypeError), match=rf"^{name}(\[\d+\])?: .*got"):
+        ep.Radar(arguments.pop("waveform"), **arguments)
+
+
+@pytest.mark.parametrize("name", ["position", "yaw", "pitch", "orientation", "pattern", "polarization"])
+@pytest.mark.parametrize("value", [value for value in WRONG if not isinstance(value, ep.AntennaPattern)], ids=repr)
+def test_a_wrong_argument_of_an_antenna_is_named(name, value):
+    with pytest.raises((ValueError, TypeError), match=rf"^{name}: .*got"):
+        ep.Antenna(**{name: value})
+
+
+@pytest.mark.parametrize("name, value", [("yaw", 0.1), ("pitch", 0.1)])
+def test_a_direction_is_given_once(name, value):
+    with pytest.raises(ValueError, match=f"^{name}: must not be given together with orientation, got 0.1"):
+        ep.Antenna(orientation=(1, 0, 0, 0), **{name: value})
+    with pytest.raises(ValueError, match="^pitch: must be from -pi/2 to pi/2 rad, got 10"):
+        ep.Antenna(pitch=10.0)
+
+
+@pytest.mark.parametrize("far", [1e13, 1e20, 1e300])
+def test_what_is_out_of_range_is_named(far):
+    with pytest.raises(ValueError, match=r"^position: .*1e\+?12 m"):
+        ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna()], position=(0, far, 0))
+    with pytest.raises(ValueError, match=r"^position: .*1e\+?12 m"):
+        ep.Antenna((0, 0, -far))
+
+
 def test_representations_tell_what_they_are():
+    placed = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna()], position=(1, 2, 3), yaw=0.7,
+                      pitch=-0.1, speed=3)
+    turned = ep.Antenna((0.1, 0.2, 0.3), yaw=0.1, pitch=0.2)
     radar = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna(pattern=ep.CosinePower(2))])
     assert "77 GHz" in repr(radar) and "1 receivers" in repr(radar)
     assert "CosinePower" in repr(radar.receivers[0])
+    assert "at (1, 2, 3) m, yaw 0.7 rad, pitch -0.1 rad" in repr(placed) and "moving" in repr(placed)
+    assert "(0.1, 0.2, 0.3) m, yaw 0.1 rad, pitch 0.2 rad" in repr(turned)
+    assert "rolled" in repr(ep.Antenna(orientation=(0, 1, 0, 0)))

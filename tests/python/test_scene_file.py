@@ -56,6 +56,29 @@ def test_waveform_and_antennas_are_those_of_the_file(write):
     assert [antenna.position.tolist() for antenna in radar.receivers] == [[0.0, 0.01, 1.0]]
 
 
+def test_the_radar_and_its_antennas_stand_and_look_as_the_file_says(write):
+    text = RADAR.replace("position = [0.0, 0.01, 1.0]", "position = [0.0, 0.01, 1.0]\nyaw_deg = -30.0\npitch_deg = 5.0")
+    text += "[radar]\nposition = [3.0, -2.0, 1.5]\nyaw_deg = 90.0\npitch_deg = 10.0\nspeed = 12.0\n"
+    radar = ep.load_scene(write("", radar=text)).radar
+    assert radar.position.tolist() == [3.0, -2.0, 1.5]
+    assert (radar.yaw, radar.pitch) == (math.radians(90.0), math.radians(10.0))
+    np.testing.assert_allclose(radar.motion.velocity, (0.0, 12.0, 0.0), atol=ROUNDING)
+    np.testing.assert_allclose(radar.world_from_radar(0.0)[:3, 0], (0.0, np.cos(radar.pitch), np.sin(radar.pitch)), atol=ROUNDING)
+    antenna = radar.receivers[0]
+    np.testing.assert_allclose((antenna.yaw, antenna.pitch), np.radians((-30.0, 5.0)), atol=ROUNDING)
+
+
+@pytest.mark.parametrize("key, line", [("pitch_deg", "pitch_deg = 91.0"), ("yaw_deg", "yaw_deg = inf"),
+                                       ("position", "position = [1.0, 2.0]")])
+def test_a_wrong_place_of_the_radar_is_named(write, key, line):
+    assert f"radar.{key}" in fault_of(write("", radar=f"{RADAR}[radar]\n{line}\n"))
+
+
+def test_pitch_must_not_stand_beside_an_orientation(write):
+    text = RADAR + "pitch_deg = 5.0\norientation = [1.0, 0.0, 0.0, 0.0]\n"
+    assert "radar.receivers[0].pitch_deg: must not stand beside orientation" in fault_of(write("", radar=text))
+
+
 def test_antennas_take_what_they_lack_from_the_radar(write):
     text = """
 [[radar.receivers]]

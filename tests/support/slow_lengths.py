@@ -3,14 +3,17 @@ import numpy as np
 
 import echopath as ep
 
+from .placed_radar import turn as turned
+
 CREASE_COSINE = np.cos(np.radians(30))
 
 
 def lengths(paths, time, transmitter, receiver):
     """[P] in m at `time` in s between two antennas [3], in the radar's frame."""
     scene, radar = paths.scene, paths.radar
-    origin, turn = rigid(radar.motion, time)
-    start, end = origin + turn @ transmitter, origin + turn @ receiver
+    shift, turn = rigid(radar.motion, time)
+    turn = turn @ turned(radar.yaw, radar.pitch)
+    start, end = (radar.position + shift + turn @ antenna for antenna in (transmitter, receiver))
     posed = {mesh.id: surface(scene, mesh, time, paths.frame.trace_time) for mesh in scene.meshes}
     return np.array([_length(paths, path, posed, start, end) for path in range(paths.num_paths)])
 

@@ -12,7 +12,9 @@ import echopath as ep
 from echopath_viewer.model import (
     OWN_GROUP, WHOLE, CellBox, CellIndex, FilterError, Filters, Session, from_frame, from_paths, ray_segments,
 )
+from echopath_viewer.model.antennas import world_from_antenna
 from echopath_viewer.model.picking import nearest_segment
+from support.placed_radar import make_radars
 
 ROUNDING = 1e-9
 BORDER = 0.01    # of a colour of 256: single precision
@@ -374,6 +376,16 @@ def test_segments_behind_the_eye_are_not_picked():
     ends = np.array([[0, 1]])
     assert nearest_segment(np.array(behind), ends, clip_from_world, (100, 100), (50, 50), 5.0) is None
     assert nearest_segment(np.array(across), ends, clip_from_world, (100, 100), (75, 50), 5.0) == 0
+
+
+# --- place of the radar ---
+
+def test_antennas_stand_and_look_where_the_placed_radar_takes_them():
+    placed, by_hand = make_radars((3.0, -2.0, 1.2), 0.5, 0.1, motion=ep.LinearMotion(velocity=(4.0, 1.0, 0.0)))
+    for one, other in zip(placed.receivers, by_hand.receivers, strict=True):
+        for time in (0.0, 0.7):
+            np.testing.assert_allclose(world_from_antenna(placed, one, time), world_from_antenna(by_hand, other, time),
+                                       atol=ROUNDING)
 
 
 # --- empty ---

@@ -21,7 +21,7 @@ void require_positive(double value, const std::string& argument) {
 }
 
 void validate_antenna(const Antenna& antenna, const std::string& name) {
-  require(antenna.position.allFinite(), name + ".position", "must be finite", antenna.position.transpose());
+  require_in_range(antenna.position, name + ".position", "the antenna");
   const double quaternion_norm = antenna.orientation.norm();
   require(std::abs(quaternion_norm - 1.0) <= kUnitTolerance, name + ".orientation", "must have norm 1 within 1e-6",
           quaternion_norm);
@@ -121,6 +121,10 @@ bool AntennaPattern::is_dark_behind() const {
   return kind == Kind::kTable ? table->is_dark_behind() : kind == Kind::kCosinePower;
 }
 
+Quaternion turned(double yaw, double pitch) {
+  return Quaternion(Eigen::AngleAxisd(yaw, Vec3::UnitZ())) * Quaternion(Eigen::AngleAxisd(-pitch, Vec3::UnitY()));
+}
+
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
   Vec3 sum = Vec3::Zero();
   for (const Antenna& antenna : antennas) sum += world_from_radar * antenna.position;
@@ -136,9 +140,14 @@ void Radar::validate() const {
   require_positive(transmit_power, "transmit_power");
   require(std::isfinite(noise_figure_db) && noise_figure_db >= 0.0, "noise_figure_db", "must be finite and not negative",
           noise_figure_db);
+  require_in_range(position, "position", "the radar");
+  require(std::isfinite(yaw), "yaw", "must be finite", yaw);
+  require(std::abs(pitch) <= 0.5 * kPi, "pitch", "must be from -pi/2 to pi/2 rad", pitch);
 }
 
-Transform Radar::world_from_radar(double time) const { return motion ? motion->at(time) : Transform::Identity(); }
+Transform Radar::world_from_radar(double time) const {
+  return moved(Eigen::Translation3d(position) * turned(yaw, pitch), motion.get(), time);
+}
 
 double Radar::chirp_time(int tx, int chirp) const {
   require_index(tx, num_slots(), "tx");

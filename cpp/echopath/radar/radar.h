@@ -57,6 +57,11 @@ struct AntennaPattern {
   bool is_dark_behind() const;                      // no gain where x < 0
 };
 
+// Returns the rotation that turns +x by `yaw` about z (to the left), then up by `pitch` in the vertical plane through it:
+// R_z(yaw) R_y(-pitch), both in rad. +x becomes (cos pitch cos yaw, cos pitch sin yaw, sin pitch), and +y stays level. By
+// this one rule radars and antennas are turned; its yaw is that of the nodes of a scene.
+Quaternion turned(double yaw, double pitch);
+
 struct Antenna {
   Vec3 position = Vec3::Zero();                     // m, in the radar's frame
   Quaternion orientation = Quaternion::Identity();  // radar_from_antenna
@@ -76,10 +81,14 @@ struct Radar {
   double transmit_power = 0.01;  // W per transmitter
   double noise_figure_db = 12.0;
   Multiplexing multiplexing = Multiplexing::kTdm;
-  std::shared_ptr<const Motion> motion;  // world_from_radar(t); null: the radar's frame is the world
+  Vec3 position = Vec3::Zero();          // m, in the world: origin of the radar's frame
+  double yaw = 0.0, pitch = 0.0;         // rad, of the radar's frame in the world, see `turned`
+  std::shared_ptr<const Motion> motion;  // moves the placed radar (see `moved`); null: at rest
 
   void validate() const;
   int num_slots() const { return static_cast<int>(transmitters.size()); }
+  // Returns Translation(position) motion(time) R(yaw, pitch): a velocity is in the axes of the world, and the radar turns
+  // about its own origin, as the nodes of a scene do.
   Transform world_from_radar(double time) const;
   // Returns the time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`.
   double chirp_time(int tx, int chirp) const;

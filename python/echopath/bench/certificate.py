@@ -112,8 +112,7 @@ def _scatter(first: float, second: float) -> float:
 
 
 def _traced_powers(made, at: float, seed: int, names):
-    instant = ep.Radar(ep.ChirpSequence(**_instant(made.radar.waveform)), transmitters=made.radar.transmitters,
-                       receivers=made.radar.receivers, motion=made.radar.motion)
+    instant = made.radar.replace(waveform=ep.ChirpSequence(**_instant(made.radar.waveform)))
     paths = ep.trace(made.scene, instant, num_rays=RAYS, max_bounces=made.max_bounces, seed=seed, start_time=float(at))
     return object_powers(paths, [float(at)], names)[:, 0]
 

@@ -86,12 +86,20 @@ def _describe_radar(radar) -> list[str]:
     return ["radar",
             report.line("antennas", f"{slots} transmitting, {len(radar.receivers)} receiving"),
             *_describe_array(ep.virtual_array(radar)),
+            report.line("place", _place(radar)),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
             report.line("range", f"to {max_range:.2f} m, resolution {cell:.3f} m"),
             report.line("velocity", f"+-{wavelength / (4.0 * slots * waveform.chirp_interval):.2f} m/s, resolution "
                         f"{wavelength / (2.0 * slots * waveform.chirp_interval * waveform.num_chirps):.3f} m/s")]
+
+
+def _place(radar) -> str:
+    x, y, z = radar.position
+    yaw, pitch = np.degrees((radar.yaw, radar.pitch))
+    moves = ", moving" if radar.motion is not None else ""
+    return f"({x:g}, {y:g}, {z:g}) m, yaw {yaw:g} deg, pitch {pitch:g} deg{moves}"
 
 
 def _describe_array(array) -> list[str]:

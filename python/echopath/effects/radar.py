@@ -5,8 +5,8 @@ from ..polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_fiel
 from .rules import Case, meshes_or, rule
 
 
-@rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "AntennaPattern.kind", "AntennaPattern.peak_gain",
-      "AntennaPattern.exponent")
+@rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "Antenna.yaw", "Antenna.pitch", "AntennaPattern.kind",
+      "AntennaPattern.peak_gain", "AntennaPattern.exponent")
 def _patterns(case: Case):
     shaped = sorted({antenna.pattern.kind for antenna in antennas_of(case.radar)} - {"isotropic"})
     return bool(shaped), ", ".join(shaped) or "all antennas are isotropic"

@@ -103,7 +103,7 @@ QUANTITIES = {
     "AntennaPattern": ("efficiency", "azimuth", "elevation"),
     "ChirpSequence": ("start_frequency", "num_samples", "num_chirps", "chirp_interval", "slope", "chirp_duration",
                       "window_centre", "centre_frequency", "wavelength", "range_resolution", "max_range"),
-    "Radar": ("waveform", "transmit_power", "frame_duration"),
+    "Radar": ("waveform", "transmit_power", "frame_duration", "position", "yaw", "pitch"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible"),
     "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress", "kept"),
     "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "settings", "progress", "probe"),

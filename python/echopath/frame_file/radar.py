@@ -10,10 +10,13 @@ from .motion import read_motion, write_motion
 
 
 def write_radar(group, radar) -> None:
-    """Writes waveform, antennas, power, noise figure and motion."""
+    """Writes waveform, antennas, power, noise figure, place and motion."""
     write_attribute(group, "transmit_power", radar.transmit_power)
     write_attribute(group, "noise_figure_db", radar.noise_figure_db)
     write_attribute(group, "multiplexing", radar.multiplexing)
+    write_attribute(group, "yaw", radar.yaw)
+    write_attribute(group, "pitch", radar.pitch)
+    write_array(group, "position", radar.position, unit="m")
     waveform = group.create_group("waveform")
     for field in WAVEFORM_KINDS:
         write_attribute(waveform, field, getattr(radar.waveform, field))
@@ -33,6 +36,8 @@ def read_radar(group):
                        transmit_power=read_attribute(group, "transmit_power", float),
                        noise_figure_db=read_attribute(group, "noise_figure_db", float),
                        multiplexing=read_attribute(group, "multiplexing", str),
+                       position=read_array(group, "position", np.float64, (3,)),
+                       yaw=read_attribute(group, "yaw", float), pitch=read_attribute(group, "pitch", float),
                        motion=read_motion(read_group(group, "motion")) if "motion" in group else None)
 
 

@@ -98,9 +98,7 @@ def make_plane(name: str, radar, window, zero_pad, angles):
 
 def with_receivers(radar, which: slice):
     """The radar with some of its receivers."""
-    return _core.Radar(radar.waveform, transmitters=radar.transmitters, receivers=radar.receivers[which],
-                       transmit_power=radar.transmit_power, noise_figure_db=radar.noise_figure_db,
-                       multiplexing=radar.multiplexing, motion=radar.motion)
+    return radar.replace(receivers=radar.receivers[which])
 
 
 def _no_signal(radar):

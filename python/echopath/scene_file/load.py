@@ -167,20 +167,17 @@ def _build_radar(table: RadarTable, folder: Path):
     with _blame("radar"):
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
-                           motion=_motion(table.motion, "radar.motion"))
+                           position=tuple(table.position), yaw=math.radians(table.yaw_deg),
+                           pitch=math.radians(table.pitch_deg),
+                           motion=_motion(table.motion, "radar.motion"), speed=table.speed)
 
 
 def _antenna(antenna, radar: RadarTable, folder: Path):
-    orientation = antenna.orientation or _turned_left(antenna.yaw_deg or 0.0)
-    return _core.Antenna(tuple(antenna.position), orientation=tuple(orientation),
+    direction = {"orientation": tuple(antenna.orientation)} if antenna.orientation is not None else {
+        "yaw": math.radians(antenna.yaw_deg or 0.0), "pitch": math.radians(antenna.pitch_deg or 0.0)}
+    return _core.Antenna(tuple(antenna.position), **direction,
                          pattern=_pattern(antenna.pattern or radar.pattern, folder),
                          polarization=tuple(antenna.polarization or radar.polarization))
-
-
-def _turned_left(yaw_deg: float) -> tuple:
-    """Quaternion (w, x, y, z) of a turn about z."""
-    half = 0.5 * math.radians(yaw_deg)
-    return (math.cos(half), 0.0, 0.0, math.sin(half))
 
 
 def _pattern(table, folder: Path):

@@ -22,6 +22,7 @@ from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Pitch = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 Vector3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Matrix4 = Annotated[list[Quaternion], Field(min_length=4, max_length=4)]
@@ -133,14 +134,16 @@ PatternTable = Annotated[
 class AntennaTable(Table):
     position: Vector3 = Field(description="m, in the radar's frame")
     orientation: Quaternion | None = Field(None, description="quaternion w, x, y, z; boresight is its +x")
-    yaw_deg: Number | None = Field(None, description="degrees about z, instead of orientation")
+    yaw_deg: Number | None = Field(None, description="degrees about z, left positive, instead of orientation")
+    pitch_deg: Pitch | None = Field(None, description="degrees, up positive, instead of orientation")
     pattern: PatternTable | None = Field(None, description="none: that of [radar]")
     polarization: Vector3 | None = Field(None, description="in the antenna's frame; none: that of [radar]")
 
     @model_validator(mode="after")
     def _one_direction(self):
-        if self.orientation is not None and self.yaw_deg is not None:
-            raise broken_rule("yaw_deg", "must not stand beside orientation", self.yaw_deg)
+        for key in ("yaw_deg", "pitch_deg"):
+            if self.orientation is not None and getattr(self, key) is not None:
+                raise broken_rule(key, "must not stand beside orientation", getattr(self, key))
         return self
 
 
@@ -172,7 +175,11 @@ class RadarTable(Table):
     transmit_power: Positive = Field(0.01, description="W, per transmitter")
     noise_figure_db: Number = Field(12.0, description="dB")
     multiplexing: Literal["tdm"] = Field("tdm", description="one transmitter per slot")
-    motion: MotionTable | None = Field(None, description="of the radar in the world; none: it stands still")
+    position: Vector3 = Field([0.0, 0.0, 0.0], description="m, in the world")
+    yaw_deg: Number = Field(0.0, description="degrees about z, left positive")
+    pitch_deg: Pitch = Field(0.0, description="degrees, up positive")
+    motion: MotionTable | None = Field(None, description="of the placed radar, in world axes; none: it stands still")
+    speed: Number | None = Field(None, description="m/s, level and ahead as yaw_deg turns it, instead of motion")
 
 
 class MaterialTable(Table):

@@ -184,6 +184,24 @@ TEST(PosedScene, AntennasMoveAndTurnWithTheRadar) {
   EXPECT_TRUE(in_world.transmitters.empty());
 }
 
+// A radar at a place of its own, turned left by a quarter and up by 0.3 rad, that drives along the world's x.
+TEST(PosedScene, AntennasStandWhereTheirRadarIsPlaced) {
+  Radar radar;
+  Antenna antenna;
+  antenna.position = Vec3(0.1, 0.2, 0);
+  radar.transmitters = radar.receivers = {antenna};
+  radar.position = Vec3(7, -1, 2), radar.yaw = kPi / 2, radar.pitch = 0.3;
+  radar.motion = std::make_shared<const LinearMotion>(Vec3(4, 0, 0));
+  const Vec3 origin(1, 2, 3);
+  const Scene scene = driving_scene();
+  const PosedScene posed(scene, radar, std::vector<SurfacePatch>(1), origin, 2.0);
+  const Vec3 ahead(0, std::cos(0.3), std::sin(0.3)), left(-1, 0, 0), up(0, -std::sin(0.3), std::cos(0.3));
+  const PosedAntenna& first = posed.receivers.front();
+  EXPECT_LT((first.position - (Vec3(15, -1, 2) + 0.1 * ahead + 0.2 * left - origin)).norm(), kRounding);
+  EXPECT_LT((first.boresight - ahead).norm(), kRounding);
+  EXPECT_LT((first.polarization - up).norm(), kRounding);
+}
+
 TEST(PosedScene, AnEmptySceneHasOne) { EXPECT_EQ(PosedScene(Scene(), 3.0).time(), 3.0); }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "echopath/radar/radar.h"
 
@@ -120,6 +121,12 @@ TEST(Radar, EachBadFieldIsNamed) {
     r.receivers[1].polarization = Vec3(0, 0, 2);
   }},
       {"receivers[0].orientation", [](Radar& r) { r.receivers[0].orientation.coeffs() *= 1.01; }},
+      {"position", [](Radar& r) { r.position.y() = std::nan(""); }},
+      {"position", [](Radar& r) { r.position.x() = 1e20; }},  // beyond what rays reach
+      {"transmitters[0].position", [](Radar& r) { r.transmitters[0].position.z() = -1e20; }},
+      {"yaw", [](Radar& r) { r.yaw = std::numeric_limits<double>::infinity(); }},
+      {"pitch", [](Radar& r) { r.pitch = 1.6; }},  // more than straight up
+      {"pitch", [](Radar& r) { r.pitch = std::nan(""); }},
   };
   EXPECT_NO_THROW(one_by_one().validate());
   for (const auto& [field, spoil] : cases) {
@@ -151,6 +158,41 @@ TEST(Radar, MotionCarriesTheRadar) {
   EXPECT_TRUE(radar.world_from_radar(0.5).isApprox(Transform::Identity()));
   radar.motion = std::make_shared<LinearMotion>(Vec3(2, 0, 0));
   EXPECT_NEAR((radar.world_from_radar(0.5) * Vec3(0, 1, 0) - Vec3(1, 1, 0)).norm(), 0.0, kRounding);
+}
+
+// Yaw turns to the left, pitch looks up, and the axis to the left stays level: closed forms of spherical coordinates.
+TEST(Radar, PositiveYawLooksLeftAndPositivePitchLooksUp) {
+  constexpr double kYaw = 0.7, kPitch = 0.3;
+  const Quaternion turn = turned(kYaw, kPitch);
+  const double cos_yaw = std::cos(kYaw), sin_yaw = std::sin(kYaw), cos_pitch = std::cos(kPitch),
+               sin_pitch = std::sin(kPitch);
+  EXPECT_NEAR((turn * Vec3::UnitX() - Vec3(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch)).norm(), 0.0, kRounding);
+  EXPECT_NEAR((turn * Vec3::UnitY() - Vec3(-sin_yaw, cos_yaw, 0.0)).norm(), 0.0, kRounding);
+  EXPECT_NEAR((turn * Vec3::UnitZ() - Vec3(-sin_pitch * cos_yaw, -sin_pitch * sin_yaw, cos_pitch)).norm(), 0.0, kRounding);
+}
+
+// The velocity is in the axes of the world, whichever way the radar looks, and the radar turns about its own origin.
+TEST(Radar, MotionMovesThePlacedRadar) {
+  Radar radar = one_by_one();
+  radar.position = Vec3(10, -2, 1.5);
+  radar.yaw = 0.5 * std::numbers::pi;
+  EXPECT_NEAR((radar.world_from_radar(3.0) * Vec3(1, 0, 0) - Vec3(10, -1, 1.5)).norm(), 0.0, kRounding);
+  radar.motion = std::make_shared<LinearMotion>(Vec3(2, 0, 0), Vec3(0, 0, 0.5 * std::numbers::pi));
+  const Transform after_a_second = radar.world_from_radar(1.0);  // went on by 2 m along x, looks along -x
+  EXPECT_NEAR((after_a_second.translation() - Vec3(12, -2, 1.5)).norm(), 0.0, kRounding);
+  EXPECT_NEAR((after_a_second * Vec3(1, 0, 0) - Vec3(11, -2, 1.5)).norm(), 0.0, kRounding);
+  EXPECT_NEAR((after_a_second * Vec3(0, 1, 0) - Vec3(12, -3, 1.5)).norm(), 0.0, kRounding);
+}
+
+// Turning the antenna in the radar's frame after the radar in the world is a product of matrices written out by hand.
+TEST(Radar, PitchIsAboutTheTurnedAxisAlsoWhileItTurns) {
+  Radar radar = one_by_one();
+  radar.yaw = 0.4, radar.pitch = -0.2;
+  radar.motion = std::make_shared<LinearMotion>(Vec3(0, 1, 0), Vec3(0, 0, 0.3));
+  Mat3 about_z, about_y;  // by 0.3 * 2 + 0.4 rad to the left, then 0.2 rad nose down
+  about_z << std::cos(1.0), -std::sin(1.0), 0, std::sin(1.0), std::cos(1.0), 0, 0, 0, 1;
+  about_y << std::cos(0.2), 0, std::sin(0.2), 0, 1, 0, -std::sin(0.2), 0, std::cos(0.2);
+  EXPECT_NEAR((radar.world_from_radar(2.0).linear() - about_z * about_y).norm(), 0.0, kRounding);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/radar/radar.h"
 #include "in_package.h"
+#include "value.h"
 
 namespace echopath::bindings {
 namespace {
@@ -111,28 +112,22 @@ py::dict keywords_of(const Radar& self) {
                   py::arg("multiplexing") = kMultiplexing.name_of(self.multiplexing));
 }
 
-// Calls the constructor with `keywords` and, where they have the same name, `changes` instead.
-template <class Value>
-py::object made_with(const py::dict& keywords, const py::kwargs& changes) {
-  for (const auto& [name, value] : changes) keywords[name] = value;
-  return py::type::of<Value>()(**keywords);
-}
-
 py::object replace_in_antenna(const Antenna& self, const py::kwargs& changes) {
   const py::dict keywords = keywords_of(self);
-  if (!changes.contains("yaw") && !changes.contains("pitch")) return made_with<Antenna>(keywords, changes);
+  if (!changes.contains("yaw") && !changes.contains("pitch"))
+    return detail::remade(py::type::of<Antenna>(), keywords, changes);
   const auto [yaw, pitch, roll] = attitude_of(self.orientation);
   require(std::abs(roll) < kLevel, changes.contains("yaw") ? "yaw" : "pitch",
           "must be replaced by an orientation where the antenna is rolled about its boresight, by rad", roll);
   keywords.attr("pop")("orientation");
   keywords["yaw"] = yaw, keywords["pitch"] = pitch;
-  return made_with<Antenna>(keywords, changes);
+  return detail::remade(py::type::of<Antenna>(), keywords, changes);
 }
 
 py::object replace_in_radar(const Radar& self, const py::kwargs& changes) {
   py::dict keywords = keywords_of(self);
   if (changes.contains("speed")) keywords["motion"] = py::none();
-  return made_with<Radar>(keywords, changes);
+  return detail::remade(py::type::of<Radar>(), keywords, changes);
 }
 
 double chirp_time(const Radar& self, const Arg<"tx", Count>& tx, const Arg<"chirp", Count>& chirp) {
@@ -180,6 +175,7 @@ pitch: rad, -pi/2 to pi/2, up positive: then about the antenna's own +y, which s
 orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of yaw and pitch, for antennas that are rolled, too
 pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
 polarization: [3] unit vector in the antenna's frame
+Antennas of equal arguments are equal, and pickle.
 Raises ValueError or TypeError naming the argument.)");
   define_init(type, &antenna, py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(), py::arg("yaw") = 0.0,
               py::arg("pitch") = 0.0, py::arg("orientation") = py::none(), py::arg("pattern") = py::none(),
@@ -200,6 +196,7 @@ Raises ValueError or TypeError naming the argument.)");
           "polarization", [](const Antenna& self) { return to_numpy(self.polarization); },
           "[3], unit, in the antenna's frame")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
+  define_value<Antenna>(type, &keywords_of);
   define(type, "replace", &replace_in_antenna, R"(A copy with some arguments of the constructor changed.
 
 changes: keywords of Antenna; yaw or pitch alone keep the other one
@@ -223,7 +220,7 @@ speed: m/s ahead, instead of a motion: level, along (cos yaw, sin yaw, 0), negat
 transmit_power: W per transmitter
 noise_figure_db: dB, single sideband
 multiplexing: "tdm": transmitters take turns, one slot each
-Angles that are estimated count in the radar's axes.
+Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
 Raises ValueError or TypeError naming the argument.)");
   define_init(type, &radar, py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
               py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("yaw") = 0.0, py::arg("pitch") = 0.0,
@@ -252,6 +249,7 @@ Returns s after the frame's start. Raises IndexError.)");
 
 time: s
 Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.)");
+  define_value<Radar>(type, &keywords_of);
   define(type, "replace", &replace_in_radar, R"(A copy with some arguments of the constructor changed.
 
 changes: keywords of Radar; a speed takes the place of the motion

@@ -124,6 +124,14 @@ def test_what_is_out_of_range_is_named(far):
         ep.Antenna((0, 0, -far))
 
 
+def test_a_radar_that_drives_out_of_range_is_refused():
+    radar = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna()], speed=1e39)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(9, 0, 0), smooth=True)
+    with pytest.raises(ValueError, match=r"^radar: antennas must lie within 1e12 m"):
+        ep.trace(scene, radar, num_rays=100)
+
+
 def test_representations_tell_what_they_are():
     placed = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna()], position=(1, 2, 3), yaw=0.7,
                       pitch=-0.1, speed=3)

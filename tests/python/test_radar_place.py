@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath import same_radar
 from support import slow_lengths
 from support.placed_radar import antennas_in_world, make_radars, quaternion, turn
 from support.radars import build_radar
@@ -131,6 +132,16 @@ def test_yaw_and_pitch_turn_an_antenna_as_they_turn_a_radar(yaw, pitch):
     np.testing.assert_allclose((antenna.yaw, antenna.pitch), (yaw, pitch), atol=1e-15)
     radar = build_radar(yaw=yaw, pitch=pitch)
     np.testing.assert_allclose(radar.world_from_radar(0.0)[:3, :3], turn(yaw, pitch), atol=1e-15)
+
+
+@pytest.mark.parametrize("name, value", [("position", (3.0, -2.0, 1.3)), ("yaw", 0.6), ("pitch", 0.2),
+                                         ("motion", ep.LinearMotion(velocity=(4.0, 1.0, 0.0)))])
+def test_a_radar_at_another_place_is_another_one(name, value):
+    placed, _ = radars_of("driving", 0.0)
+    assert same_radar.difference(placed, placed.replace(**{name: value})) == name
+    still = placed.replace(motion=None)
+    assert same_radar.difference(placed, still) == "motion"
+    assert same_radar.difference(still, still.replace(motion=ep.LinearMotion())) == ""
 
 
 def test_yaw_is_that_of_what_a_scene_holds():

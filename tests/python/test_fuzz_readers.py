@@ -2,6 +2,7 @@
 import os
 import time
 
+import numpy as np
 import pytest
 
 import echopath as ep
@@ -43,12 +44,22 @@ def test_a_worker_tells_errors_crashes_and_hangs_and_goes_on(monkeypatch):
     assert [finding.what[:12] for finding in findings] == ["KeyError: 'm", "ended the pr", "took more th"]
 
 
+def columns_of(paths) -> dict:
+    """Keywords of Paths.from_arrays that give the same paths."""
+    names = ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "scene", "radar", "frame")
+    return {name: getattr(paths, name) for name in names} | {
+        name: getattr(paths, name) for name in ("jones", "curved_cell") if len(getattr(paths, name))}
+
+
+def test_columns_of_paths_give_the_same_paths(plates_and_wall):
+    paths = plates_and_wall[0]
+    assert np.array_equal(ep.Paths.from_arrays(**columns_of(paths)).amplitude, paths.amplitude)
+
+
 @pytest.mark.parametrize("offset", [2**63 - 1, -2**63, -1])
 def test_an_offset_that_leads_nowhere_is_refused_by_name(plates_and_wall, offset):
     paths = plates_and_wall[0]
-    columns = {name: getattr(paths, name) for name in ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum",
-                                                       "batch", "flags", "scene", "radar", "frame")}
-    columns |= {name: getattr(paths, name) for name in ("jones", "curved_cell") if len(getattr(paths, name))}
+    columns = columns_of(paths)
     columns["offsets"] = paths.offsets.copy()
     columns["offsets"][0] = offset
     with pytest.raises(ValueError, match=f"offsets: must lead to hits, got {offset}"):

@@ -179,7 +179,7 @@ Raises TypeError or ValueError naming the argument.)");
   define_replace<ChirpSequence>(type, &keywords_of);
 }
 
-void bind_antenna(py::module_& m) {
+void bind_patterns(py::module_& m) {
   py::class_<AntennaPattern> type(m, "AntennaPattern",
                                   "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
   define(type, "gain", &gain_of, py::arg("cos_boresight"),
@@ -233,7 +233,7 @@ than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.)");
 
 void bind_radar(py::module_& m) {
   bind_waveform(m);
-  bind_antenna(m);
+  bind_patterns(m);
 }
 
 }  // namespace echopath::bindings

@@ -1,7 +1,6 @@
 """Frame files: what is written is what is read, whole or not at all, and damage is noticed."""
 from __future__ import annotations
 
-import shutil
 
 import h5py
 import numpy as np
@@ -127,20 +126,6 @@ def test_a_radar_read_back_is_the_same(frame, saved):
     assert_same_bits(expected.position, radar.position)
     assert (radar.yaw, radar.pitch) == (expected.yaw, expected.pitch)
     assert radar == expected
-
-
-def test_radars_of_files_of_version_3_stand_at_the_origin(saved, tmp_path):
-    old = tmp_path / "old.h5"
-    shutil.copy(saved, old)
-    with h5py.File(old, "r+") as file:
-        file.attrs.modify("schema_version", 3)
-        del file["radar/position"], file["radar"].attrs["yaw"], file["radar"].attrs["pitch"]
-    radar, expected = ep.Paths.load(old).radar, ep.Paths.load(saved).radar
-    assert radar == expected.replace(position=(0, 0, 0), yaw=0, pitch=0)
-    with h5py.File(old, "r+") as file:
-        file.attrs.modify("schema_version", 4)
-    with pytest.raises(ep.FileError, match="/radar/position"):
-        ep.Paths.load(old)
 
 
 def test_a_frame_read_back_is_the_same(frame, saved):

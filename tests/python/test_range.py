@@ -15,7 +15,7 @@ CASES = {
                                      r"\(are its vertices in metres\?\), radius in m, got 1000000"),
     "vertex": r"scene: from the radar, vertices of mesh 'far' must lie within 1e12 m, got .*1e\+19",
     "whole scene": r"scene: what is next to the radar must lie within 1e12 m, got .*1e\+19",
-    "radar": r"radar: antennas must lie within 1e12 m, got 1e\+20 +0 +0",
+    "radar": r"position: the antenna must lie within 1e12 m, got 1e\+20 +0 +0",
     "velocity": r"scene: the place of mesh 'near' must lie within 1e12 m, got .*e\+35 +0 +0",
     "turning": r"scene: motions must turn by finite angles, time, got 0\.00\d+",
     "start_time": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",

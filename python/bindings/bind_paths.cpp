@@ -101,6 +101,10 @@ PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, cons
                            const py::array& batch, const py::array& flags, const py::object& curved_cell,
                            const py::object& jones, const Scene& scene, const Radar& radar, const TraceFrame& frame) {
   auto paths = std::make_shared<Paths>();
+  if (hits.ndim() != 1 || !hits.dtype().equal(py::dtype::of<Hit>())) {
+    throw py::type_error("hits: must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it, got " +
+                         std::string(py::str(hits.dtype())) + " of " + std::to_string(hits.ndim()) + " dimensions");
+  }
   const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
   paths->hits = std::make_shared<const std::vector<Hit>>(rows.data(), rows.data() + rows.size());
   paths->offsets = as_vector<int64_t>(offsets, "offsets", "[P]");

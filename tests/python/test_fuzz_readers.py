@@ -64,3 +64,9 @@ def test_an_offset_that_leads_nowhere_is_refused_by_name(plates_and_wall, offset
     columns["offsets"][0] = offset
     with pytest.raises(ValueError, match=f"offsets: must lead to hits, got {offset}"):
         ep.Paths.from_arrays(**columns)
+
+
+@pytest.mark.parametrize("hits", [np.array([None]), np.zeros(4, "V16"), np.zeros((2, 4), np.float32), np.zeros(3)])
+def test_hits_of_another_type_are_refused_by_name(plates_and_wall, hits):
+    with pytest.raises(TypeError, match="hits: must be an array .H. of .mesh_id, triangle_id, u, v."):
+        ep.Paths.from_arrays(**columns_of(plates_and_wall[0]) | {"hits": hits})

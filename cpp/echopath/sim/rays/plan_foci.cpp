@@ -17,7 +17,7 @@ constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
 constexpr size_t kMaxFoci = 12;        // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
-constexpr double kLargestShare = 0.5;      // of the stratum's rays, for all its foci
+constexpr double kLargestShare = 0.5;  // of the stratum's rays, for all its foci
 constexpr double kMinGain = 1.5;       // of the density of rays in a focus, over that without it
 
 // Describes a stratum of the trace to come.

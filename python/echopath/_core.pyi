@@ -14,7 +14,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'Material', 'Mesh', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MAX_RAYS', 'Material', 'Mesh', 'MeshTable', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -379,14 +379,40 @@ class Mesh:
         """
         [F] triangle of `whole`, [0] for a whole
         """
+class MeshTable:
+    """
+    Keeps a value for each Mesh while it lives, no part of the public interface.
+    """
+    def __init__(self) -> None:
+        ...
+    def __len__(self) -> int:
+        """
+        Number of meshes that live and have a value.
+        """
+    def get(self, mesh: Mesh, otherwise: typing.Any) -> typing.Any:
+        """
+        What is kept for the mesh, or `otherwise`.
+        """
+    def set(self, mesh: Mesh, value: typing.Any) -> None:
+        """
+        Keeps a value for the mesh.
+        """
 class Node:
     """
     A node of a scene; cannot be changed.
     """
-    def __init__(self, *, name: str, parent: int = -1, placement: typing.Any = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False) -> None:
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __init__(self, *, name: str, parent: int = -1, placement: typing.Any = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False, visible: bool = True) -> None:
         ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> typing.Any:
+        """
+        A copy with some fields changed: node.replace(visible=False).
+        """
     @property
     def deformation(self) -> Deformation:
         """
@@ -431,6 +457,11 @@ class Node:
     def smooth(self) -> bool:
         """
         whether the mesh stands for a curved surface
+        """
+    @property
+    def visible(self) -> bool:
+        """
+        False: neither it nor what is below it takes part in anything
         """
 class SceneMesh:
     """
@@ -508,11 +539,53 @@ class Scene:
     """
     A tree of named nodes with placements, motions and meshes.
     """
+    def __contains__(self, name: typing.Any) -> bool:
+        """
+        Whether there is a node with that full name.
+        """
+    def __copy__(self) -> typing.Any:
+        ...
+    def __deepcopy__(self, memo: dict[typing.Any, typing.Any]) -> typing.Any:
+        """
+        Shares meshes, motions and materials, which cannot change.
+        """
+    def __getitem__(self, name: typing.Any) -> Node:
+        """
+        The Node with that full name, "street/car". Raises KeyError naming the nearest names.
+        """
+    def __getstate__(self) -> tuple[list[Node]]:
+        ...
+    @typing.overload
     def __init__(self) -> None:
+        ...
+    @typing.overload
+    def __init__(self, scene: Scene) -> None:
+        """
+        A copy.
+        """
+    def __iter__(self) -> typing.Any:
+        """
+        Full names, parents first.
+        """
+    def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
     def _add_nodes(self, nodes: collections.abc.Sequence[Node]) -> None:
+        ...
+    def _change(self, index: int, node: Node) -> None:
+        ...
+    def _index_of(self, name: typing.Any) -> int:
+        """
+        Raises KeyError naming the nearest names.
+        """
+    def _node(self, index: int) -> Node:
+        ...
+    def _remove(self, index: int) -> None:
+        ...
+    def _takes_part(self, index: int) -> bool:
         ...
     def coplanar_overlaps(self, *, time: float = 0.0, max_distance: float = 1e-05) -> list[CoplanarOverlap]:
         """
@@ -551,16 +624,13 @@ class Scene:
     @property
     def meshes(self) -> list[SceneMesh]:
         """
-        list of SceneMesh by mesh ID
+        list of SceneMesh that take part, by mesh ID
         """
     @property
     def nodes(self) -> list[Node]:
         """
         list of Node, parents first
         """
-    @property
-    def num_nodes(self) -> int:
-        ...
     @property
     def num_triangles(self) -> int:
         ...
@@ -875,16 +945,36 @@ class Antenna:
     """
     One element of a radar.
 
-    position: [3] in m, in the radar's frame
-    orientation: unit quaternion (w, x, y, z), radar from antenna; the boresight is +x of the antenna's frame
+    position: [3] m, in the radar's frame
+    yaw: rad about the radar's z, left positive, as in scene.add: where the boresight points, +x of the antenna's frame
+    pitch: rad, -pi/2 to pi/2, up positive: then about the antenna's own +y, which stays level
+    orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of yaw and pitch, for antennas that are rolled, too
     pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
     polarization: [3] unit vector in the antenna's frame
-    Raises ValueError naming the argument.
+    Antennas of equal arguments are equal, and pickle.
+    Raises ValueError or TypeError naming the argument.
     """
-    def __init__(self, position: typing.Any = (0.0, 0.0, 0.0), *, orientation: typing.Any = (1.0, 0.0, 0.0, 0.0), pattern: AntennaPattern | None = None, polarization: typing.Any = (0.0, 0.0, 1.0), **kwargs: typing.Any) -> None:
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, position: ArrayLike = (0.0, 0.0, 0.0), *, yaw: float = 0.0, pitch: float = 0.0, orientation: ArrayLike | None = None, pattern: AntennaPattern | None = None, polarization: ArrayLike = (0.0, 0.0, 1.0)) -> None:
         ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> typing.Any:
+        """
+        A copy with some arguments of the constructor changed.
+
+        changes: keywords of Antenna; yaw or pitch alone keep the other one
+        Returns an Antenna. Raises what Antenna raises, and ValueError for yaw and pitch of an antenna that is rolled.
+        """
     @property
     def orientation(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -896,38 +986,84 @@ class Antenna:
         AntennaPattern
         """
     @property
+    def pitch(self) -> float:
+        """
+        rad, of the boresight in the radar's frame, up positive
+        """
+    @property
     def polarization(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        [3], unit
+        [3], unit, in the antenna's frame
         """
     @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        [3] in m
+        [3] m, in the radar's frame
+        """
+    @property
+    def yaw(self) -> float:
+        """
+        rad, of the boresight in the radar's frame, left positive
         """
 class Radar:
     """
-    Waveform, antennas and the platform that carries them.
+    Waveform, antennas, and where the radar that carries them is.
 
     waveform: ChirpSequence
-    transmitters, receivers: lists of Antenna, at least one each
+    transmitters, receivers: Antenna, at least one each, placed in the radar's frame: x ahead, y left, z up
+    position: [3] m, in the world: the origin of the radar's frame
+    yaw: rad about the world's z, left positive, as in scene.add: yaw = pi / 2 looks along +y
+    pitch: rad, -pi/2 to pi/2, up positive: then about the radar's own +y, which stays level. The radar's +x becomes
+        (cos pitch cos yaw, cos pitch sin yaw, sin pitch) in the world.
+    motion: Motion of the placed radar, or None at rest. Its axes are the world's, wherever the radar looks, as those of what
+        scene.add places at the root are: at time t a point p of the radar's frame is at position + translation(t) +
+        rotation(t) R_z(yaw) R_y(-pitch) p.
+    speed: m/s ahead, instead of a motion: level, along (cos yaw, sin yaw, 0), negative backwards; `motion` is then the
+        LinearMotion of that velocity, which a later change of yaw leaves as it is
     transmit_power: W per transmitter
     noise_figure_db: dB, single sideband
     multiplexing: "tdm": transmitters take turns, one slot each
-    motion: Motion of the radar's frame in the world, or None at rest
-    Raises ValueError naming the argument.
+    Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
+    Raises ValueError or TypeError naming the argument.
     """
-    def __init__(self, waveform: ChirpSequence, *, transmitters: collections.abc.Sequence[Antenna], receivers: collections.abc.Sequence[Antenna], transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: str = 'tdm', motion: Motion | None = None, **kwargs: typing.Any) -> None:
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, waveform: ChirpSequence, *, transmitters: typing.Sequence[Antenna], receivers: typing.Sequence[Antenna], position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0, pitch: float = 0.0, motion: Motion | None = None, speed: float | None = None, transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: str = 'tdm') -> None:
         ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def _repr_html_(self) -> typing.Any:
+        """
+        A table for notebooks.
+        """
     def chirp_time(self, tx: int, chirp: int) -> float:
         """
-        Time of the middle of a chirp of transmitter tx (indices), s after the frame's start. Raises IndexError.
+        Time of the middle of a chirp.
+
+        tx, chirp: indices of the transmitter and of its chirp
+        Returns s after the frame's start. Raises IndexError.
+        """
+    def replace(self, **kwargs: typing.Any) -> typing.Any:
+        """
+        A copy with some arguments of the constructor changed.
+
+        changes: keywords of Radar; a speed takes the place of the motion
+        Returns a Radar. Raises what Radar raises.
         """
     def world_from_radar(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Transform [4, 4] (translation in m) at `time` in s.
+        Where the radar's frame is in the world.
+
+        time: s
+        Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.
         """
     @property
     def frame_duration(self) -> float:
@@ -935,9 +1071,9 @@ class Radar:
         s, from the first sample to the last
         """
     @property
-    def motion(self) -> Motion:
+    def motion(self) -> typing.Any:
         """
-        Motion of the radar's frame, or None
+        Motion of the placed radar in world axes, or None
         """
     @property
     def multiplexing(self) -> str:
@@ -947,7 +1083,17 @@ class Radar:
     @property
     def noise_figure_db(self) -> float:
         """
-        dB
+        dB, single sideband
+        """
+    @property
+    def pitch(self) -> float:
+        """
+        rad, up positive, without `motion`
+        """
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [3] m, in the world, without `motion`
         """
     @property
     def receivers(self) -> list[Antenna]:
@@ -969,26 +1115,44 @@ class Radar:
         """
         ChirpSequence
         """
+    @property
+    def yaw(self) -> float:
+        """
+        rad, left positive, without `motion`
+        """
 class RangeDoppler:
     """
     Range-Doppler maps with their axes; made by range_doppler.
     """
-    @staticmethod
-    def to_xarray(map):
-        """
-        A map as xarray with named axes; its arrays are not copied.
-
-            map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
-                RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
-                the beams) and velocity (m/s, of the cells, where only some were taken)
-                Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
-                dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
-            Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no
-            map, ModuleNotFoundError without xarray.
-
-        """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    def _repr_html_(self) -> typing.Any:
+        """
+        A table for notebooks.
+        """
+    def plot(self, *, ax: typing.Any = None, vmin: typing.Any = None, vmax: typing.Any = None, title: str = 'Received power by range and radial velocity') -> typing.Any:
+        """
+        Draws the map, the mean over the channels, cropped to where there is signal.
+
+        ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
+        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive).
+        """
+    def to_xarray(self) -> typing.Any:
+        """
+        The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
+
+        Axes: tx, rx, velocity (m/s, receding positive) and range (m).
+
+        Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.
+        """
     @property
     def is_tdm_compensated(self) -> bool:
         """
@@ -1109,9 +1273,16 @@ class CfarResult:
     """
     Cells of a range-Doppler map that exceed their thresholds; made by cfar.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def cells(self) -> numpy.typing.NDArray[numpy.int64]:
@@ -1165,8 +1336,31 @@ class AngleSpectrum:
     Axes are direction cosines along the columns and rows of the array's grid: for antennas in the y-z plane
     sin(azimuth) cos(elevation) and sin(elevation).
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    def plot(self, range: typing.Any = None, velocity: typing.Any = None, *, ax: typing.Any = None, title: str = 'Received power by direction') -> typing.Any:
+        """
+        Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
+
+        range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
+        ax: Matplotlib axes to draw in, None: new ones; title: what stands above, the cell is added
+        Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.
+        """
+    def to_xarray(self) -> typing.Any:
+        """
+        The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
+
+        Axes: sin_elevation, sin_azimuth (direction cosines, 1), velocity (m/s, receding positive) and range (m).
+
+        Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.
+        """
     @property
     def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1206,7 +1400,14 @@ class BeamPower:
     """
     Power of beams with their axes; made by beamform.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1237,22 +1438,32 @@ class RangeAzimuth:
     """
     A range-azimuth map with its axes; made by range_azimuth.
     """
-    @staticmethod
-    def to_xarray(map):
-        """
-        A map as xarray with named axes; its arrays are not copied.
-
-            map: RangeDoppler, a DataArray: complex values in sqrt(W), axes tx, rx, velocity (m/s, receding positive) and range (m);
-                RangeAzimuth, a DataArray: power in W, axes azimuth (rad, left positive) and range (m); attributes elevation (rad, of
-                the beams) and velocity (m/s, of the cells, where only some were taken)
-                Labels, a Dataset: power (W) and share by part, velocity (m/s) or azimuth (rad), and range (m); whole (W), mask,
-                dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none; errors where they are known
-            Units stand in `attrs["units"]` of values and coordinates. `map.to_xarray()` is the same. Raises TypeError for what is no
-            map, ModuleNotFoundError without xarray.
-
-        """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    def plot(self, *, ax: typing.Any = None, vmin: typing.Any = None, vmax: typing.Any = None, title: str = 'Received power from above') -> typing.Any:
+        """
+        Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
+
+        ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
+        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+        Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.
+        """
+    def to_xarray(self) -> typing.Any:
+        """
+        The map as an xarray.DataArray, without a copy: power in W.
+
+        Axes: azimuth (rad, left positive) and range (m); attributes elevation (rad, of the beams) and velocity (m/s, of the cells, where
+        only some were taken).
+
+        Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.
+        """
     @property
     def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1282,9 +1493,16 @@ class AngleEstimates:
     """
     Directions of echoes, arrays over all peaks; made by estimate_angles.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def azimuth(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1336,6 +1554,12 @@ class Selection:
         ...
     def __bool__(self) -> bool:
         ...
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> str:
+        ...
+    def __hash__(self) -> int:
+        ...
     @typing.overload
     def __init__(self, text: str) -> None:
         ...
@@ -1351,6 +1575,8 @@ class Selection:
     def __repr__(self) -> str:
         ...
     def __ror__(self, arg0: Selection) -> Selection:
+        ...
+    def __setstate__(self, arg0: str) -> None:
         ...
     def __str__(self) -> str:
         ...
@@ -1415,9 +1641,16 @@ class Stratum:
     """
     One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __init__(self, *, axis: typing.Any, versine: float, num_rays: int, ray_density: float, name: str, across: typing.Any = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
         ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def across(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1488,7 +1721,14 @@ class TraceStatistics:
     """
     What a trace did.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_beams: int = 0) -> None:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def num_false_hits(self) -> int:
@@ -1544,7 +1784,14 @@ class TraceFrame:
     """
     What amplitudes and lengths of paths are relative to.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __init__(self, *, start_time: float, trace_time: float, transmitter: typing.Any, receiver: typing.Any, strata: collections.abc.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice') -> None:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def error_db(self) -> float:
@@ -1634,23 +1881,22 @@ class Paths:
         Raises ValueError where an index leads nowhere.
         """
     @staticmethod
-    def load(*args: typing.Any, **kwds):
+    def load(path: typing.Any) -> typing.Any:
         """
         Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.
         """
-    @staticmethod
-    def save(*args: typing.Any, **kwds) -> LeftOut:
-        """
-        Writes paths with their scene and radar to an HDF5 file.
-
-            path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
-            below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
-
-        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
         ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    def _repr_html_(self) -> typing.Any:
+        """
+        A table for notebooks.
+        """
     def _select_with_own_hits(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
         """
         The paths where a mask, bool [P], is true, with only the hits that they use.
@@ -1671,6 +1917,13 @@ class Paths:
         """
         Hits [H, 3] in m in the world at `time` in s.
         """
+    def save(self, path: typing.Any, min_power: float = 0.0) -> typing.Any:
+        """
+        Writes the paths with their scene and radar to an HDF5 file.
+
+        path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
+        below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
+        """
     @typing.overload
     def select(self, selection: Selection) -> Paths:
         """
@@ -1680,6 +1933,24 @@ class Paths:
     def select(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
         """
         The paths where `selection`, a mask bool [P], is true.
+        """
+    def to_dataframe(self) -> typing.Any:
+        """
+        A table with a row for each path, as a pandas.DataFrame.
+
+        Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
+        D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
+        objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
+        at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
+        Needs pandas, raises ModuleNotFoundError without it.
+        """
+    def to_xarray(self) -> typing.Any:
+        """
+        The record as an xarray.Dataset, without a copy of its arrays.
+
+        Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and
+        power (W) at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
+        attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.
         """
     @property
     def amplitude(self) -> numpy.ndarray[typing.Any, typing.Any]:
@@ -1702,7 +1973,7 @@ class Paths:
         [P] bit k: hit k is diffuse; 0: coherent
         """
     @property
-    def effects(self, *, replay: str = 'material', evaluate: str = 'interpolated', retrace: str = 'never', noise_seed: int | None = None) -> list[Effect]:
+    def effects(self) -> typing.Any:
         """
         list of Effect: what the trace modelled, what not, and why
         """
@@ -1801,7 +2072,14 @@ class ReceivedPower:
     reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
     and are NaN for one batch.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def between_rays(self) -> float:
@@ -1918,7 +2196,14 @@ class Renewal:
     """
     A record brought up to another time; made by `renew`.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def num_blocked(self) -> int:
@@ -1944,7 +2229,14 @@ class ValidityShares:
     """
     What one trace does not serve, as shares of the power of some paths.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def blocked(self) -> float:
@@ -1980,7 +2272,14 @@ class ObjectValidity(ValidityShares):
     """
     What one trace does not serve of an object: of the paths that scattered on it last.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def disappears(self) -> float:
@@ -2031,10 +2330,21 @@ class Validity:
     within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
     over the frame is off by more than 0.5 dB, or it is seen but has no path.
     """
+    __hash__: typing.ClassVar[None] = None
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     def __str__(self) -> str:
         ...
+    def _repr_html_(self) -> typing.Any:
+        """
+        A table for notebooks.
+        """
     @property
     def blocked(self) -> numpy.typing.NDArray[numpy.uint64]:
         """
@@ -2241,6 +2551,10 @@ class Grouping:
         """
         parts: [(name, selection), ...]; the first that takes a path has it. Keys: names, "other" last.
         """
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
 class SignalProbe:
     """
     Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
@@ -2334,6 +2648,7 @@ def CosinePower(exponent: float, peak_gain: float | None = None) -> AntennaPatte
 
     exponent: 0 or more
     peak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)
+    Raises ValueError naming the argument.
     """
 def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phase: ArrayLike | None = None, normalize: bool = False) -> AntennaPattern:
     """
@@ -2353,54 +2668,21 @@ def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phas
     """
 def Isotropic(gain: float = 1.0) -> AntennaPattern:
     """
-    The same linear power gain in every direction.
+    The same linear power gain in every direction. Raises ValueError for a gain that is not positive.
     """
 def _wait(seconds: float, progress: typing.Any = None) -> None:
     ...
-def add_noise(cube: typing.Any, radar: Radar, *, seed: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+def add_noise(cube: typing.Any, radar: Radar, *, seed: int, start_time: float) -> numpy.ndarray[typing.Any, typing.Any]:
     """
-    Adds the receiver's thermal noise to a cube.
-
-    Circular Gaussian of k T0 F fs per complex sample, half of it for real samples, independent between samples.
-    cube: [tx, rx, chirp, sample] in sqrt(W)
-    seed: 0 or more; the same seed gives the same noise
-    Returns a new cube. Raises ValueError unless the cube has the shape that the radar gives it.
+    What ep.add_noise calls.
     """
-def angle_fft(spectrum: RangeDoppler, radar: Radar, *, window: typing.Any = 'hann', zero_pad: int = 4, overlaps: str = 'average', compensate: bool = True, progress: typing.Any = None, **kwargs: typing.Any) -> AngleSpectrum:
+def angle_fft(spectrum: RangeDoppler, radar: Radar, *, window: typing.Any = 'hann', zero_pad: int = 4, overlaps: str = 'average', compensate: bool = True, progress: typing.Any = None) -> AngleSpectrum:
     """
-    Angle spectra of a uniform array: a Fourier transform over its rows and columns.
-
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-    window: as in range_doppler, over rows and columns; here symmetric and nowhere zero
-    zero_pad: 1 to 64, transforms of so many times the rows and columns
-    overlaps: "average" of channels at one position, or the "first" of them; gaps count as zeros
-    compensate: take out the phase between transmit slots (compensate_tdm)
-    progress: callable(stage, fraction) or None
-    Returns an AngleSpectrum with values [elevation, azimuth, velocity, range] in sqrt(W). |value|^2 of a far point at its
-    direction is its received power in W, averaged over channels; noise falls to 1/N for N elements without a window.
-    Raises ValueError where the array is no grid of equal steps (beamform takes any) or the map is not the radar's.
+    What ep.angle_fft calls.
     """
-def beamform(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, cells: typing.Any = None, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> BeamPower:
+def beamform(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, cells: typing.Any = None, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> BeamPower:
     """
-    Power that beams toward a grid of directions pass, for any array.
-
-    Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency. An echo from
-    the steered direction passes unchanged: a far point gives its received power in W, averaged over channels.
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
-    elevation: [E] or one in rad, up from the xy-plane; None likewise
-    cells: [N, 2] (velocity, range) indices, or None: all
-    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
-        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
-    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
-    overlaps: "average" of channels at one position, or the "first" of them
-    compensate: take out the phase between transmit slots (compensate_tdm)
-    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
-    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
-    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
-    progress: callable(stage, fraction) or None
-    Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
-    Raises ValueError or IndexError naming the argument.
+    What the function of that name in ep calls.
     """
 def cell_masks(power: typing.Any, noise_floor: float, dynamic_range: float) -> tuple[typing.Any, ...]:
     """
@@ -2410,26 +2692,9 @@ def cell_noise_power(radar: Radar, window: typing.Any) -> float:
     """
     Mean power of the receiver's noise in a cell of a range-Doppler map, W.
     """
-def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, progress: typing.Any = None, **kwargs: typing.Any) -> CfarResult:
+def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, progress: typing.Any = None) -> CfarResult:
     """
-    Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
-
-    A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
-    right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
-    channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-    method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
-    false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
-    guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
-        the window's main lobe; None: just that
-    training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the map
-        is small
-    rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
-    progress: callable(stage, fraction) or None
-    Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each side,
-    "os" several times that; Ctrl-C is heard.
-    Returns a CfarResult. Raises ValueError naming the argument, also for windows of more than 2000 cells, counted without
-    padding.
+    What ep.cfar calls.
     """
 def check_cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75) -> None:
     """
@@ -2445,44 +2710,19 @@ def check_part_names(parts: collections.abc.Sequence[tuple[str, Selection]]) -> 
     """
 def compensate_tdm(spectrum: RangeDoppler, radar: Radar, fold: int = 0) -> RangeDoppler:
     """
-    A map without the phase that motion adds between transmit slots (TDM).
-
-    Transmitter m sends m chirp intervals after the first: a cell of velocity v (receding positive) is turned by
-    e^{-j 2 pi (2 v / wavelength) m chirp_interval}. M transmitters divide the unambiguous velocity by M; an echo of
-    v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`.
-    spectrum: RangeDoppler of that radar, with values [tx, rx, velocity, range]
-    fold: whole number; the velocities of the result are those assumed, v + 2 fold v_max in m/s
-    Returns a RangeDoppler. The functions of angles do this themselves unless it is done. Raises ValueError.
+    What ep.compensate_tdm calls.
     """
-def decompose(paths: Paths, radar: Radar, views: collections.abc.Sequence[Grouping], *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None, **kwargs: typing.Any) -> list[typing.Any]:
+def decompose(paths: Paths, radar: Radar, views: collections.abc.Sequence[Grouping], *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None) -> list[typing.Any]:
     """
     The signals of parts of the paths, several views of them replayed once.
 
     views: list of Grouping
     Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
-    tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes, progress and probe are as in synthesize.
+    The other arguments are those of ep.synthesize.
     """
-def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> AngleEstimates:
+def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> AngleEstimates:
     """
-    Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
-
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-    azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
-    elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
-    cells: [N, 2] (velocity, range) indices
-    max_peaks: of a cell, the strongest; peak_range_db: dB below the strongest of the cell, within which others count
-    folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
-        tell apart; less than half the number of transmitters
-    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
-        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
-    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
-    overlaps: "average" of channels at one position, or the "first" of them
-    compensate: take out the phase between transmit slots (compensate_tdm)
-    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
-    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
-    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
-    progress: callable(stage, fraction) or None
-    Returns AngleEstimates, arrays [M]: none for a cell without power. Raises ValueError or IndexError naming the argument.
+    What the function of that name in ep calls.
     """
 def find_families(paths: Paths, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None) -> tuple[typing.Any, ...]:
     """
@@ -2502,7 +2742,7 @@ def find_peaks(spectrum: RangeDoppler, radar: Radar, found: CfarResult, progress
     """
 def first(glob: str) -> Selection:
     """
-    Selection of the paths whose first hit is on a mesh that the glob takes, as in T 'glob' .* R.
+    What ep.first calls.
     """
 def glob_takes(glob: str, full_name: str) -> bool:
     """
@@ -2510,7 +2750,7 @@ def glob_takes(glob: str, full_name: str) -> bool:
     """
 def hits(glob: str) -> Selection:
     """
-    Selection of the paths with at least one hit on a mesh that the glob takes, as in T .* 'glob' .* R.
+    What ep.hits calls.
     """
 def instruction_set() -> str:
     """
@@ -2522,24 +2762,15 @@ def label_regions(label: typing.Any, power: typing.Any, rows_wrap: bool) -> list
     """
 def last(glob: str) -> Selection:
     """
-    Selection of the paths whose last hit is on a mesh that the glob takes, as in T .* 'glob' R.
+    What ep.last calls.
     """
 def load_mesh(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> Mesh:
     """
-    All faces of a mesh file as one mesh.
-
-    path: an OBJ or PLY file (ASCII or binary); unit: metres per file unit
-    Returns a Mesh; its original_triangle counts the faces of the file from 0.
-    Raises FileError naming the file, and the line where it is text.
+    What ep.load_mesh calls.
     """
 def load_meshes(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> list[typing.Any]:
     """
-    The groups of a mesh file.
-
-    path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file
-    unit: metres per file unit
-    Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
-    out. Raises FileError naming the file, and the line where it is text.
+    What ep.load_meshes calls.
     """
 def looks_for_signals() -> bool:
     """
@@ -2551,13 +2782,7 @@ def mean_power(spectrum: RangeDoppler) -> numpy.ndarray[typing.Any, typing.Any]:
     """
 def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: str = 'H') -> float:
     """
-    Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.
-
-    The Mie series, to 1e-9: the reference for curved metal. For ka = 2 pi radius frequency / c up to 1e6.
-    radius: m; frequency: Hz
-    bistatic_angle: rad in [0, pi] between the directions to transmitter and receiver, 0 is monostatic
-    plane: "E" or "H": the field that the plane of both directions holds (alike in the monostatic case)
-    Raises ValueError. Source: Mie 1908; Harrington, Time-Harmonic Electromagnetic Fields, 1961, section 6-9.
+    What ep.mie_rcs calls.
     """
 def nearest_names(word: str, candidates: collections.abc.Sequence[str], count: int = 3) -> list[str]:
     """
@@ -2587,105 +2812,37 @@ def power_shares(power: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
     """
     Shares of the powers [K, V, R] in their sums.
     """
-def range_azimuth(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, velocity: float | None = None, combine: str = 'sum', method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> RangeAzimuth:
+def range_azimuth(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, velocity: float | None = None, combine: str = 'sum', method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> RangeAzimuth:
     """
-    Received power by range and azimuth.
-
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
-    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
-    elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
-    velocity: m/s, of the cells to take; None: all velocities
-    combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
-        case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
-        about ln(num_chirps) times that of a cell.
-    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
-        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
-    window: of bartlett, as in angle_fft; other than "rect" for grids of equal steps only
-    overlaps: "average" of channels at one position, or the "first" of them
-    compensate: take out the phase between transmit slots (compensate_tdm)
-    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
-    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
-    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
-    progress: callable(stage, fraction) or None
-    Returns a RangeAzimuth with power [azimuth, range] in W. Raises ValueError naming the argument.
+    What the function of that name in ep calls.
     """
 def range_doppler(cube: typing.Any, radar: Radar, window: typing.Any = 'hann', zero_pad: int = 1) -> RangeDoppler:
     """
-    Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
-
-    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
-    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes
-    zero_pad: 1 to 64, transforms of so many times the samples and chirps
-    Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
-    Raises ValueError naming the argument.
+    What ep.range_doppler calls.
     """
-def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, components: bool = False, return_error: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> typing.Any:
+def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, components: bool = False, return_error: bool = False, progress: typing.Any = None) -> typing.Any:
     """
-    Radar cross section of a scene in m^2, far field, at time 0.
-
-    Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
-    the mean over realisations of the roughness.
-    frequency: Hz
-    incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
-    observation: toward the receiver, likewise; None: monostatic
-    polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
-        (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of these. Of
-        a vector its part across the line of sight counts
-    model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in trace
-    num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
-    seed, footprint, sampler: as in trace
-    batches: as in trace; 8 for return_error, else 1
-    target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as trace does, until each
-        cross section, of a list of polarizations the first with each transmitter, is known that well
-    components: True returns {"coherent": typing.Any, "diffuse": ...}, which add up to the cross section
-    return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
-        and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
-        smaller than its error
-    progress: callable(stage, fraction) or None
-    Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction and
-    transmit polarization costs a trace of its own. Warns (RuntimeWarning) where max_rays did not do. Raises ValueError for bad
-    settings, a zero direction, one along the polarization, an empty scene, and mirrors, which have no cross section.
+    What ep.rcs calls.
     """
 def received_power(paths: Paths, *, tx: int = 0, rx: int = 0, progress: typing.Any = None) -> ReceivedPower:
     """
-    Mean received power of paths with its interval, for the whole of a trace or any selection of it.
-
-    paths: of a trace, with batches for standard errors; progress: callable(stage, fraction) or None
-    tx, rx: indices of the antennas
-    Returns a ReceivedPower, in W. Raises IndexError for antennas that are not there, KeyboardInterrupt on Ctrl-C.
+    What ep.received_power calls.
     """
 def received_powers(paths: Paths, group_of_path: typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], num_groups: int, *, tx: int = 0, rx: int = 0, progress: typing.Any = None) -> list[ReceivedPower]:
     """
-    The same of groups of paths in one pass, each as `received_power` of its paths alone.
-
-    paths: of a trace; group_of_path: [P], below num_groups; tx, rx: indices of the antennas
-    progress: callable(stage, fraction) or None
-    Returns a list [num_groups] of ReceivedPower, in W. Raises ValueError for other sizes and groups, IndexError for antennas that
-    are not there, KeyboardInterrupt on Ctrl-C.
+    What ep.received_powers calls.
     """
 def received_powers_of_sortings(paths: Paths, sortings: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], int]], progress: typing.Any = None) -> list[list[ReceivedPower]]:
     """
     received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.
     """
-def renew(paths: Paths, radar: Radar | None = None, *, time: float, progress: typing.Any = None, **kwargs: typing.Any) -> Renewal:
+def renew(paths: Paths, radar: Radar | None = None, *, time: float, progress: typing.Any = None) -> Renewal:
     """
-    A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
-
-    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into view
-    has no paths here; `synthesize(retrace="invalid")` adds it.
-
-    paths: of a trace
-    radar: whose motion carries the antennas of the trace along, or None: that of the trace
-    time: s
-    progress: callable (stage, fraction) or None
-    Returns a Renewal. Raises ValueError when a motion does not cover the time.
+    What ep.renew calls.
     """
 def set_num_threads(num_threads: int) -> None:
     """
-    Number of threads of all parallel loops from now on.
-
-    num_threads: 0 (one per core) or more. Results do not depend on it, not by a bit.
-    Raises ValueError if negative.
+    What ep.set_num_threads calls.
     """
 def share_errors(cross: typing.Any, coherent: typing.Any, diffuse: typing.Any, dominant: typing.Any) -> tuple[typing.Any, ...]:
     """
@@ -2695,26 +2852,9 @@ def strongest_part(power: typing.Any, mask: typing.Any) -> numpy.ndarray[typing.
     """
     Index of the largest of [K, V, R], -1 outside.
     """
-def synthesize(paths: Paths, radar: Radar | None = None, *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None, **kwargs: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+def synthesize(paths: Paths, radar: Radar | None = None, *, tolerance: float = 1e-07, method: str = 'auto', replay: str = 'material', evaluate: str = 'interpolated', phase_tolerance: float = 1e-05, retrace: str = 'never', keyframes: int = 0, progress: typing.Any = None, probe: SignalProbe | None = None) -> numpy.ndarray[typing.Any, typing.Any]:
     """
-    The noise-free IF signal of paths.
-
-    radar: another waveform, array or motion than that of the trace, or None
-    tolerance: rms error of the samples relative to the sum of all |amplitudes|, 1e-13 to 0.1
-    method: "auto", "direct" (the reference), "recurrence" or "nufft"
-    replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with their
-        triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
-    evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
-        each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
-        every sample: for fast rotors, a sine and a cosine per path and sample)
-    retrace: for each of `keyframes` stretches of chirps, "never" (one record serves the frame), "invalid" (shadows and points of
-        reflection are renewed, see `renew`; surface that comes into view gets paths of its own if `paths` are those of a whole
-        trace, and none if they are a selection) or "always" (the scene is traced anew with the same settings and seed; random
-        phases of rough surfaces then differ from one stretch to the next, which suits coherent echoes; not for selections)
-    keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
-    progress: callable(stage, fraction) or None
-    probe: a SignalProbe, filled with spot checks of this signal, or None
-    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W).
+    What ep.synthesize calls.
     """
 def synthesize_echoes(waveform: ChirpSequence, delays: typing.Any, amplitudes: typing.Any, *, method: str = 'auto', tolerance: float = 1e-07, num_slots: int = 1) -> numpy.ndarray[typing.Any, typing.Any]:
     """
@@ -2727,62 +2867,24 @@ def synthesize_echoes(waveform: ChirpSequence, delays: typing.Any, amplitudes: t
     num_slots: transmitters that take turns; rows are num_slots * chirp_interval apart
     Returns [chirp, sample], complex128 in sqrt(W). Raises ValueError naming the argument.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, **kwargs: typing.Any) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """
-    Shoots rays from the radar through the scene at mid-frame and records what they hit.
-
-    num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away, tells how
-    many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get more; up to half of
-    those of each lie closer about its points of reflection (strata with focus_of). Unless given,
-    and without target_error_db, there are as many as bring the echo of each object that stands above the noise to 0.3 dB (95 %
-    interval of bias and chance), 1 000 000 at most; max_bounces: 1 to 64, hits on mirrors count. Between a target
-    and an antenna there are images over up to two mirrors each way; over mirrors alone, over as many as max_bounces
-    seed: the same seed gives the same bits
-    start_time: s, first sample of the frame
-    polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as co-polarised),
-    "jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or, unless given, "auto": field vectors where the
-    scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas of several
-    polarisations; `paths.effects` tells which and why
-    footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a flatter
-    second order, for curved surfaces whose edges make the echo (a dish along its axis)
-    sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
-    batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
-    fine as its share of the rays; 1 unless given
-    target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the echo of
-    each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval (`received_power`). A
-    RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
-    progress: callable(stage, fraction) or None
-    kept: KeptGeometry, which ep.trace gives from a scene's second trace on: what has not moved since is not built again, for
-    about 200 bytes a triangle while the scene lives
-    Returns Paths. Raises ValueError for bad settings, mirrors that are not flat, motions that do not cover the frame.
+    What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """
-def validity(paths: Paths, radar: Radar | None = None, *, replay: str = 'material', times: typing.Any = None, arrays: bool = False, progress: typing.Any = None, **kwargs: typing.Any) -> Validity:
+def triangles_of_polygons(vertices: typing.Any, corners: typing.Any, counts: typing.Any) -> tuple[typing.Any, ...]:
     """
-    Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
+    Polygons cut into triangles as load_mesh cuts those of files.
 
-    Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two for
-    each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points of
-    reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene at these
-    times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase
-    error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256
-    times would have to follow is a warning.
-
-    paths: of a trace, all or a selection of them, which asks about these alone
-    radar: another waveform, array or motion than that of the trace, or None
-    replay: of the replay that is to be certified, as in synthesize
-    times: [T] s, of the check, or None: as above
-    arrays: keep what is found of each path, [P] each; then all are looked at
-    progress: callable(stage, fraction) or None
-    Returns a Validity. Raises ValueError for motions that do not cover the times, KeyboardInterrupt on Ctrl-C.
+    vertices: [V, 3] in m; corners: [N] indices of vertices, polygon by polygon; counts: [F] corners of each, three or more
+    Returns the triangles [T, 3] and the polygon of each [T]. Raises ValueError.
+    """
+def validity(paths: Paths, radar: Radar | None = None, *, replay: str = 'material', times: typing.Any = None, arrays: bool = False, progress: typing.Any = None) -> Validity:
+    """
+    What ep.validity calls.
     """
 def virtual_array(radar: Radar) -> VirtualArray:
     """
-    The virtual array of a radar's transmitters and receivers.
-
-    Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
-    0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
-    found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
-    Returns a VirtualArray with positions [tx, rx, 3] in m.
+    What ep.virtual_array calls.
     """
 def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """
@@ -2797,6 +2899,7 @@ def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray
     Samples [n] of a window: cosines periodic; "chebyshev" symmetric, sidelobes `sidelobe_db` dB down.
     """
 AMPLITUDE_TOLERANCE: float = 0.0001
+MAX_RAYS: int = 16777216
 PHASE_TOLERANCE: float = 1e-05
 __version__: str = '0.1.0'
 boltzmann: float = 1.380649e-23

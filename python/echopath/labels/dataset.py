@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from ..xarray_maps import axis, xarray_module
-from .images import ghost_name
+from .ghost_names import ghost_name
 
 _OF_CELLS = {  # attribute of Labels: name, unit
     "whole": ("whole", "W"), "dominant": ("dominant", ""), "mask": ("mask", ""), "above_noise": ("above_noise", ""),

@@ -12,6 +12,7 @@ import numpy as np
 from ..checks import an, checked, path, refused, text
 from ..files import written_whole
 from ..origin import origin_texts, png_info
+from .ghost_names import ghost_name
 from .labels import Labels
 
 NO_LABEL = "none"                   # name of index 0
@@ -59,11 +60,6 @@ def _received(label) -> dict:
     if label.received is None:
         return {}
     return {"received": label.received._asdict() | {"resolved": label.received.resolved}}
-
-
-def ghost_name(ghost) -> str:
-    """Of a GhostLabel in few words: walker, type 2, order 3 via wall, floor."""
-    return f"{ghost.object}, type {ghost.ghost_type}, order {ghost.order} via {', '.join(ghost.via)}"
 
 
 MAPS = {"parts": "parts", "objects": "objects", "ghosts": "ghosts"}  # and the names of their files

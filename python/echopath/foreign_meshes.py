@@ -1,27 +1,30 @@
 """Meshes of other libraries' objects. None of these libraries is needed: an object is known by the arrays that it has."""
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from . import _core
+from .checks import anything, checked
+from .meshes import UNIT
 
 _SURFACES = {"triangle": 3, "quad": 4}         # cells of meshio by the number of their corners
 _NO_SURFACES = ("vertex", "line")              # left out, as lines of files are
 
 
-def mesh_from(source, *, unit: float = 1.0) -> _core.Mesh:
+@checked(source=anything, unit=UNIT)
+def mesh_from(source: Any, *, unit: float = 1.0) -> _core.Mesh:
     """A Mesh of an object of trimesh, meshio or pyvista, or of any that has the same arrays.
 
     source: a trimesh.Trimesh (vertices [V, 3], faces [F, 3]), a pyvista.PolyData (points, and faces as VTK has them) or a
         meshio.Mesh (points, and cells of the types triangle, quad and polygon; points and lines are left out)
-    unit: metres per unit of its coordinates
+    unit: m per unit of its coordinates, 1e-12 to 1e9
     Polygons of more than three corners are cut into triangles as `load_mesh` does it; `original_triangle` of the Mesh names
     the faces of the source from 0. Raises TypeError for other objects and ValueError naming what is wrong: coordinates that
     are not finite, corners that are no vertices, cells of volumes, no face at all.
     """
     vertices, corners, counts = _polygons_of(source)
-    if not (isinstance(unit, (int, float, np.number)) and 0.0 < unit < np.inf):
-        raise ValueError(f"unit: must be a finite number of metres above 0, got {unit!r}")
     vertices = unit * _checked_vertices(vertices)
     outside = (corners < 0) | (corners >= len(vertices))
     if outside.any():

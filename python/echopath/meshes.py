@@ -6,10 +6,10 @@ import os
 from . import _core
 from .checks import checked, real
 
-_RULES = {"unit": real(1e-12, 1e9, "m")}
+UNIT = real(1e-12, 1e9, "m")
 
 
-@checked(**_RULES)
+@checked(unit=UNIT)
 def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     """All faces of a mesh file as one mesh.
 
@@ -20,7 +20,7 @@ def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     return _core.load_mesh(path, unit)
 
 
-@checked(**_RULES)
+@checked(unit=UNIT)
 def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[str, _core.Mesh]]:
     """The groups of a mesh file.
 

@@ -20,7 +20,7 @@ def scene_html(scene) -> str:
     meshes = list(scene.meshes)
     rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), mesh.material_name or repr(mesh.material),
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
-    return _table(f"Scene: {scene.num_nodes} nodes, {len(meshes)} meshes, {scene.num_triangles:,} triangles",
+    return _table(f"Scene: {len(scene.nodes)} nodes, {len(meshes)} meshes, {scene.num_triangles:,} triangles",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
 
 

@@ -94,5 +94,5 @@ def test_bad_meshes_are_refused_by_name(source, error):
 def test_other_objects_and_units_are_refused_by_name():
     with pytest.raises(TypeError, match="source: must be a mesh of trimesh, meshio or pyvista .* got str"):
         ep.mesh_from("car.obj")
-    with pytest.raises(ValueError, match="unit: must be a finite number of metres above 0, got 0"):
+    with pytest.raises(ValueError, match="unit: must be a finite number from 1e-12 to 1000000000 m, got 0"):
         ep.mesh_from(soup(), unit=0)

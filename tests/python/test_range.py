@@ -20,7 +20,7 @@ CASES = {
     "turning": r"scene: motions must turn by finite angles, time, got 0\.00\d+",
     "start_time": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",
     "start_time without a motion": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",
-    "time of a renewal": r"time: must (lie in|be finite).*got nan",
+    "time of a renewal": r"time: must be a finite number in s, got nan",
     "time of a visibility": r"time: must (lie in|be finite).*got 1e\+40|time: .*e\+39",
 }
 
@@ -78,7 +78,8 @@ def test_what_is_out_of_range_is_refused_by_name(answers, case):
 def test_more_rays_than_there_may_be_are_refused_at_once():
     scene, radar = a_sphere()
     for settings in ({"num_rays": 10**18}, {"target_error_db": 1.0, "max_rays": 10**18}):
-        with pytest.raises(ValueError, match=f"{list(settings)[-1]}: must lie in .1, 10000000000., got 1000000000000000000"):
+        told = f"{list(settings)[-1]}: must be a whole number from 1 to 10000000000, got 1000000000000000000"
+        with pytest.raises(ValueError, match=told):
             ep.trace(scene, radar, **settings)
 
 

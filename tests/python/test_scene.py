@@ -193,7 +193,7 @@ def test_breakpoints_of_all_motions_are_joined(square):
 
 @pytest.mark.parametrize("keywords, words", [
     ({"name": "a/b"}, ["name", "free of", "a/b"]),
-    ({"name": "a\0b"}, ["name", "free of", "NUL"]),
+    ({"name": "a\0b"}, ["name", "without", "NUL"]),
     ({"name": ""}, ["name", "empty"]),
     ({"name": "wall"}, ["name", "unique", "wall"]),
     ({"name": "x", "material": None}, ["material", "'x'", "concrete", "wood"]),

@@ -105,7 +105,7 @@ QUANTITIES = {
                       "window_centre", "centre_frequency", "wavelength", "range_resolution", "max_range"),
     "Radar": ("waveform", "transmit_power", "frame_duration", "position", "yaw", "pitch"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible"),
-    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress", "kept"),
+    "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress"),
     "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "settings", "progress", "probe"),
 }
 

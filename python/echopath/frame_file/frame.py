@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import _core
 from ..azimuth_map import checked_settings
-from ..checks import an, checked, real, refused, text
+from ..checks import an, anything, checked, real, refused, text
 from ..files import written_whole
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
@@ -56,6 +56,7 @@ class LeftOut:
 
 
 @interrupts_are_kept()
+@checked(paths=anything, min_power=real(0.0, unit="W"))
 def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
     """Writes paths with their scene and radar to an HDF5 file.
 
@@ -171,8 +172,6 @@ def _our_file(path):
 
 
 def _write_record(file, paths, effects, min_power: float, power=None):
-    if not min_power >= 0.0:
-        raise ValueError(f"min_power: must be at least 0 W, got {min_power}")
     write_scene(file.create_group("scene"), paths.scene)
     write_radar(file.create_group("radar"), paths.radar)
     group = file.create_group("record")

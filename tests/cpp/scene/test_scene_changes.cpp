@@ -6,7 +6,7 @@
 #include "echopath/scene/scene.h"
 #include "support/expect_error.h"
 
-namespace echopath {
+namespace echopath::test_scene_changes {
 namespace {
 
 using test::expect_error;
@@ -180,4 +180,4 @@ TEST(SceneChanges, ACopyKeepsWhatItWas) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_scene_changes

@@ -6,7 +6,7 @@
 
 #include "echopath/scene/readers/triangulate.h"
 
-namespace echopath {
+namespace echopath::test_triangulate {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the sum of thousands of areas
@@ -45,7 +45,8 @@ std::vector<Vec3> ragged_star(int num_corners, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Vec3> points;
   for (int i = 0; i < num_corners; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / num_corners, radius = 1.0 + 0.9 * (random() / 4294967296.0);
+    const double angle = 2.0 * std::numbers::pi * i / num_corners,
+                 radius = 1.0 + 0.9 * (static_cast<double>(random()) / 4294967296.0);
     points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
   }
   return points;
@@ -122,4 +123,4 @@ TEST(Triangulate, GivesAsManyTrianglesWhereAPolygonCrossesItself) {
 }
 
 }  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_triangulate

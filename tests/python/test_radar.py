@@ -102,7 +102,8 @@ def test_a_wrong_argument_of_a_radar_is_named(name, value):
 
 
 @pytest.mark.parametrize("name", ["position", "yaw", "pitch", "orientation", "pattern", "polarization"])
-@pytest.mark.parametrize("value", [value for value in WRONG if not isinstance(value, ep.AntennaPattern)], ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("value", [value for value in WRONG if not isinstance(value, ep.AntennaPattern)],
+                         ids=lambda value: type(value).__name__)
 def test_a_wrong_argument_of_an_antenna_is_named(name, value):
     with pytest.raises((ValueError, TypeError), match=rf"^{name}: .*got"):
         ep.Antenna(**{name: value})

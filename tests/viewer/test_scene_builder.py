@@ -177,3 +177,11 @@ def test_pictures_are_as_they_were(drawn_paths, tmp_path, name, keywords):
     got, wanted = (pv.read(path).point_data.active_scalars.astype(float)[:, :3]
                    for path in (picture, BASELINES / picture.name))
     assert np.abs(got - wanted).mean() < BASELINE_DIFFERENCE
+
+
+def test_a_picture_without_a_screen_and_a_renderer_says_what_is_missing(drawn_paths, monkeypatch):
+    """VTK would end the process."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", (("libc.so.6", "libnone.so.1"), ("libnone.so.8",)))
+    with pytest.raises(OSError, match="^off_screen: pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"):
+        ep.plot_rays(None, drawn_paths, off_screen=True)

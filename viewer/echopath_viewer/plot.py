@@ -1,6 +1,7 @@
 """Pictures of rays without a window of our own: on the screen, in a notebook or in a file."""
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 
@@ -14,6 +15,7 @@ from .model import Filters, PartSet, Session, Signals, ViewInput, whole_part
 from .scene_builder import SceneBuilder
 
 NUM_RAYS = 300
+RENDERERS = (("libGL.so.1", "libEGL.so.1"), ("libOSMesa.so.8",))  # either draws without a screen
 
 
 def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
@@ -66,8 +68,24 @@ def _check_numbers(radar, tx, rx, num_rays, chirp) -> None:
 def _new_plotter(off_screen, window_size):
     """Without a screen VTK would look for one first, and say aloud that it found none."""
     if off_screen and sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        _require_renderer()
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     return pv.Plotter(off_screen=off_screen, window_size=list(window_size))
+
+
+def _require_renderer() -> None:
+    """Raises OSError where there is none: VTK would end the program."""
+    if not any(all(map(_is_there, libraries)) for libraries in RENDERERS):
+        needed = ", or ".join(" and ".join(libraries) for libraries in RENDERERS)
+        raise OSError(f"off_screen: pictures without a screen need {needed}, got neither (Debian: libgl1 and libegl1)")
+
+
+def _is_there(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
 
 
 def _session_of(scene, paths) -> Session:

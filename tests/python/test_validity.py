@@ -238,7 +238,8 @@ def test_arrays_name_the_leg_that_is_blocked():
 
 
 def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
-    """Legs are shared by the paths over all pairs of mirror chains to a hit: alone, each path is asked for itself."""
+    """Legs are shared by the paths over all pairs of mirror chains to a hit: here, paths of different hits are asked, and
+    single ones."""
     rough, tall = ep.Material(reflectivity=0.5, scattering=0.6), shapes.rectangle((0, 4, -2), (14, 0, 0), (0, 0, 6))
     floor = shapes.rectangle((0, -4, 0), (14, 0, 0), (0, 8, 0))
     scene = scene_of(wall=(tall, rough.replace(mirror=True), (0, 0, 0), None),
@@ -254,11 +255,23 @@ def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
     together = ep.validity(paths, times=times, arrays=True)
     findings = np.stack([*(getattr(together, kind) for kind in kinds), paths.num_bounces, paths.diffuse == 0,
                          paths.flags & 1])
-    last_of_kind = {tuple(column): path for path, column in enumerate(findings.T)}
-    assert len(last_of_kind) > 40
-    for path in sorted(last_of_kind.values())[::len(last_of_kind) // 40]:
-        alone = ep.validity(paths.select(np.arange(paths.num_paths) == path), times=times, arrays=True)
-        assert [getattr(alone, kind)[0] for kind in kinds] == [getattr(together, kind)[path] for kind in kinds], path
+    last_of_kind = sorted({tuple(column): path for path, column in enumerate(findings.T)}.values())
+    points = points_of_paths(paths)
+    distinct = [path for k, path in enumerate(last_of_kind)
+                if points[path] not in {points[one] for one in last_of_kind[:k]}]
+    assert len(last_of_kind) > 40 and len(distinct) > 20
+    for chosen in (distinct, *([path] for path in last_of_kind[::len(last_of_kind) // 4])):
+        some = ep.validity(paths.select(np.isin(np.arange(paths.num_paths), chosen)), times=times, arrays=True)
+        for kind in kinds:
+            assert np.array_equal(getattr(some, kind), getattr(together, kind)[chosen]), (kind, chosen)
+
+
+def points_of_paths(paths) -> list[frozenset]:
+    """The material points of each path, whichever way it goes over the mirrors: (mesh, triangle, u, v) off the mirrors."""
+    mirrors = [mesh.id for mesh in paths.scene.meshes if mesh.material.mirror]
+    points = [tuple(row) for row in paths.hits.tolist()]
+    return [frozenset(point for point in points[first:first + count] if point[0] not in mirrors)
+            for first, count in zip(paths.offsets.tolist(), paths.num_bounces.tolist())]
 
 
 def test_arrays_name_the_mirror_that_a_point_has_left():

@@ -183,5 +183,6 @@ def test_a_picture_without_a_screen_and_a_renderer_says_what_is_missing(drawn_pa
     """VTK would end the process."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setattr("echopath_viewer.plot.RENDERERS", (("libc.so.6", "libnone.so.1"), ("libnone.so.8",)))
-    with pytest.raises(OSError, match="^off_screen: pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"):
+    told = "^off_screen: pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
+    with pytest.raises(OSError, match=told):
         ep.plot_rays(None, drawn_paths, off_screen=True)

@@ -84,9 +84,21 @@ def _of_vtk(source) -> tuple:
     if getattr(source, "n_strips", 0):
         source = source.triangulate()
     table = np.asarray(source.faces)  # count, corners, count, corners, ...
+    if table.ndim != 1 or (table.size and table.dtype.kind not in "iu"):
+        raise ValueError(f"source: faces must be integers [N], counts and corners, got {table.dtype} {list(table.shape)}")
+    starts = _starts_of_faces(table)
+    return source.points, np.delete(table, starts), table[starts]
+
+
+def _starts_of_faces(table) -> np.ndarray:
+    """Where each face begins in a table of VTK, [F]."""
     starts, at = [], 0
     while at < len(table):
+        count = int(table[at])
+        if count < 0:
+            raise ValueError(f"source: faces must begin with their number of corners, got {count} at {at}")
         starts.append(at)
-        at += int(table[at]) + 1
-    starts = np.array(starts, np.int64)
-    return source.points, np.delete(table, starts), table[starts]
+        at += count + 1
+    if at > len(table):
+        raise ValueError(f"source: faces must have as many corners as they say, the last lacks {at - len(table)}")
+    return np.array(starts, np.int64)

@@ -399,8 +399,9 @@ def test_bad_arguments_are_named(spheres):
 def test_a_map_without_noise_is_told_of(spheres):
     """Echoes of the three, as `synthesize` gives them; with noise there is no word."""
     radar, paths, noisy = spheres
-    with pytest.warns(RuntimeWarning, match=r"spectrum: holds no noise of the radar .* ep.add_noise\(cube, radar\)"):
+    with pytest.warns(RuntimeWarning, match=r"spectrum: holds no noise of the radar .* ep.add_noise\(cube, radar\)") as told:
         ep.detect(ep.range_doppler(ep.synthesize(paths, radar), radar), radar)
+    assert [warning.filename for warning in told] == [__file__]  # the line that called, not one behind it
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ep.detect(noisy, radar)

@@ -91,6 +91,24 @@ def test_bad_meshes_are_refused_by_name(source, error):
         ep.mesh_from(source)
 
 
+def polydata(faces):
+    return SimpleNamespace(points=CORNERS, faces=faces)
+
+
+@pytest.mark.parametrize("faces, error", [
+    ([3, 0, 1, 2, -1, 3, 0, 1, 2], "faces must begin with their number of corners, got -1 at 4"),
+    ([3, 0, 1, 2, -3, 0, 1, 2], "faces must begin with their number of corners, got -3 at 4"),
+    ([3, 0, 1, 2, 4, 0, 1], "faces must have as many corners as they say, the last lacks 2"),
+    ([3.0, 0.0, 1.0, 2.0], r"faces must be integers \[N\], counts and corners, got float64 \[4\]"),
+    ([[3, 0, 1, 2]], r"faces must be integers \[N\], counts and corners, got int64 \[1, 4\]"),
+    ([0], "faces must have 3 corners or more, got one of 0"),
+    ([], "must have faces, got none"),
+])
+def test_tables_of_faces_that_lead_nowhere_are_refused_at_once(faces, error):
+    with pytest.raises(ValueError, match=f"source: {error}"):
+        ep.mesh_from(polydata(faces))
+
+
 def test_other_objects_and_units_are_refused_by_name():
     with pytest.raises(TypeError, match="source: must be a mesh of trimesh, meshio or pyvista .* got str"):
         ep.mesh_from("car.obj")

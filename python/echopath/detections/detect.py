@@ -39,6 +39,7 @@ def _parts(argument: str, value):
     return {text(argument, name): part for name, part in value.items()}
 
 
+_CALLER = 3  # of detect: behind it and the check of its arguments
 _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all but spectrum and radar
 
 
@@ -74,7 +75,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
-    warn_of_missing_noise(radar, found.power, stacklevel=4)  # of the call of detect, behind its checks
+    warn_of_missing_noise(radar, found.power, stacklevel=_CALLER)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)

@@ -58,7 +58,7 @@ def angle_fft(spectrum: _core.RangeDoppler, radar: _core.Radar, *, window: Windo
     zero_pad: 1 to 64, transforms of so many times the rows and columns
     overlaps: "average" of channels at one position, or the "first" of them; gaps count as zeros
     compensate: take out the phase between transmit slots (`compensate_tdm`)
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns an AngleSpectrum with values [elevation, azimuth, velocity, range] in sqrt(W). |value|^2 of a far point at its
     direction is its received power in W, averaged over channels; noise falls to 1/N for N elements without a window.
     Raises TypeError or ValueError naming the argument, also where the array is no grid of equal steps (`beamform` takes any)
@@ -91,7 +91,7 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
     velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
     forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
     Raises TypeError, ValueError or IndexError naming the argument.
     """
@@ -119,7 +119,7 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
         about ln(num_chirps) times that of a cell.
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a RangeAzimuth with power [azimuth, range] in W. Raises TypeError or ValueError naming the argument. Warns
     (RuntimeWarning) where the antennas tell no azimuths apart.
     """
@@ -149,7 +149,7 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
         tell apart; less than half the number of transmitters
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns AngleEstimates, arrays [M]: none for a cell without power. Raises TypeError, ValueError or IndexError naming the
     argument.
     """

@@ -24,7 +24,7 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     replay: of the replay that is to be certified, as in `synthesize`
     times: [T] s, of the check, or None: as above
     arrays: keep what is found of each path, [P] each; then all are looked at
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a Validity. Raises TypeError or ValueError naming the argument, also for motions that do not cover the times,
     KeyboardInterrupt on Ctrl-C.
     """
@@ -40,7 +40,7 @@ def renew(paths: _core.Paths, radar: _core.Radar | None = None, *, time: float, 
     paths: of a trace
     radar: whose motion carries the antennas of the trace along, or None: that of the trace
     time: s
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a Renewal. Raises TypeError or ValueError naming the argument, also where a motion does not cover the time.
     """
     return _core.renew(paths, radar, time=time, progress=progress)

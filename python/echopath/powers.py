@@ -11,7 +11,7 @@ def received_power(paths: _core.Paths, *, tx: int = 0, rx: int = 0, progress: Pr
 
     paths: of a trace, with batches for standard errors
     tx, rx: indices of the antennas
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a ReceivedPower, in W. Raises TypeError or ValueError naming the argument, IndexError for antennas that are not
     there, KeyboardInterrupt on Ctrl-C.
     """
@@ -27,7 +27,7 @@ def received_powers(paths: _core.Paths, group_of_path: ArrayLike, num_groups: in
     paths: of a trace
     group_of_path: [P] whole numbers below num_groups; num_groups: 1 or more
     tx, rx: indices of the antennas
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a list [num_groups] of ReceivedPower, in W. Raises TypeError or ValueError naming the argument, IndexError for
     antennas that are not there, KeyboardInterrupt on Ctrl-C.
     """

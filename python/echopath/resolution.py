@@ -104,7 +104,7 @@ def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: floa
 
     paths: of a trace; objects: as in `families`
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
     that no ray has met is among them, with what three rays might have brought back from it as its upper end; so is one whose
     paths a selection or a file leaves out. Raises ValueError for bad names and for globs that take no mesh,

@@ -37,7 +37,7 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
     keyframes: number of stretches, 1 to num_chirps; 0: as many as `validity` suggests
     settings: SignalSettings that give the keywords which the call leaves out, or None
     probe: a SignalProbe, filled with spot checks of this signal, or None
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W). Warns (RuntimeWarning) of what will take over 10 s. Raises
     TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C.
     """

@@ -118,7 +118,7 @@ class Frame:
     def range_azimuth_of(self, spectrum, progress=None):
         """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
 
-        spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction) or None
+        spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction), True for bars, or None
         """
         return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 
@@ -192,7 +192,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
         other: see `Frame.checks`
     trace, signal: TraceSettings and SignalSettings that give the keywords which the call leaves out, or None
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a Frame. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning)
     where a check disagrees by more than is promised.
     """

@@ -51,7 +51,7 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the
         map is small
     rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each
     side, "os" several times that; Ctrl-C is heard.
     Returns a CfarResult. Raises TypeError or ValueError naming the argument, also for windows of more than 2000 cells,

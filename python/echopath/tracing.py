@@ -54,7 +54,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         echo of each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval
         (`received_power`). A RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
     settings: TraceSettings that give the keywords which the call leaves out, or None
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, what has not moved since is not built again, for about 200 bytes a triangle while the
     scene lives.
     Returns Paths. Raises TypeError or ValueError naming the argument, also for mirrors that are not flat and motions that do
@@ -117,7 +117,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
         and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
         smaller than its error
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
     direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns

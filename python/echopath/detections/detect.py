@@ -64,7 +64,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
     objects: of `families`, with paths
-    progress: callable(stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
     Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
     """

@@ -28,7 +28,7 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
     objects: as in `families`
     max_peaks: directions of a cell at most, of radars whose antennas tell directions apart
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """

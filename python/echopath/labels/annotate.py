@@ -57,7 +57,7 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; those
         of the parts where these are given
     settings, signal: LabelSettings and SignalSettings that give the keywords which the call leaves out, or None
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns Labels. Memory: the cubes of all parts and families at as many receivers as 1 GiB holds, one at least, all for
     range_azimuth; and 8 bytes per cell for each part and family, with errors for each part and batch three times.
     Raises ValueError for bad input, for errors without batches, KeyboardInterrupt on Ctrl-C.
@@ -153,7 +153,7 @@ def _label_scene(request: Request, paths, families, powers, intervals: dict, who
     """The fields of Labels that tell of objects and ghosts.
 
     powers: ViewPowers of the families; intervals: {Family: Interval}; whole: power [V, R] in W
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     """
     found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)

@@ -40,7 +40,7 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
         of one of the same name; None: those alone; without any, all paths are "other" of a partition "parts"
     plane, objects, noise, noise_margin_db (dB), dynamic_range_db (dB), errors: as in `annotate`
     settings: LabelSettings that give the keywords which the call leaves out, or None
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction), True for bars, or None
     Returns {partition: Labels}. Objects and ghosts are those of the recorded paths: of a file that leaves out weak ones,
     without these. Raises ValueError for bad input, KeyboardInterrupt on Ctrl-C.
     """

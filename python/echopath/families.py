@@ -11,7 +11,9 @@ from . import _core
 from .checks import checked, refused, text
 from .equality import is_same
 
-Objects = Mapping[str, str | Iterable[str]] | Iterable[str] | None  # {name: globs}, globs that are names, or the usual ones
+NamedGlobs = tuple[tuple[str, tuple[str, ...]], ...]  # ((name, globs), ...), as objects are kept
+# {name: globs}, globs that are names, or None: the usual ones.
+Objects = Mapping[str, str | Iterable[str]] | Iterable[str] | NamedGlobs | None
 NO_OBJECT = -1  # index of the object of a path that touches none
 
 
@@ -90,15 +92,14 @@ def named_globs(objects: Objects) -> list | None:
     found = objects if isinstance(objects, Mapping) else listed(objects)
     if not isinstance(found, (Mapping, list)):
         raise refused(TypeError, "objects", "a dict or a list of globs", objects)
-    pairs = found.items() if isinstance(found, Mapping) else [(glob, glob) for glob in found]
+    pairs = found.items() if isinstance(found, Mapping) else [_pair(glob) for glob in found]
     return list({_name(name): _globs_of(globs) for name, globs in pairs}.items())
 
 
-def objects_rule(argument: str, value: Objects) -> Objects:
-    """What `families` takes as objects, of which later calls may ask as often as they like."""
-    kept = value if value is None or isinstance(value, Mapping) else listed(value)
-    named_globs(kept)
-    return kept
+def objects_rule(argument: str, value: Objects) -> NamedGlobs | None:
+    """What `families` takes as objects, as values that nobody changes: those of the caller may change or be used up."""
+    named = named_globs(value)
+    return None if named is None else tuple((name, tuple(globs)) for name, globs in named)
 
 
 def check_objects(scene, objects) -> None:
@@ -116,6 +117,11 @@ def listed(value):
         return list(value)
     except TypeError:
         return value
+
+
+def _pair(found) -> tuple:
+    """(name, globs) of what a list holds: a glob, which is the name too, or such a pair, as objects are kept."""
+    return found if isinstance(found, tuple) and len(found) == 2 else (found, found)
 
 
 def _name(name) -> str:

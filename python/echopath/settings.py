@@ -1,7 +1,9 @@
 """Settings of a simulation: the one home of what they are called, what they are unless given, and what they may be.
 
-A settings object stands wherever these keywords do: `ep.trace(scene, radar, settings=ep.TraceSettings(num_rays=1e5))`,
-`ep.simulate(scene, radar, trace=..., signal=..., labels=...)`. Keywords of the call go before it.
+Settings objects go to what a simulation consists of: `trace`, `synthesize`, `decompose`, `annotate` and `annotate_frame` take
+one as `settings=`, `annotate` that of its replay as `signal=`, and `simulate` all three as `trace=`, `signal=` and `labels=`.
+Keywords of the call go before it. Other functions that share a keyword (`range_doppler`, `validity`, `effects`, `rcs`,
+`check_signal`, `view`) take it alone, of a settings object `settings.window` for example.
 """
 from __future__ import annotations
 
@@ -93,7 +95,8 @@ class SignalSettings(Settings):
     tolerance: rms error of the samples, relative; method, replay, evaluate, retrace: words
     phase_tolerance: rad, of moving echoes; keyframes: number of stretches of the frame, 0: as many as `validity` suggests
     noise_seed: of the thermal noise, None: no noise; window, zero_pad: of the map
-    Functions take of it what concerns them: `synthesize` and `decompose` neither noise nor map.
+    `synthesize` and `decompose` take of it neither noise nor map, `annotate` no noise; `range_doppler` and others that share
+    a keyword take that alone.
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -125,7 +128,8 @@ REPLAY_KEYWORDS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance
 class LabelSettings(Settings):
     """How the cells of a map are labelled: the keywords of `annotate` that no frame settles.
 
-    plane: "range_doppler" or "range_azimuth", whose cells; objects: what to report on, as in `families`
+    plane: "range_doppler" or "range_azimuth", whose cells; objects: what to report on, as in `families`, kept as pairs of a
+        name and its globs
     noise: whether cells must stand out of the noise, noise_margin_db: dB from -300 to 300, by so much
     dynamic_range_db: dB, cells may be so far below the peak, None: no limit; errors: standard errors too
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.

@@ -1,6 +1,7 @@
 """Settings objects are the home of the keywords of `simulate`: the same frame, the same checks, and no second list."""
 import dataclasses
 import inspect
+import re
 
 import numpy as np
 import pytest
@@ -76,6 +77,26 @@ def test_settings_are_frozen_values(kind):
 def test_settings_that_differ_are_not_equal_and_hash_by_value():
     one, other = ep.TraceSettings(seed=2), ep.TraceSettings(seed=3)
     assert one != other and one.replace(seed=3) == other and hash(one.replace(seed=3.0)) == hash(other)
+
+
+def test_objects_of_labels_are_values_of_their_own():
+    given = {"plates": ["plate", "wall*"], "car": "car"}
+    settings = ep.LabelSettings(objects=given)
+    same = ep.LabelSettings(objects={"plates": iter(["plate", "wall*"]), "car": ["car"]})
+    assert hash(settings) == hash(same) and settings == same == same.replace(noise=True)
+    given["plates"].append("roof")
+    given["ghost"] = "nothing"
+    assert settings.objects == (("plates", ("plate", "wall*")), ("car", ("car",)))
+    assert ep.LabelSettings(objects=["car"]) == ep.LabelSettings(objects={"car": "car"})
+    assert settings != ep.LabelSettings(objects=dict(reversed(settings.objects)))  # the first that a path touches owns it
+
+
+def test_functions_that_take_settings_are_those_that_the_module_names():
+    said = (ep.settings.__doc__ or "").split("Keywords of the call")
+    takes = {name for name in ep.__all__ if callable(getattr(ep, name)) and inspect.isfunction(getattr(ep, name))
+             and any(kind.__name__ in str(parameter.annotation) for kind in KINDS
+                     for parameter in inspect.signature(getattr(ep, name)).parameters.values())}
+    assert takes == set(re.findall("`([a-z_]+)`", said[0])) and not takes & set(re.findall("`([a-z_]+)`", said[1]))
 
 
 def test_settings_of_another_kind_are_refused():

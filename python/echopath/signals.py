@@ -55,7 +55,8 @@ def add_noise(cube: ArrayLike, radar: _core.Radar, *, seed: int, start_time: flo
     cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
     radar: whose noise figure and sampling rate count
     seed: 0 or more; start_time: s, first sample of the frame (`paths.frame.start_time`): the noise is drawn from both, so
-        that frames in a row have one seed and noise of their own, and each the same noise whether it is made alone or not
+        that frames in a row have one seed and noise of their own, and each the same noise whether it is made alone or not.
+        Without start_time every frame has the noise of one that starts at 0: the same in all frames of one seed
     Returns a new cube [tx, rx, chirp, sample] in sqrt(W). Raises TypeError or ValueError naming the argument, also unless
     the cube has the shape that the radar gives it.
     """

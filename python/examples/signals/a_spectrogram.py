@@ -22,9 +22,9 @@ radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Ant
 length = chirps.num_chirps * chirps.chirp_interval
 starts = np.arange(28) * length
 columns = []
-for number, start in enumerate(starts):
+for start in starts:
     paths = ep.trace(scene, radar, num_rays=6000, start_time=start)
-    cube = ep.add_noise(ep.synthesize(paths, radar, tolerance=1e-4), radar, seed=number)
+    cube = ep.add_noise(ep.synthesize(paths, radar, tolerance=1e-4), radar, seed=1, start_time=start)
     spectrum = ep.range_doppler(cube, radar, window="hann")
     about = np.abs(spectrum.range - (8 - 1.3 * start)) < 1
     columns.append(np.sum(np.abs(spectrum.values[0, 0][:, about]) ** 2, axis=1))

@@ -1,5 +1,6 @@
 """Intervals of received powers hold the true value, and what the rays do not know is named, at most with what would help."""
 import csv
+import dataclasses
 
 import h5py
 import numpy as np
@@ -178,14 +179,24 @@ def test_files_carry_what_is_resolved(frame, tmp_path):
     assert told == [str(int(known)) for known in frame.detections.is_resolved]
 
 
-def test_files_from_before_load_without(frame, tmp_path):
+@pytest.mark.parametrize("name", ["labels/0/objects/received", "labels/0/ghosts/received", "detections/is_resolved",
+                                  "scene/visible"])
+def test_files_that_lack_what_every_file_has_are_refused_by_name(frame, tmp_path, name):
     ep.save_frame(frame, tmp_path / "frame.h5")
     with h5py.File(tmp_path / "frame.h5", "r+") as file:
-        for name in ("labels/0/part_received", "labels/0/objects/received", "detections/is_resolved"):
-            del file[name]
-    again = ep.load_frame(tmp_path / "frame.h5")
-    assert again.labels["parts"].part_received is None and again.labels["parts"].objects[0].received is None
-    assert not again.detections.is_resolved.any()
+        del file[name]
+    with pytest.raises(ep.FileError, match=f"/{name}: no such dataset"):
+        ep.load_frame(tmp_path / "frame.h5")
+
+
+def test_what_is_not_known_of_labels_comes_back_so(frame, tmp_path):
+    """Objects whose echoes only later records have, and cubes without selections."""
+    before = frame.labels["parts"]
+    objects = [dataclasses.replace(before.objects[0], received=None), *before.objects[1:]]
+    ep.save_labels({"parts": dataclasses.replace(before, objects=objects, part_received=None)}, tmp_path / "labels.h5")
+    after = ep.load_labels(tmp_path / "labels.h5")["parts"]
+    assert [label.received for label in after.objects] == [label.received for label in objects]
+    assert after.part_received is None and after.seed == before.seed
 
 
 def test_groups_of_the_wrong_size_are_refused(frame):

@@ -11,8 +11,8 @@ from .h5 import blames_group, read_array, read_texts, write_array, write_texts
 NUMBERS = {"range": (np.float64, "m"), "velocity": (np.float64, "m/s"), "azimuth": (np.float64, "rad"),
            "elevation": (np.float64, "rad"), "power": (np.float64, "W"), "noise": (np.float64, "W"),
            "share": (np.float64, ""),
-           "ghost_type": (np.int32, ""), "order": (np.int32, ""), "class_code": (np.int32, ""), "is_noise": (np.uint8, "")}
-RESOLVED = "is_resolved"  # u8, absent in older files
+           "ghost_type": (np.int32, ""), "order": (np.int32, ""), "class_code": (np.int32, "")}
+FLAGS = ("is_noise", "is_resolved")  # u8, 0 or 1
 TEXTS = ("part", "object")
 
 
@@ -22,7 +22,8 @@ def write_detections(group, detections: Detections) -> None:
     write_array(group, "centre", np.asarray(detections.centre, np.float64), unit="m")
     for name, (dtype, unit) in NUMBERS.items():
         write_array(group, name, np.asarray(getattr(detections, name), dtype), unit=unit)
-    write_array(group, RESOLVED, np.asarray(detections.is_resolved, np.uint8))
+    for name in FLAGS:
+        write_array(group, name, np.asarray(getattr(detections, name), np.uint8))
     for name in TEXTS:
         write_texts(group, name, [str(text) for text in getattr(detections, name)])
 
@@ -33,9 +34,7 @@ def read_detections(group, paths, spectrum, noise_seed) -> Detections:
     cells = read_array(group, "cells", np.int64, (None, 2))
     count = len(cells)
     columns = {name: read_array(group, name, dtype, (count,)) for name, (dtype, _) in NUMBERS.items()}
-    columns["is_noise"] = columns["is_noise"].astype(bool)
-    known = read_array(group, RESOLVED, np.uint8, (count,)) if RESOLVED in group else np.zeros(count)
-    columns[RESOLVED] = known.astype(bool)
+    columns |= {name: read_array(group, name, np.uint8, (count,)).astype(bool) for name in FLAGS}
     columns |= {name: np.array(read_texts(group, name, count), dtype=str) for name in TEXTS}
     if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
         raise _core.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")

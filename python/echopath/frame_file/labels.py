@@ -11,7 +11,6 @@ from ..resolution import Interval
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 
 
-
 class Plane(NamedTuple):
     """Name and unit of the axis of the rows; what a label's peak and box are."""
 
@@ -27,7 +26,7 @@ SETTINGS = ("noise_power", "noise_margin_db", "dynamic_range_db")
 CELL_FIELDS = {"whole": (np.float64, "W"), "above_noise": (np.uint8, ""), "mask": (np.uint8, ""), "dominant": (np.int16, ""),
                "object_map": (np.int16, ""), "ghost_map": (np.int16, "")}
 PART_FIELDS = {"mean_power": "W", "mean_share": "", "power_error": "W", "share_error": ""}  # [K, V, R], where asked for
-NOTHING = np.nan  # in the peak and box of what has no cells
+NOTHING = np.nan  # in the peak and box of what has no cells, and in an interval that is not known
 
 
 def write_all_labels(group, labels: dict) -> None:
@@ -51,8 +50,7 @@ def write_labels(group, labels: Labels) -> None:
     write_attribute(group, "plane", labels.plane)
     for name in SETTINGS:
         write_attribute(group, name, getattr(labels, name))
-    if labels.seed is not None:
-        write_attribute(group, "seed", np.uint64(labels.seed))
+    write_attribute(group, "seed", np.uint64(labels.seed))
     write_array(group, plane.rows, getattr(labels, plane.rows), unit=plane.unit)
     write_array(group, "range", labels.range, unit="m")
     write_texts(group, "part", labels.part_names)
@@ -63,7 +61,8 @@ def write_labels(group, labels: Labels) -> None:
         write_array(group, "certain", np.asarray(labels.certain, np.uint8), compress=True)
         for name, unit in PART_FIELDS.items():
             write_array(group, name, getattr(labels, name), unit=unit)
-    _write_received(group, "part_received", labels.part_received)
+    if labels.part_received is not None:
+        _write_received(group, "part_received", labels.part_received)
     _write_objects(group.create_group("objects"), labels.objects)
     _write_ghosts(group.create_group("ghosts"), labels.ghosts)
 
@@ -81,10 +80,10 @@ def read_labels(group) -> Labels:
     objects, ghosts = _read_objects(read_group(group, "objects"), plane), _read_ghosts(read_group(group, "ghosts"), plane)
     _check_indices(group, cells, {"dominant": len(names), "object_map": len(objects), "ghost_map": len(ghosts)})
     settings = {name: read_attribute(group, name, float) for name in SETTINGS}
-    settings["seed"] = read_attribute(group, "seed", int) if "seed" in group.attrs else None
+    settings["seed"] = read_attribute(group, "seed", int)
     return Labels(plane=read_attribute(group, "plane", str), **axes, part_names=names, power=power,
                   share=_core.power_shares(power), objects=objects, ghosts=ghosts,
-                  part_received=_read_received(group, "part_received", len(names)), **settings, **cells,
+                  part_received=_read_part_received(group, len(names)), **settings, **cells,
                   **_read_errors(group, power.shape))
 
 
@@ -165,16 +164,20 @@ def _read_ghosts(group, plane: Plane) -> list:
 
 
 def _write_received(group, name: str, intervals) -> None:
-    """Writes a list of Interval; nothing where they are not known."""
-    if intervals is not None and None not in intervals:
-        write_array(group, name, np.array(intervals, np.float64).reshape(-1, 3), unit="W")
+    """Writes a list of Interval; None, of what is not known, is a row of NaN."""
+    rows = [(NOTHING,) * 3 if interval is None else interval for interval in intervals]
+    write_array(group, name, np.array(rows, np.float64).reshape(-1, 3), unit="W")
 
 
-def _read_received(group, name: str, count: int):
-    """List of Interval; None of files from before these."""
-    if name not in group:
-        return None
-    return [Interval(*map(float, row)) for row in read_array(group, name, np.float64, (count, 3))]
+def _read_received(group, name: str, count: int) -> list:
+    """List of Interval or None, of what is not known."""
+    rows = read_array(group, name, np.float64, (count, 3))
+    return [None if np.isnan(row[0]) else Interval(*map(float, row)) for row in rows]
+
+
+def _read_part_received(group, count: int) -> list | None:
+    """None of cubes whose selections nobody knows."""
+    return _read_received(group, "part_received", count) if "part_received" in group else None
 
 
 def _write_cells(group, labels: list) -> None:
@@ -191,7 +194,7 @@ def _read_cells(group, count: int, plane: Plane) -> list[dict]:
     cells, power = read_array(group, "cells", np.int64, (count,)), read_array(group, "power", np.float64, (count,))
     peaks, boxes = (read_array(group, name, np.float64, (count, size)) for name, size in (("peak", 3), ("box", 4)))
 
-    received = _read_received(group, "received", count) or [None] * count
+    received = _read_received(group, "received", count)
 
     def made(kind, row):
         return None if np.isnan(row[0]) else kind(*map(float, row))

@@ -54,8 +54,7 @@ def read_scene(group):
     count = len(names)
     material_names = read_texts(group, "material_name", count)
     smooth = read_array(group, "smooth", np.uint8, (count,))
-    # In older files all nodes are.
-    visible = read_array(group, "visible", np.uint8, (count,)) if "visible" in group else np.ones(count, np.uint8)
+    visible = read_array(group, "visible", np.uint8, (count,))
     parents = read_array(group, "parent", np.int32, (count,))
     placements = read_array(group, "placement", np.float64, (count, 4, 4))
     shared = {kind: _read_shared(group, kind, count) for kind in _SHARED}

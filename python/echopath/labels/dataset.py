@@ -23,7 +23,7 @@ def dataset_of(labels):
     for field, unit in _OF_PARTS.items():
         if getattr(labels, field) is not None:
             variables[field] = (("part", row, "range"), getattr(labels, field), {"units": unit})
-    settings = {name: getattr(labels, name) for name in ("plane", "noise_power", "noise_margin_db", "dynamic_range_db")}
-    settings |= {} if labels.seed is None else {"seed": labels.seed}
+    settings = {name: getattr(labels, name)
+                for name in ("plane", "noise_power", "noise_margin_db", "dynamic_range_db", "seed")}
     coordinates = {"part": labels.part_names, row: axis(row, getattr(labels, row)), "range": axis("range", labels.range)}
     return xarray_module().Dataset(variables, coords=coordinates, attrs=settings)

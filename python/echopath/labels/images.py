@@ -56,7 +56,7 @@ def label_images(labels) -> dict:
 
 
 def _received(label) -> dict:
-    """Mean received power in W with its interval, and whether the rays know it; {} of files from before these."""
+    """Mean received power in W with its interval, and whether the rays know it; {} where nobody does."""
     if label.received is None:
         return {}
     return {"received": label.received._asdict() | {"resolved": label.received.resolved}}

@@ -81,7 +81,7 @@ class ObjectLabel:
     visible_share: of the solid angle in which the radar would see it alone, the share that nothing hides, 0 to 1
     occluders: {name: share of that solid angle which this one hides}, largest first
     received: Interval of the mean received power of its direct echoes, over the random phases, in W, and whether the rays know
-        it; None: of a file from before these
+        it; None: echoes that only records of later keyframes have (`retrace`)
     """
 
     name: str
@@ -92,7 +92,7 @@ class ObjectLabel:
     box: Box | AzimuthBox | None
     visible_share: float
     occluders: dict
-    received: Interval | None = None
+    received: Interval | None
 
     @property
     def is_occluded(self) -> bool:
@@ -126,7 +126,7 @@ class GhostLabel:
     power: float
     peak: Peak | AzimuthPeak | None
     box: Box | AzimuthBox | None
-    received: Interval | None = None
+    received: Interval | None
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -152,9 +152,9 @@ class Labels:
     power_error, share_error: [K, V, R] standard errors of mean_power in W and of mean_share, from the batches of rays
     certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;
         False outside the mask. These five are None unless asked for (`errors=True`)
-    seed: of the rays that were labelled, None: not known
+    seed: of the rays that were labelled
     part_received: list [K] of Interval, the mean received power of each part in W and whether the rays know it; None: of cubes
-        without selections, or of a file from before these
+        without selections
     """
 
     plane: str
@@ -175,12 +175,12 @@ class Labels:
     object_map: np.ndarray
     ghosts: list
     ghost_map: np.ndarray
+    seed: int
     mean_power: np.ndarray | None = None
     mean_share: np.ndarray | None = None
     power_error: np.ndarray | None = None
     share_error: np.ndarray | None = None
     certain: np.ndarray | None = None
-    seed: int | None = None
     part_received: list | None = None
 
     @property

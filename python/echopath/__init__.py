@@ -26,6 +26,7 @@ from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
 from .families import Families, families
 from .foreign_meshes import mesh_from
+from .frame import Frame
 from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .frame_validity import renew, validity
 from .guard import Check, GuardWarning, check_rays, check_signal
@@ -43,7 +44,7 @@ from .scene_node import SceneNode
 from .selections import first, hits, last, num_bounces, power
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .signals import add_noise, synthesize
-from .simulate import Frame, simulate
+from .simulate import simulate
 from .spectra import cfar, range_doppler
 from .tessellation import TessellationWarning
 from .threads import num_threads, set_num_threads

@@ -3,17 +3,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from . import _core
 from .checks import Window, an, anything, array, checked, count, flag, one_of, optional, path, refused, text, window
 from .families import listed
-from .labels.of_frame import frame_rule
+from .frame import Frame
 from .parts import Views, selection_rule
 from .settings import Evaluate, Retrace, SignalSettings
-
-if TYPE_CHECKING:
-    from .simulate import Frame
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
 View = Literal["fit", "radar", "top", "side"]
@@ -22,14 +19,11 @@ _REPLAY = {name: optional(SignalSettings.RULES[name]) for name in ("zero_pad", "
 
 def _what(argument: str, value):
     """A frame file, a Frame, a scene or None."""
-    if value is None or isinstance(value, _core.Scene):
+    if value is None or isinstance(value, (_core.Scene, Frame)):
         return value
     if isinstance(value, (str, os.PathLike)):
         return path(argument, value)
-    try:
-        return frame_rule(argument, value)
-    except TypeError:
-        raise refused(TypeError, argument, "a frame file or a Frame to view, or the scene of paths", value) from None
+    raise refused(TypeError, argument, "a frame file or a Frame to view, or the scene of paths", value)
 
 
 @checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(window),

@@ -12,6 +12,7 @@ CLOSING = {
     ("echopath.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
     ("echopath.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with what draws scenes in the viewer",
     ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
+    ("echopath.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }
 

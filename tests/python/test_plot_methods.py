@@ -1,4 +1,6 @@
 """Methods `plot` of results: they draw in the axes that they are given, return them, and show what the result says."""
+import dataclasses
+
 import matplotlib
 import matplotlib.text
 import numpy as np
@@ -120,6 +122,13 @@ def test_names_of_objects_at_one_place_do_not_cover_each_other(ax):
     boxes = [matplotlib.text.Text.get_window_extent(text) for text in ax.texts if text.get_text().startswith("object_")]
     assert len(boxes) >= 4
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[i + 1:])
+
+
+def test_the_title_of_a_frame_tells_of_noise_only_where_there_is_some(frame, ax):
+    assert frame.plot(ax=ax).get_title() == "Everything that the radar receives, with its noise"
+    without = dataclasses.replace(frame, noise_seed=None, detections=None)
+    assert without.plot(ax=ax).get_title() == "Everything that the radar receives"
+    assert without.plot(ax=ax, title="Mine").get_title() == "Mine"
 
 
 def test_frames_and_detections_without_what_is_asked_for_say_so(frame, tmp_path):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import echopath as ep
 
+from ..frame import Frame
 from ..materials import data_folder
 from ..measures import EXTENT_BELOW_PEAK_DB, residual
 from ..scene_file import load_scene
-from ..simulate import Frame
 from ..stages import StageClock
 from . import report
 from .run import certify, simulate_file, write_outputs

@@ -8,12 +8,14 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
+from ..frame import Frame
 from ..frame_file import LeftOut, save_frame
 from ..measures import with_error
 from ..parts import parts_of_options
 from ..path_subset import power_of_strongest
+from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
-from ..simulate import Frame, simulate
+from ..simulate import simulate
 from ..stages import StageClock
 from .label_outputs import write_labels
 
@@ -107,7 +109,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
 
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
     vmin, vmax = plots.colour_limits(frame.spectrum)
-    title = "Everything that the radar receives" + (", with its noise" if frame.noise_seed is not None else "")
+    title = title_of(frame)
     mean = f"; in the mean {with_error(frame.mean_power)}".replace("+-", "±")
     write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
     for index, partition in enumerate(partitions):
@@ -127,7 +129,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
 def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:
     """{title: range-azimuth map} of the whole and of the parts of a partition (None: no parts) that a picture shows."""
     spectra = shown_parts(frame.part_spectra[partition], vmin) if partition is not None else {}
-    noise = ", with its noise" if frame.noise_seed is not None else ""
+    noise = noise_words(frame)
     parts = {f"{plots.part_title(name)}, without noise": frame.range_azimuth_of(one) for name, one in spectra.items()}
     return {"everything" + noise: frame.range_azimuth} | parts
 

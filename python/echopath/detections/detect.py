@@ -24,13 +24,6 @@ from .echo_fields import EchoFields
 from .noise import warn_of_missing_noise
 
 
-def _labels(argument: str, value):
-    """Labels of a map."""
-    if not all(hasattr(value, name) for name in ("plane", "whole", "object_map", "ghost_map")):
-        raise refused(TypeError, argument, "Labels", value)
-    return value
-
-
 def _parts(argument: str, value):
     """{name: cube or RangeDoppler} of at least one part."""
     an(Mapping, called="a dict of cubes or RangeDoppler")(argument, value)
@@ -44,7 +37,7 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 
 
 @checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),
-         labels=optional(_labels), objects=objects_rule)
+         labels=optional(an(Labels, called="Labels")), objects=objects_rule)
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,

@@ -2,22 +2,18 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
 
 from .. import _core
-from ..checks import Progress, checked
+from ..checks import Progress, an, checked
 from ..families import Objects
-from ..labels.of_frame import frame_rule
+from ..frame import Frame
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 from .checks import RULES
 from .detect import detect
 from .detections import Detections
 
-if TYPE_CHECKING:
-    from ..simulate import Frame
 
-
-@checked(**RULES, frame=frame_rule)
+@checked(**RULES, frame=an(Frame))
 def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: float = FALSE_ALARM_RATE,
                  guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None,
                  training_range: int | None = None, rank: float = RANK, objects: Objects = None, max_peaks: int = 1,

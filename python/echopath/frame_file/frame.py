@@ -14,11 +14,11 @@ from .. import _core
 from ..azimuth_map import checked_settings
 from ..checks import an, anything, checked, real, refused, text
 from ..files import written_whole
+from ..frame import Frame, with_spectra
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
-from ..simulate import Frame, with_spectra
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, reading, write_array,
                  write_attribute, write_stack, write_texts, writing)

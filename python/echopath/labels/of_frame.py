@@ -2,32 +2,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from ..checks import Progress, anything, checked, refused
+from ..checks import Progress, an, anything, checked
 from ..families import Objects
 from ..families import families as find_families
+from ..frame import Frame
 from ..parts import ONLY_PARTITION, as_partitions, check_partitions
 from ..settings import LabelSettings, Plane
 from .annotate import label_partitions, make_request
 from .labels import Labels
 from .powers import CubeSet, add_powers, decomposed
 
-if TYPE_CHECKING:
-    from ..simulate import Frame
-
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
 _FAMILIES = object()  # a view that has the name of no partition
 
 
-def frame_rule(argument: str, value):
-    """A Frame of `simulate` or `load_frame`."""
-    if not all(hasattr(value, name) for name in ("paths", "part_spectra", "spectrum_settings")):
-        raise refused(TypeError, argument, "a Frame", value)
-    return value
-
-
-@checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=frame_rule, parts=anything)
+@checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)
 def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane = LabelSettings.plane,
                    objects: Objects = LabelSettings.objects, noise: bool = LabelSettings.noise,
                    noise_margin_db: float = LabelSettings.noise_margin_db,

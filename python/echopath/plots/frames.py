@@ -6,17 +6,27 @@ from .points import draw_points
 from .style import axes_or_new
 
 
-def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=""):
+def noise_words(frame) -> str:
+    """What the titles of maps of a whole frame say of its noise."""
+    return "" if frame.noise_seed is None else ", with its noise"
+
+
+def title_of(frame) -> str:
+    """The title of the map of a whole frame."""
+    return "Everything that the radar receives" + noise_words(frame)
+
+
+def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):
     """The range-Doppler map of a frame with its noise, and its detections, where it has some, as points.
 
-    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
+    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: None: what it shows
     Returns the axes, as `draw_range_doppler`. Raises ValueError for a record of paths alone.
     """
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to draw, got a record of paths alone")
     has_room = ax is None
     with axes_or_new(ax, *MAP_SIZE) as ax:
-        draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title)
+        draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title_of(frame) if title is None else title)
         if frame.detections is not None and len(frame.detections):
             draw_points(ax, frame.detections, has_room=has_room, edgecolors="white")
     return ax

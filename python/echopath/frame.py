@@ -1,0 +1,154 @@
+"""What one simulated frame is: its paths, signals and maps."""
+from __future__ import annotations
+
+import dataclasses
+from functools import cached_property
+
+import numpy as np
+
+from . import _core
+from .angles import range_azimuth
+from .azimuth_map import sees_azimuth
+from .effects import of_paths
+from .families import families as find_families
+from .resolution import mean_powers, unresolved_of
+from .stages import Stage
+
+_WHOLE = object()  # a partition of one part, beside those that have names
+
+
+@dataclasses.dataclass(eq=False)
+class Frame:
+    """One simulated frame.
+
+    scene, radar: what was simulated; paths: what every ray touched
+    cube: complex [tx, rx, chirp, sample], sqrt(W), without noise; the sum of the parts of each partition
+    parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
+    selections: {partition: {part: expression as text}}, without "other"
+    part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
+    noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
+    replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
+    spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
+    spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
+    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when
+        not asked for
+    detections: Detections in its map, None when not asked for
+    checks: list [C] of Check, what the guard of the run compared; [] when it was off
+    stages: time and peak memory of each stage
+    """
+
+    scene: object
+    radar: object
+    paths: object
+    cube: object
+    parts: dict
+    selections: dict
+    part_of_path: dict
+    noise_seed: int | None
+    spectrum_settings: dict
+    spectrum: object = None
+    part_spectra: dict = dataclasses.field(default_factory=dict)
+    angle_settings: dict = dataclasses.field(default_factory=dict)
+    replay: str = "material"
+    evaluate: str = "interpolated"
+    retrace: str = "never"
+    keyframes: int = 0
+    labels: dict = dataclasses.field(default_factory=dict)
+    detections: object = None
+    checks: list = dataclasses.field(default_factory=list)
+    stages: list[Stage] = dataclasses.field(default_factory=list)
+
+    @property
+    def noisy_cube(self):
+        """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call.
+
+        The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
+        """
+        if self.noise_seed is None:
+            return self.cube
+        return _core.add_noise(self.cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+
+    def plot(self, *, ax=None, vmin=None, vmax=None, title=None):
+        """Draws the range-Doppler map with its noise, and the detections in it, where there are some, as points.
+
+        ax: Matplotlib axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
+        title: above the map, None: what it shows, with noise or without
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises ValueError for a record of
+        paths alone.
+        """
+        from .plots import draw_frame
+
+        return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
+
+    def _repr_html_(self) -> str:
+        from .notebook import frame_html
+
+        return frame_html(self)
+
+    @property
+    def effects(self) -> list:
+        """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
+        return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
+                        noise_seed=self.noise_seed)
+
+    @cached_property
+    def path_power(self):
+        """Power of each path at the trace time for the first antennas, [P] in W."""
+        return self.paths.power
+
+    @cached_property
+    def range_azimuth(self):
+        """Range-azimuth map of the cube with noise, power [azimuth, range] in W; None where the radar sees no azimuth."""
+        return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar) else None
+
+    def range_azimuth_of(self, spectrum, progress=None):
+        """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
+
+        spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction), True for bars, or None
+        """
+        return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
+
+    @cached_property
+    def mean_power(self):
+        """ep.ReceivedPower of all paths, in W: the mean over the random phases, with its interval."""
+        return self._mean_powers.of_parts[_WHOLE][0]
+
+    @cached_property
+    def mean_part_powers(self) -> dict:
+        """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
+        return {partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
+                for partition in self.part_of_path}
+
+    @cached_property
+    def unresolved(self) -> list:
+        """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
+        Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
+        return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
+                             least_power=_core.noise_power_in_cell(self.radar))
+
+    @cached_property
+    def _families(self):
+        return find_families(self.paths)
+
+    @cached_property
+    def _mean_powers(self):
+        """MeanPowers of the families, of each partition and, as the one part of _WHOLE, of all paths."""
+        groups = {partition: (part_of_path, len(self.parts[partition]))
+                  for partition, part_of_path in self.part_of_path.items()}
+        groups[_WHOLE] = np.zeros(self.paths.num_paths, np.uint32), 1
+        return mean_powers(self.paths, self._families, groups)
+
+    def __repr__(self) -> str:
+        partitions = ", ".join(self.parts) or "none"
+        return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
+
+
+def with_spectra(frame: Frame) -> Frame:
+    """Fills in the range-Doppler maps of a frame: with noise of the whole, without noise of its parts."""
+    def spectrum(cube):
+        return _core.range_doppler(cube, frame.radar, **frame.spectrum_settings)
+
+    frame.spectrum = spectrum(frame.noisy_cube)
+    frame.part_spectra = {partition: {name: spectrum(cube) for name, cube in cubes.items()}
+                          for partition, cubes in frame.parts.items()}
+    return frame

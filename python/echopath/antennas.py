@@ -9,21 +9,22 @@ from pathlib import Path
 import numpy as np
 
 from . import _core
-from .checks import checked
+from .checks import checked, flag
 
 COLUMNS = ("azimuth_deg", "elevation_deg", "gain_db", "phase_deg")
 REQUIRED = COLUMNS[:3]
 ANGLE_DIGITS = 6  # of angles in degrees: samples that agree in them belong to one row or column
 
 
-@checked()
-def load_antenna(path: str | os.PathLike[str]) -> _core.AntennaPattern:
+@checked(normalize=flag)
+def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False) -> _core.AntennaPattern:
     """Reads an antenna pattern from a CSV file.
 
     path: of a text file with a line of column names and then a line for each direction, in any order: azimuth_deg and
         elevation_deg in the antenna's frame (boresight +x, azimuth about z to the left, elevation from the
         xy-plane), gain_db over isotropic ("-inf": none) and optionally phase_deg. Every azimuth needs every
         elevation. Empty lines and lines that begin with # are passed over.
+    normalize: True scales the gain to a mean of 1 over the sphere, as of an antenna without losses
     Returns an AntennaPattern as `GainTable` makes it. Raises FileError naming the file, and the line if there is one.
     """
     path = Path(path)
@@ -35,7 +36,7 @@ def load_antenna(path: str | os.PathLike[str]) -> _core.AntennaPattern:
         raise _core.FileError(f"{path}: is not UTF-8 text (byte {error.start})") from None
     numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     try:
-        return _pattern(_grid(*_samples(numbered)))
+        return _pattern(*_grid(*_samples(numbered)), normalize)
     except ValueError as error:
         raise _core.FileError(f"{path}: {error}") from None
 
@@ -99,7 +100,7 @@ def _grid(names: list, samples: dict):
     return azimuths, elevations, column("gain_db"), column("phase_deg") if "phase_deg" in names else None
 
 
-def _pattern(grid):
-    azimuth_deg, elevation_deg, gain_db, phase_deg = grid
+def _pattern(azimuth_deg, elevation_deg, gain_db, phase_deg, normalize: bool):
     return _core.GainTable(azimuth=np.radians(azimuth_deg), elevation=np.radians(elevation_deg),
-                           gain=10.0 ** (gain_db / 10.0), phase=None if phase_deg is None else np.radians(phase_deg))
+                           gain=10.0 ** (gain_db / 10.0), phase=None if phase_deg is None else np.radians(phase_deg),
+                           normalize=normalize)

@@ -5,7 +5,7 @@ from collections.abc import Hashable, Mapping
 
 from . import _core
 from ._core import Grouping, Selection
-from .checks import Progress, checked, refused, shown, text
+from .checks import Progress, checked, refused, text
 from .equality import is_same
 from .families import Families
 from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
@@ -13,7 +13,9 @@ from .signals import RULES
 
 View = Mapping[str, Selection | str] | Families | Grouping
 Views = View | Mapping[Hashable, View] | None
+_VIEWS = (Mapping, Families, Grouping)
 
+_ONE_KIND = "all selections (one partition) or all tables of selections (several)"
 ONLY_PARTITION = "parts"  # name of a partition that is the only one and has none
 
 
@@ -73,36 +75,37 @@ def _views_rule(argument: str, value):
     return value
 
 
+def are_tables(parts: Mapping, kinds: type | tuple[type, ...] = Mapping, called: str = "parts") -> bool:
+    """Whether the values are tables of parts; none is: they are the parts of one. Raises ValueError for a mixture.
+
+    kinds: what counts as a table; called: the argument that holds the parts
+    """
+    num_tables = sum(isinstance(value, kinds) for value in parts.values())
+    if num_tables not in (0, len(parts)):
+        raise refused(ValueError, called, _ONE_KIND, list(parts))
+    return num_tables > 0
+
+
 def as_partitions(parts) -> dict:
     """{name: selection} or {partition: {name: selection}} -> the latter, whose selections are free of faults."""
     if parts is None:
         return {}
     if not isinstance(parts, Mapping):
         raise refused(TypeError, "parts", "a dict of selections, or of such dicts", parts)
-    nested = [isinstance(value, Mapping) for value in parts.values()]
-    if any(nested) and not all(nested):
-        raise ValueError(f"parts: must be all selections or all tables of selections, got {shown(list(parts))}")
-    partitions = {text("parts", name): dict(group) for name, group in parts.items()} if any(nested) else {
+    partitions = {text("parts", name): dict(group) for name, group in parts.items()} if are_tables(parts) else {
         ONLY_PARTITION: dict(parts)} if parts else {}
     for name, group in partitions.items():
         _selections_rule("parts" if name == ONLY_PARTITION else f"parts.{name}", group)
     return partitions
 
 
-def _is_view(value) -> bool:
-    return isinstance(value, (Mapping, Families, Grouping))
-
-
 def _is_table_of_views(parts) -> bool:
     """Whether all values are views; none is: one view. Raises ValueError for a mixture."""
-    if not _is_view(parts):
+    if not isinstance(parts, _VIEWS):
         raise refused(TypeError, "parts", "a dict of selections or of views, or Families", parts)
     if not isinstance(parts, Mapping):
         return False
-    num_views = sum(map(_is_view, parts.values()))
-    if num_views not in (0, len(parts)):
-        raise ValueError(f"parts: must be all selections or all dicts of selections, dicts, got {num_views}")
-    return num_views > 0
+    return are_tables(parts, _VIEWS)
 
 
 def _grouping(view) -> Grouping:

@@ -72,6 +72,29 @@ def test_normalized_tables_have_a_mean_of_one():
     assert pattern.peak_gain == pytest.approx(10.0, rel=2e-3)  # of cos^4: 2 (4 + 1)
 
 
+def test_normalized_files_have_a_mean_of_one(tmp_path):
+    """Of levels that are not known: 20 dB too much in all directions."""
+    rows = [f"{np.degrees(a):.6f},{np.degrees(e):.6f},{10 * np.log10(max(100.0 * gain, 1e-30)):.9f}"
+            for e, row in zip(ELEVATION, cosine4(grid())) for a, gain in zip(AZIMUTH, row)]
+    (tmp_path / "loud.csv").write_text("\n".join(["azimuth_deg,elevation_deg,gain_db", *rows]))
+    with pytest.raises(ep.FileError, match="loud.csv: gain: must have a mean over the sphere .* normalize=True"):
+        ep.load_antenna(tmp_path / "loud.csv")
+    pattern = ep.load_antenna(tmp_path / "loud.csv", normalize=True)
+    assert pattern.peak_gain == pytest.approx(10.0, rel=2e-3)  # of cos^4: 2 (4 + 1)
+    scene = WAVEFORM + """
+[radar]
+pattern = {kind = "table", file = "loud.csv", normalize = true}
+transmitters = [{position = [0, 0, 0]}]
+receivers = [{position = [0, 0, 0]}]
+"""
+    (tmp_path / "loud.toml").write_text(scene)
+    loaded = ep.load_scene(tmp_path / "loud.toml").radar.receivers[0].pattern
+    np.testing.assert_array_equal(loaded.table_gain, pattern.table_gain)
+    (tmp_path / "loud.toml").write_text(scene.replace("true", "false"))
+    with pytest.raises(ep.FileError, match="loud.csv: gain: must have a mean over the sphere"):
+        ep.load_scene(tmp_path / "loud.toml")
+
+
 def test_shapes_are_checked():
     with pytest.raises(ValueError, match="^gain: .*row for each elevation"):
         ep.GainTable(azimuth=AZIMUTH[:5], elevation=ELEVATION[:3], gain=np.ones((5, 3)))

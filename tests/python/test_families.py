@@ -225,7 +225,7 @@ def test_an_object_called_background_keeps_its_own_echoes(traced, settings):
 
 
 def test_mixed_views_are_an_error(traced):
-    with pytest.raises(ValueError, match="parts: must be all selections or all dicts"):
+    with pytest.raises(ValueError, match=r"parts: must be all selections \(one .* or all tables .*, got \['a', 'ghosts'\]"):
         ep.decompose(traced, parts={"a": "T . R", "ghosts": ep.families(traced)})
     with pytest.raises(TypeError, match="parts: must be a dict of selections or of views, or Families, got "):
         ep.decompose(traced, parts=["T . R"])

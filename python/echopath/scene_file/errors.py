@@ -52,6 +52,8 @@ def one_line(error: dict, prefix: tuple = ()) -> str:
         return f"{dotted(location + (context['key'],))}: {error['msg']}"
     if error["type"] == "broken_rule":
         return f"{dotted(location + (context['key'],))}: {context['rule']}, got {shown(context['value'])}"
+    if error["type"] == "refused":
+        return f"{dotted(location)}{context['told']}"
     if error["type"] == "value_error":
         return f"{dotted(location)}: {context['error']}, got {shown(error['input'])}"
     rule = _RULES.get(error["type"], error["msg"]).format(**context).replace("'<", "'").replace(">'", "'")

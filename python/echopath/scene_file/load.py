@@ -52,7 +52,6 @@ class SceneFile:
     def angle_settings(self) -> dict:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
         settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
-        settings["window"] = _window(self.angle.window)
         settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
         if self.angle.azimuth_deg is not None:
             first, last, step = self.angle.azimuth_deg
@@ -69,10 +68,6 @@ class SceneFile:
     def partitions(self) -> dict:
         """`parts` as {partition: {name: expression}}."""
         return as_partitions(self.parts)
-
-
-def _window(value):
-    return tuple(value) if isinstance(value, list) else value
 
 
 @checked()
@@ -111,7 +106,7 @@ def _signal(settings: SceneTable) -> SignalSettings:
     with _blame("noise"):
         noisy = replayed.replace(noise_seed=settings.noise.seed)
     with _blame("spectrum"):
-        return noisy.replace(window=_window(settings.spectrum.window), zero_pad=settings.spectrum.zero_pad)
+        return noisy.replace(window=settings.spectrum.window, zero_pad=settings.spectrum.zero_pad)
 
 
 def _labels(settings: SceneTable) -> LabelSettings | None:
@@ -186,7 +181,7 @@ def _pattern(table, folder: Path):
     if table.kind == "isotropic":
         return _core.Isotropic(gain=table.gain)
     if table.kind == "table":
-        return load_antenna(folder / table.file)
+        return load_antenna(folder / table.file, normalize=table.normalize)
     return _core.CosinePower(table.exponent, peak_gain=table.peak_gain)
 
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from ..checks import WindowName
+from ..checks import Rule, window
+from ..parts import are_tables
 from ..settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
     SignalSettings, TraceSettings,
@@ -26,7 +27,6 @@ Pitch = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 Vector3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Matrix4 = Annotated[list[Quaternion], Field(min_length=4, max_length=4)]
-WINDOWS = get_args(WindowName)
 
 
 def nearest_key(key: str, candidates) -> str:
@@ -51,15 +51,18 @@ def _permittivity(value):
     return value
 
 
-def _window(value):
-    chebyshev = isinstance(value, list) and len(value) == 2 and value[0] == "chebyshev"
-    if not (value in WINDOWS or (chebyshev and _is_number(value[1]) and value[1] > 0)):
-        raise ValueError(f"must be one of {', '.join(WINDOWS)} or [\"chebyshev\", sidelobe level in dB]")
-    return value
+def by_check(check: Rule) -> AfterValidator:
+    """Holds a value to the rule of an argument, and says of a wrong one what the call would, behind the key."""
+    def checked(value):
+        try:
+            return check("", value)
+        except (TypeError, ValueError) as error:
+            raise PydanticCustomError("refused", "{told}", {"told": str(error)}) from None
+    return AfterValidator(checked)
 
 
 Permittivity = Annotated[Any, AfterValidator(_permittivity)]
-Window = Annotated[Any, AfterValidator(_window)]
+Window = Annotated[Any, by_check(window)]
 
 
 class Table(BaseModel):
@@ -123,6 +126,7 @@ class CosinePowerTable(Table):
 class GainFileTable(Table):
     kind: Literal["table"] = Field(description="gain, and phase where given, sampled over direction")
     file: str = Field(min_length=1, description="CSV file (echopath.load_antenna), relative to the scene file")
+    normalize: bool = Field(False, description="scales the gain to a mean of 1 over the sphere, as without losses")
 
 
 PatternTable = Annotated[
@@ -350,6 +354,11 @@ PartsValue = Annotated[
     Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
 
 
+def _one_kind_of_parts(argument: str, value: dict) -> dict:
+    are_tables(value, called=argument)
+    return value
+
+
 class SceneTable(Table):
     title: str = Field("", description="one line about the scene")
     guard: bool = Field(True, description="whether a run is held against slower ways at a few random places")
@@ -360,14 +369,8 @@ class SceneTable(Table):
     spectrum: SpectrumTable = SpectrumTable()
     angle: AngleTable = AngleTable()
     noise: NoiseTable = NoiseTable()
-    parts: dict[Name, PartsValue] = Field(
+    parts: Annotated[dict[Name, PartsValue], by_check(_one_kind_of_parts)] = Field(
         {}, description="name = path expression: one partition; tables of these: several")
     labels: LabelsTable | None = Field(None, description="labels of the map; none: they are not made")
     detections: DetectionsTable | None = Field(None, description="detections in the map; none: they are not made")
 
-    @model_validator(mode="after")
-    def _one_kind_of_parts(self):
-        if len({isinstance(value, str) for value in self.parts.values()}) > 1:
-            rule = "must be all expressions (one partition) or all tables (several)"
-            raise broken_rule("parts", rule, list(self.parts))
-        return self

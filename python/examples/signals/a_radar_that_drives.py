@@ -22,7 +22,7 @@ scene.add(ep.actors.box((4, 1.8, 1.4)), name="car", material=rough, position=(24
 chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=256, sampling_rate=20e6, num_chirps=128,
                           chirp_interval=60e-6)
 radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0.6))], receivers=[ep.Antenna((0, 0.01, 0.6))], transmit_power=0.1,
-                 motion=ep.LinearMotion(velocity=(speed, 0, 0)))
+                 speed=speed)
 spectrum = ep.simulate(scene, radar, num_rays=40_000, guard=False).spectrum
 
 # %%

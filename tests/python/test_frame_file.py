@@ -225,6 +225,20 @@ def refuse(path, reason):
         ep.load_frame(path)
 
 
+def test_a_fault_of_a_reader_stays_behind_the_error(saved, monkeypatch):
+    """Else a bug of ours looks like a damaged file."""
+    def broken(*arguments):
+        raise TypeError("no such argument")
+
+    monkeypatch.setattr(frame_paths, "read_array", broken)
+    with pytest.raises(ep.FileError, match="no such argument") as told:
+        ep.load_frame(saved)
+    causes = [told.value]
+    while causes[-1].__cause__ is not None:
+        causes.append(causes[-1].__cause__)
+    assert type(causes[-1]) is TypeError and causes[-1].__traceback__.tb_next is not None
+
+
 def test_other_files_are_refused(tmp_path):
     refuse(tmp_path / "nowhere.h5", "no such file")
     (tmp_path / "text.h5").write_text("no HDF5 at all")

@@ -28,7 +28,8 @@ LAYOUT = ("v110", "v110")  # the first whose headers all have check sums
 
 # Letters of the NumPy types that an attribute of a kind may have.
 _LETTERS = {int: "iu", float: "fiu", bool: "b", complex: "c", str: "S"}
-# What reading a damaged file may raise, in this program, in h5py and in the core.
+# What reading a damaged file may raise, in this program, in h5py and in the core. A fault of this program looks the same: the
+# error stays behind the FileError as its cause.
 _FAULTS = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RuntimeError, MemoryError)
 
 
@@ -137,7 +138,7 @@ def blaming(item):
     except _core.FileError:
         raise
     except _FAULTS as error:
-        raise _core.FileError(f"{item.name}: {_first_line(error)}") from None
+        raise _core.FileError(f"{item.name}: {_first_line(error)}") from error
 
 
 def blames_group(function):
@@ -240,14 +241,14 @@ def reading(path):
         with interrupts_are_kept(), h5py.File(path, "r") as file:
             yield file
     except _core.FileError as error:
-        raise _core.FileError(f"{path}: {error}") from None
+        raise _core.FileError(f"{path}: {error}") from error
     except FileNotFoundError:
         raise _core.FileError(f"{path}: no such file") from None
     except _FAULTS as error:
         if Path(path).suffix.lower() == ".toml":
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
                                   "DIR` makes DIR/frame.h5 of it") from None
-        raise _core.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from None
+        raise _core.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from error
 
 
 def _first_line(error) -> str:

@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import warnings
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -117,19 +117,24 @@ def test_labels_of_cells_are_taken_over(spheres):
     for cell, shares in ((near, (0.75, 0.25)), (middle, (0.1, 0.9))):  # the third has no echo at all
         power[(slice(None), *cell)] = np.array(shares) * ep.cfar(spectrum, radar).power[cell]
     object_map[near], ghost_map[middle] = 1, 0
-    labels = SimpleNamespace(plane="range_doppler", part_names=["a", "b"], power=power, whole=power.sum(axis=0),
-                             object_map=object_map, ghost_map=ghost_map,
-                             objects=[SimpleNamespace(name=name, received=KNOWN) for name in ("other", "car")],
-                             ghosts=[SimpleNamespace(object="walker", ghost_type=2, order=3, via=("wall",), received=KNOWN)])
+    looks = {"cells": 1, "power": 1.0, "peak": None, "box": None, "received": KNOWN}
+    objects = [ep.ObjectLabel(name=name, status="seen", visible_share=1.0, occluders={}, **looks) for name in ("other", "car")]
+    ghosts = [ep.GhostLabel(object="walker", ghost_type=2, order=3, via=("wall",), class_code=124, **looks)]
+    everywhere = np.ones(shape, bool)
+    labels = ep.Labels(plane="range_doppler", velocity=spectrum.velocity, azimuth=None, range=spectrum.range,
+                       part_names=["a", "b"], power=power, whole=power.sum(axis=0), share=power, dominant=object_map,
+                       noise_power=1.0, noise_margin_db=10.0, dynamic_range_db=60.0, above_noise=everywhere, mask=everywhere,
+                       objects=objects, object_map=object_map, ghosts=ghosts, ghost_map=ghost_map, seed=1)
     found = ep.detect(spectrum, radar, labels=labels)
     by_name = {name: i for i, name in ((nearest(found, name), name) for name in TARGETS)}
     columns = ("part", "object", "ghost_type", "order", "class_code")
     assert [tuple(getattr(found, column)[by_name[name]] for column in columns) for name in TARGETS] == [
         ("a", "car", 0, 1, 111), ("b", "walker", 2, 3, 124), ("noise", "", 0, 0, 0)]
     assert found.share[by_name["near"]] == pytest.approx(0.75) and found.share[by_name["middle"]] == pytest.approx(0.9)
-    labels.plane = "range_azimuth"
     with pytest.raises(ValueError, match="labels: must be of the spectrum"):
-        ep.detect(spectrum, radar, labels=labels)
+        ep.detect(spectrum, radar, labels=dataclasses.replace(labels, plane="range_azimuth"))
+    with pytest.raises(TypeError, match="labels: must be Labels, got "):
+        ep.detect(spectrum, radar, labels=dataclasses.asdict(labels))
 
 
 def test_a_false_alarm_is_called_noise(spheres):

@@ -70,7 +70,7 @@ make_environment() {
 }
 
 install_build_tools() {
-  "$python" -c 'import setuptools, pybind11' 2>/dev/null || pip_install 'setuptools>=77' 'pybind11>=2.11'
+  "$python" -c 'import setuptools, pybind11; assert pybind11.version_info >= (3,)' 2>/dev/null || pip_install 'setuptools>=77' 'pybind11>=3'
 }
 
 # CMake's folder is shared with the C++ tests: the core is compiled once.

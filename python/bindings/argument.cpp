@@ -59,7 +59,7 @@ py::object as_float(py::handle value) {
 
 }  // namespace
 
-double checked_real(py::handle value, const char* argument) {
+double checked_number(py::handle value, const char* argument) {
   if (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr())) {
     const double number = PyLong_AsDouble(value.ptr());
     if (number != -1.0 || !PyErr_Occurred()) return number;
@@ -68,9 +68,28 @@ double checked_real(py::handle value, const char* argument) {
   }
   const py::object number = as_float(value);
   if (!number) refuse_type(argument, "must be a number", value);
-  const double real = PyFloat_AS_DOUBLE(number.ptr());
+  return PyFloat_AS_DOUBLE(number.ptr());
+}
+
+double checked_real(py::handle value, const char* argument) {
+  const double real = checked_number(value, argument);
   if (!std::isfinite(real)) refuse_value(argument, "must be finite", value);
   return real;
+}
+
+uint64_t checked_seed(py::handle value, const char* argument) {
+  constexpr const char* kRule = "must be a whole number from 0 to 18446744073709551615";
+  if (!PyIndex_Check(value.ptr()) || is_bool(value)) {
+    return static_cast<uint64_t>(checked_whole(value, argument, 0, std::numeric_limits<int64_t>::max()));
+  }
+  const py::object integer = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  if (integer) {
+    const unsigned long long seed = PyLong_AsUnsignedLongLong(integer.ptr());
+    if (!PyErr_Occurred()) return seed;
+  }
+  PyErr_Clear();
+  if (!integer) refuse_type(argument, kRule, value);
+  refuse_value(argument, kRule, value);
 }
 
 int64_t checked_whole(py::handle value, const char* argument, int64_t low, int64_t high) {
@@ -114,17 +133,6 @@ std::string checked_text(py::handle value, const char* argument) {
   const std::string taken(text, static_cast<size_t>(size));
   if (taken.find('\0') != std::string::npos) refuse_value(argument, "must be text without the character NUL", value);
   return taken;
-}
-
-std::filesystem::path checked_path(py::handle value, const char* argument) {
-  PyObject* bytes = nullptr;
-  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) {
-    const bool wrong_type = PyErr_ExceptionMatches(PyExc_TypeError) != 0;
-    PyErr_Clear();
-    if (wrong_type) refuse_type(argument, "must be a path, str or os.PathLike", value);
-    refuse_value(argument, "must be a path without the character NUL that the file system can hold", value);
-  }
-  return std::filesystem::path(std::string(py::reinterpret_steal<py::bytes>(bytes)));
 }
 
 std::vector<py::object> checked_items(py::handle value, const char* argument) {

@@ -7,7 +7,8 @@
 // allowed), and the message names the argument, the rule and the value. help() shows the plain type of the kind.
 //
 //   Real, Complex, Whole<low, high>, Count, Positive   numbers; whole floats such as 1e5 will do for whole numbers
-//   Flag, Text, FilePath, OneOf<choice>                True or False, str, str or os.PathLike, one of the names of choice.h
+//   Number, Seed                                       numbers that may be infinite or NaN; whole numbers below 2^64
+//   Flag, Text, OneOf<choice>                          True or False, str, one of the names of choice.h
 //   Vector3, Points, Triangles, Matrix, ...            arrays of array.h; lists and tuples of numbers will do
 //   Instance<T>, Instance<std::shared_ptr<T>>          an object of a bound class T
 //   Optional<Kind>, List<Kind>                         or None; a list, tuple or other sequence
@@ -20,7 +21,6 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -49,20 +49,21 @@ class Arg {
   Arg() = default;
   explicit Arg(Value value) : value_(std::move(value)) {}
   static constexpr const char* name() { return kName.text; }
-  const Value& operator*() const { return value_; }
-  const Value* operator->() const { return &value_; }
+  const Value& operator*() const { return *value_; }
+  const Value* operator->() const { return &*value_; }
 
  private:
-  Value value_{};
+  std::optional<Value> value_;  // empty before the call
 };
 
 namespace detail {
 
-double checked_real(py::handle value, const char* argument);                               // finite
+double checked_number(py::handle value, const char* argument);
+double checked_real(py::handle value, const char* argument);  // finite
+uint64_t checked_seed(py::handle value, const char* argument);
 int64_t checked_whole(py::handle value, const char* argument, int64_t low, int64_t high);  // low to high
 bool checked_flag(py::handle value, const char* argument);
 std::string checked_text(py::handle value, const char* argument);  // encodable, without NUL
-std::filesystem::path checked_path(py::handle value, const char* argument);
 std::vector<py::object> checked_items(py::handle value, const char* argument);
 [[noreturn]] void refuse_instance(py::handle type, const char* argument, py::handle value);
 
@@ -81,6 +82,18 @@ struct Real {
   using Value = double;
   static constexpr auto type_name = py::detail::const_name("float");
   static double from(py::handle value, const char* argument) { return detail::checked_real(value, argument); }
+};
+
+struct Number {
+  using Value = double;
+  static constexpr auto type_name = py::detail::const_name("float");
+  static double from(py::handle value, const char* argument) { return detail::checked_number(value, argument); }
+};
+
+struct Seed {
+  using Value = uint64_t;
+  static constexpr auto type_name = py::detail::const_name("int");
+  static uint64_t from(py::handle value, const char* argument) { return detail::checked_seed(value, argument); }
 };
 
 struct Complex {
@@ -111,12 +124,6 @@ struct Text {
   using Value = std::string;
   static constexpr auto type_name = py::detail::const_name("str");
   static std::string from(py::handle value, const char* argument) { return detail::checked_text(value, argument); }
-};
-
-struct FilePath {
-  using Value = std::filesystem::path;
-  static constexpr auto type_name = py::detail::const_name("str | os.PathLike");
-  static Value from(py::handle value, const char* argument) { return detail::checked_path(value, argument); }
 };
 
 // kChoice: a constexpr Choice at namespace scope

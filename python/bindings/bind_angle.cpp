@@ -13,6 +13,7 @@
 #include "echopath/spectrum/angle/range_azimuth.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "run_job.h"
+#include "warn.h"
 #include "window_name.h"
 
 namespace echopath::bindings {
@@ -87,9 +88,8 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
 // What all azimuths then show is the same.
 void warn_of_blindness(const Radar& radar) {
   if (default_angles(virtual_array(radar)).azimuth.size() > 1) return;
-  constexpr const char* kText = "range_azimuth: the antennas of this radar tell no azimuths apart (they stand in one place "
-                                "or one above the other): every azimuth of the map shows the same";
-  if (PyErr_WarnEx(PyExc_RuntimeWarning, kText, 1) != 0) throw py::error_already_set();
+  warn_caller("range_azimuth: the antennas of this radar tell no azimuths apart (they stand in one place "
+              "or one above the other): every azimuth of the map shows the same");
 }
 
 RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "echopath/spectrum/angle/angle_fft.h"
 #include "echopath/spectrum/angle/beamform.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
@@ -74,27 +76,27 @@ sin(azimuth) cos(elevation) and sin(elevation).)");
           "[elevation] rad, arcsin of sin_elevation; NaN beyond +-1")
       .def_property_readonly("velocity", view_of(&AngleSpectrum::velocity), "[velocity] m/s, receding positive")
       .def_property_readonly("range", view_of(&AngleSpectrum::range), "[range] m")
-      .def("to_xarray", from_package("xarray_maps", "angle_spectrum_array"),
-           R"(The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
+      .def("__repr__", [](const AngleSpectrum& self) { return "AngleSpectrum(" + text_of(shape_of(self)) + ")"; });
+  define(bound, "to_xarray", from_package("xarray_maps", "angle_spectrum_array"),
+         R"(The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
 Axes: sin_elevation, sin_azimuth (direction cosines, 1), velocity (m/s, receding positive) and range (m).
 
-Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
-      .def(
-          "plot",
-          [](const py::object& self, const py::object& range, const py::object& velocity, const py::object& ax,
-             const std::string& title) {
-            return in_package("plots", "draw_angle_spectrum")(self, range, velocity, py::arg("ax") = ax,
-                                                              py::arg("title") = title);
-          },
-          py::arg("range") = py::none(), py::arg("velocity") = py::none(), py::kw_only(), py::arg("ax") = py::none(),
-          py::arg("title") = "Received power by direction",
-          R"(Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
+  define(
+      bound, "plot",
+      [](const py::object& self, const py::object& range, const py::object& velocity, const py::object& ax,
+         Arg<"title", Text> title) {
+        return in_package("plots", "draw_angle_spectrum")(self, range, velocity, py::arg("ax") = ax,
+                                                          py::arg("title") = *title);
+      },
+      py::arg("range") = py::none(), py::arg("velocity") = py::none(), py::kw_only(), py::arg("ax") = py::none(),
+      py::arg("title") = "Received power by direction",
+      R"(Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
 
 range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above, the cell is added
-Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.)")
-      .def("__repr__", [](const AngleSpectrum& self) { return "AngleSpectrum(" + text_of(shape_of(self)) + ")"; });
+Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.)");
   def_travel_checked(
       bound, [](const AngleSpectrum& made) { require_shape(made.values, shape_of(made), "values"); },
       field("sin_azimuth", &AngleSpectrum::sin_azimuth), field("sin_elevation", &AngleSpectrum::sin_elevation),
@@ -138,28 +140,28 @@ void bind_range_azimuth_map(py::module_& m) {
       .def_property_readonly("range", view_of(&RangeAzimuth::range), "[range] m")
       .def_property_readonly("elevation", view_of(&RangeAzimuth::elevation), "[elevation] rad, of the beams")
       .def_readonly("velocity", &RangeAzimuth::velocity, "m/s, of the cells taken; None: all velocities together")
-      .def("to_xarray", from_package("xarray_maps", "range_azimuth_array"),
-           R"(The map as an xarray.DataArray, without a copy: power in W.
+      .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
+  define(bound, "to_xarray", from_package("xarray_maps", "range_azimuth_array"),
+         R"(The map as an xarray.DataArray, without a copy: power in W.
 
 Axes: azimuth (rad, left positive) and range (m); attributes elevation (rad, of the beams) and velocity (m/s, of the cells, where
 only some were taken).
 
-Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
-      .def(
-          "plot",
-          [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
-             const std::string& title) {
-            return in_package("plots", "draw_range_azimuth")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
-                                                             py::arg("vmax") = vmax, py::arg("title") = title);
-          },
-          py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
-          py::arg("title") = "Received power from above",
-          R"(Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
+  define(
+      bound, "plot",
+      [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
+         Arg<"title", Text> title) {
+        return in_package("plots", "draw_range_azimuth")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
+                                                         py::arg("vmax") = vmax, py::arg("title") = *title);
+      },
+      py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
+      py::arg("title") = "Received power from above",
+      R"(Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.)")
-      .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
+Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.)");
   def_travel_checked(
       bound,
       [](const RangeAzimuth& made) { require_shape(made.power, {size_of(made.azimuth), size_of(made.range)}, "power"); },

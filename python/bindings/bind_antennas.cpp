@@ -239,8 +239,8 @@ Raises ValueError or TypeError naming the argument.)");
       .def_property_readonly(
           "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
-      .def("_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
+  define(type, "_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.");
   define(type, "chirp_time", &chirp_time, py::arg("tx"), py::arg("chirp"), R"(Time of the middle of a chirp.
 
 tx, chirp: indices of the transmitter and of its chirp

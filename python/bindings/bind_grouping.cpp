@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "echopath/label/objects/families.h"
 #include "echopath/label/objects/visibility.h"
 #include "named_selections.h"
@@ -163,19 +165,20 @@ void bind_family(py::module_& m) {
   const auto state = [via](const Family& self) {
     return py::make_tuple(self.object, self.ghost_type, self.order, via(self));
   };
-  const auto make = [](std::string object, int ghost_type, int order, std::vector<std::string> surfaces) {
-    return Family{std::move(object), ghost_type, order, std::move(surfaces)};
-  };
-  py::class_<Family>(m, "Family", R"(Paths of one object that went the same way.
+  py::class_<Family> family(m, "Family", R"(Paths of one object that went the same way.
 
 After the Radar Ghost Dataset (Kraus et al. 2021).
 
 object: name, "" for the background: paths that touch no object
 ghost_type: 0 for real echoes (and the background), 1 for ghosts whose last bounce is on the object, 2 on something else
 order: number of bounces; hits that follow each other on one object are one. 1 for real echoes, 0 for the background
-via: names of what mirrored it, each once, in the order of the first bounce there)")
-      .def(py::init(make), py::arg("object"), py::arg("ghost_type"), py::arg("order"), py::arg("via"))
-      .def_readonly("object", &Family::object, "name of the object, \"\" for the background")
+via: names of what mirrored it, each once, in the order of the first bounce there)");
+  define_init(
+      family,
+      [](Arg<"object", Text> object, Arg<"ghost_type", Whole<0, 2>> ghost_type, Arg<"order", Count> order,
+         Arg<"via", List<Text>> surfaces) { return Family{*object, *ghost_type, *order, *surfaces}; },
+      py::arg("object"), py::arg("ghost_type"), py::arg("order"), py::arg("via"));
+  family.def_readonly("object", &Family::object, "name of the object, \"\" for the background")
       .def_readonly("ghost_type", &Family::ghost_type, "0: real echo or background; 1, 2: of a ghost")
       .def_readonly("order", &Family::order, "number of bounces; 0: background")
       .def_property_readonly("via", via, "tuple of the names of what mirrored it")
@@ -190,10 +193,7 @@ via: names of what mirrored it, each once, in the order of the first bounce ther
       .def("__hash__", [state](const Family& self) { return py::hash(state(self)); })
       .def("__str__", &Family::name)
       .def("__repr__", [](const Family& self) { return "<Family " + self.name() + ">"; })
-      .def(py::pickle(state, [make](const py::tuple& saved) {
-        return make(saved[0].cast<std::string>(), saved[1].cast<int>(), saved[2].cast<int>(),
-                    saved[3].cast<std::vector<std::string>>());
-      }));
+      .def(py::pickle(state, [](const py::tuple& saved) { return py::type::of<Family>()(*saved).cast<Family>(); }));
 }
 
 }  // namespace

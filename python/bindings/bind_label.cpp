@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "echopath/label/expressions/expression.h"
 #include "named_selections.h"
 #include "run_job.h"
@@ -31,9 +33,14 @@ PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
   return made;
 }
 
-py::array_t<bool> matches_of(const Selection& selection, const Paths& paths) {
+// Paths are bound after selections, so their name is written out.
+struct Record : Instance<std::shared_ptr<Paths>> {
+  static constexpr auto type_name = py::detail::const_name("echopath._core.Paths");
+};
+
+py::array_t<bool> matches_of(const Selection& selection, Arg<"paths", Record> paths) {
   const std::vector<uint8_t> taken =
-      run_job("matches", py::none(), [&](Job& job) { return selection.matches(paths, &job); });
+      run_job("matches", py::none(), [&](Job& job) { return selection.matches(**paths, &job); });
   py::array_t<bool> mask(static_cast<py::ssize_t>(taken.size()));
   std::copy(taken.begin(), taken.end(), mask.mutable_data());
   return mask;
@@ -48,7 +55,9 @@ py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
 // Power of a path, to be compared with powers in W.
 struct Power {};
 
-void check_globs(const Selection& selection, const Scene& scene) { selection.check_globs(scene.all_mesh_names()); }
+void check_globs(const Selection& selection, Arg<"scene", Instance<std::shared_ptr<Scene>>> scene) {
+  selection.check_globs((*scene)->all_mesh_names());
+}
 
 // Number of hits of a path, to be compared with whole numbers.
 struct NumBounces {};
@@ -80,14 +89,14 @@ text: path expressions, and power > 1e-15 (W, at the trace time for the first an
     ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
     path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
     diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
-selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under
-the fault; matching raises one when a glob takes no mesh of the scene.)");
-  selection.def(py::init<const std::string&>(), py::arg("text"))
-      .def(py::init<const Selection&>(), py::arg("selection"))
-      .def("matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.")
-      .def("check", &check_globs, py::arg("scene"),
-           "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.")
-      .def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
+    Instead, another Selection to copy.
+Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a glob
+takes no mesh of the scene.)");
+  define_init(selection, [](Arg<"text", SelectionOrText> text) { return Selection(*text); }, py::arg("text"));
+  define(selection, "matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.");
+  define(selection, "check", &check_globs, py::arg("scene"),
+         "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.");
+  selection.def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
       .def(
           "__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
       .def(

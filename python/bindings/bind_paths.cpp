@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "in_package.h"
 #include "named_selections.h"
 #include "path_series.h"
@@ -18,6 +21,7 @@ namespace echopath::bindings {
 namespace {
 
 using PathsPtr = std::shared_ptr<Paths>;
+using PathsClass = py::class_<Paths, PathsPtr>;
 
 // A column of the hits, a strided view without a copy.
 template <class T>
@@ -52,25 +56,40 @@ py::array jones_of(const py::object& self) {
   return numpy_view(matrices.empty() ? nullptr : matrices.front().data(), shape, self);
 }
 
-std::vector<uint8_t> as_mask(const py::array& mask) {
-  const auto keep = checked_array<bool>(mask, "selection", "[P]");
-  return std::vector<uint8_t>(keep.data(), keep.data() + keep.size());
+// Of a mask: 1 where a path is taken.
+using Taken = std::vector<uint8_t>;
+
+// bool [P]
+struct Mask {
+  using Value = Taken;
+  static constexpr auto type_name = py::detail::const_name("ArrayLike");
+  static Taken from(py::handle value, const char* argument) {
+    const auto keep = checked_array<bool>(value, argument, "[P]");
+    return Taken(keep.data(), keep.data() + keep.size());
+  }
+};
+
+struct SelectionOrMask {
+  using Value = std::variant<Taken, Selection>;
+  static constexpr auto type_name = SelectionOrText::type_name + py::detail::const_name(" | ArrayLike");
+  static Value from(py::handle value, const char* argument) {
+    if (PyUnicode_Check(value.ptr()) || py::isinstance<Selection>(value)) return SelectionOrText::from(value, argument);
+    if (!PySequence_Check(value.ptr())) refuse_type(argument, "must be a Selection, its text or a mask, bool [P]", value);
+    return Mask::from(value, argument);
+  }
+};
+
+PathsPtr select_paths(const Paths& paths, Arg<"selection", SelectionOrMask> selection) {
+  return run_job("select", py::none(), [&](Job& job) {
+    const auto* expression = std::get_if<Selection>(&*selection);
+    return std::make_shared<Paths>(
+        paths.select(expression ? expression->matches(paths, &job) : std::get<Taken>(*selection), &job));
+  });
 }
 
-PathsPtr select_mask(const Paths& paths, const py::array& mask) {
-  const std::vector<uint8_t> keep = as_mask(mask);
-  return run_job("select", py::none(), [&](Job& job) { return std::make_shared<Paths>(paths.select(keep, &job)); });
-}
-
-PathsPtr select_with_own_hits(const Paths& paths, const py::array& mask) {
-  const std::vector<uint8_t> keep = as_mask(mask);
+PathsPtr select_with_own_hits(const Paths& paths, Arg<"selection", Mask> mask) {
   return run_job("select", py::none(),
-                 [&](Job& job) { return std::make_shared<Paths>(paths.select(keep, &job).with_own_hits(&job)); });
-}
-
-PathsPtr select_paths(const Paths& paths, const Selection& selection) {
-  return run_job("select", py::none(),
-                 [&](Job& job) { return std::make_shared<Paths>(paths.select(selection.matches(paths, &job), &job)); });
+                 [&](Job& job) { return std::make_shared<Paths>(paths.select(*mask, &job).with_own_hits(&job)); });
 }
 
 // Paths of each part, in the order of the names.
@@ -84,11 +103,10 @@ std::vector<PathsPtr> split(const Paths& paths, const Partition& partition, Job&
   return parts;
 }
 
-py::dict partition_paths(const Paths& paths, const py::dict& parts) {
-  const std::vector<NamedSelection> named = named_selections(parts);
+py::dict partition_paths(const Paths& paths, Arg<"parts", SelectionsByName> parts) {
   Partition partition;
   const std::vector<PathsPtr> made = run_job("partition", py::none(), [&](Job& job) {
-    partition = make_partition(paths, named, &job);
+    partition = make_partition(paths, *parts, &job);
     return split(paths, partition, job);
   });
   py::dict out;
@@ -96,37 +114,57 @@ py::dict partition_paths(const Paths& paths, const py::dict& parts) {
   return out;
 }
 
-PathsPtr paths_from_arrays(const py::array& hits, const py::array& offsets, const py::array& num_bounces,
-                           const py::array& diffuse, const py::array& weight, const py::array& stratum,
-                           const py::array& batch, const py::array& flags, const py::object& curved_cell,
-                           const py::object& jones, const Scene& scene, const Radar& radar, const TraceFrame& frame) {
+// [H] structured, as Paths.hits has them.
+struct HitRows {
+  using Value = std::vector<Hit>;
+  static constexpr auto type_name = py::detail::const_name("ArrayLike");
+  static Value from(py::handle value, const char* argument) {
+    constexpr const char* kRule = "must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it";
+    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
+    const auto given = py::reinterpret_borrow<py::array>(value);
+    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<Hit>())) {
+      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
+                           std::to_string(given.ndim()) + " dimensions");
+    }
+    const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(given);
+    return Value(rows.data(), rows.data() + rows.size());
+  }
+};
+
+// Rows of `size` numbers, of a flat vector.
+template <class Row, class T>
+std::vector<Row> rows_of(const std::vector<T>& values, size_t size) {
+  std::vector<Row> rows(values.size() / size);
+  std::copy(values.begin(), values.end(), rows.empty() ? nullptr : rows.front().data());
+  return rows;
+}
+
+using ComplexFloat = std::complex<float>;
+
+PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<int64_t, "[P]">> offsets,
+                           Arg<"num_bounces", VectorOf<uint8_t, "[P]">> num_bounces,
+                           Arg<"diffuse", VectorOf<uint64_t, "[P]">> diffuse,
+                           Arg<"weight", VectorOf<ComplexFloat, "[P]">> weight,
+                           Arg<"stratum", VectorOf<uint16_t, "[P]">> stratum, Arg<"batch", VectorOf<uint8_t, "[P]">> batch,
+                           Arg<"flags", VectorOf<uint32_t, "[P]">> flags,
+                           Arg<"curved_cell", Optional<VectorOf<float, "[P, 7]">>> curved_cell,
+                           Arg<"jones", Optional<VectorOf<ComplexFloat, "[P, 2, 2]">>> jones,
+                           Arg<"scene", Instance<std::shared_ptr<Scene>>> scene, Arg<"radar", Instance<Radar>> radar,
+                           Arg<"frame", Instance<TraceFrame>> frame) {
   auto paths = std::make_shared<Paths>();
-  if (hits.ndim() != 1 || !hits.dtype().equal(py::dtype::of<Hit>())) {
-    throw py::type_error("hits: must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it, got " +
-                         std::string(py::str(hits.dtype())) + " of " + std::to_string(hits.ndim()) + " dimensions");
-  }
-  const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(hits);
-  paths->hits = std::make_shared<const std::vector<Hit>>(rows.data(), rows.data() + rows.size());
-  paths->offsets = as_vector<int64_t>(offsets, "offsets", "[P]");
-  paths->num_bounces = as_vector<uint8_t>(num_bounces, "num_bounces", "[P]");
-  paths->diffuse = as_vector<uint64_t>(diffuse, "diffuse", "[P]");
-  paths->weight = as_vector<std::complex<float>>(weight, "weight", "[P]");
-  paths->stratum = as_vector<uint16_t>(stratum, "stratum", "[P]");
-  paths->batch = as_vector<uint8_t>(batch, "batch", "[P]");
-  paths->flags = as_vector<uint32_t>(flags, "flags", "[P]");
-  if (!curved_cell.is_none()) {
-    const std::vector<float> cells = as_vector<float>(curved_cell, "curved_cell", "[P, 7]");
-    paths->curved_cell.resize(cells.size() / 7);
-    std::copy(cells.begin(), cells.end(), paths->curved_cell.empty() ? nullptr : paths->curved_cell.front().data());
-  }
-  if (!jones.is_none()) {
-    const auto entries = as_vector<std::complex<float>>(jones, "jones", "[P, 2, 2]");
-    paths->jones.resize(entries.size() / 4);
-    std::copy(entries.begin(), entries.end(), paths->jones.empty() ? nullptr : paths->jones.front().data());
-  }
-  paths->scene = std::make_shared<const Scene>(scene);
-  paths->radar = radar;
-  paths->frame = frame;
+  paths->hits = std::make_shared<const std::vector<Hit>>(*hits);
+  paths->offsets = *offsets;
+  paths->num_bounces = *num_bounces;
+  paths->diffuse = *diffuse;
+  paths->weight = *weight;
+  paths->stratum = *stratum;
+  paths->batch = *batch;
+  paths->flags = *flags;
+  if (*curved_cell) paths->curved_cell = rows_of<decltype(paths->curved_cell)::value_type>(**curved_cell, 7);
+  if (*jones) paths->jones = rows_of<decltype(paths->jones)::value_type>(**jones, 4);
+  paths->scene = std::make_shared<const Scene>(**scene);
+  paths->radar = *radar;
+  paths->frame = *frame;
   run_job("check", py::none(), [&](Job&) { paths->validate(); });
   return paths;
 }
@@ -153,16 +191,78 @@ std::string paths_text(const Paths& self) {
   return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
 }
 
+void bind_series(PathsClass& type) {
+  define(type, "amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
+         py::arg("replay") = "material",
+         "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); "
+         "replay as in synthesize.");
+  define(type, "lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
+         py::arg("replay") = "material",
+         "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the "
+         "radar's frame; replay as in synthesize.");
+  define(type, "points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.");
+}
+
+void bind_parts(PathsClass& type) {
+  define(type, "select", &select_paths, py::arg("selection"),
+         "The paths that `selection` takes: a Selection, its text, or a mask bool [P] that is true where a path is taken.");
+  define(type, "_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
+         "The paths where a mask, bool [P], is true, with only the hits that they use.");
+  define(type, "partition", &partition_paths, py::arg("parts"),
+         "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".");
+}
+
+py::object save_paths(const py::object& self, const py::object& path, Arg<"min_power", Real> min_power) {
+  return in_package("frame_file", "save_paths")(self, path, py::arg("min_power") = *min_power);
+}
+
+py::object load_paths(const py::object& path) { return in_package("frame_file", "load_paths")(path); }
+
+void bind_exports(PathsClass& type) {
+  define(type, "save", &save_paths, py::arg("path"), py::arg("min_power") = 0.0,
+         R"(Writes the paths with their scene and radar to an HDF5 file.
+
+path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
+below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.)");
+  define_static(type, "load", &load_paths, py::arg("path"),
+                "Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.");
+  define_static(type, "from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
+                py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
+                py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(), py::arg("scene"),
+                py::arg("radar"), py::arg("frame"),
+                R"(Paths of arrays as the properties give them.
+
+hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
+[P, 2, 2] complex or None
+scene, radar, frame: what they belong to
+Raises ValueError where an index leads nowhere.)");
+  define(type, "to_dataframe", from_package("tables", "paths_table"),
+         R"(A table with a row for each path, as a pandas.DataFrame.
+
+Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
+D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
+objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
+at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
+Needs pandas, raises ModuleNotFoundError without it.)");
+  define(type, "to_xarray", from_package("xarray_maps", "paths_dataset"),
+         R"(The record as an xarray.Dataset, without a copy of its arrays.
+
+Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and
+power (W) at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
+attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)");
+  define(type, "_repr_html_", from_package("notebook", "paths_html"), "A table for notebooks.");
+}
+
 }  // namespace
 
 void bind_paths(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Hit, mesh_id, triangle_id, u, v);
-  py::class_<Paths, PathsPtr>(m, "Paths",
-                              R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
+  PathsClass type(m, "Paths",
+                  R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
 
 Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
-share hits; selections share all hits of their trace.)")
-      .def_property_readonly("num_paths", &Paths::num_paths, "P, their number")
+share hits; selections share all hits of their trace.)");
+  type.def_property_readonly("num_paths", &Paths::num_paths, "P, their number")
       .def_property_readonly("num_hits", &Paths::num_hits, "H, of all paths of the trace")
       .def_property_readonly("hits", &hits_of, "[H] structured: mesh_id, triangle_id, u, v")
       .def_property_readonly("mesh_id", hit_column(&Hit::mesh_id), "[H]")
@@ -192,64 +292,14 @@ share hits; selections share all hits of their trace.)")
                              "[P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the "
                              "length")
       .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
-      .def("amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
-           py::arg("replay") = "material",
-           "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); "
-           "replay as in synthesize.")
-      .def("lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
-           py::arg("replay") = "material",
-           "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the "
-           "radar's frame; replay as in synthesize.")
-      .def("points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.")
-      .def("select", &select_paths, py::arg("selection"),
-           "The paths that `selection`, a path expression or a Selection, takes.")
-      .def("select", &select_mask, py::arg("selection"), "The paths where `selection`, a mask bool [P], is true.")
-      .def("_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
-           "The paths where a mask, bool [P], is true, with only the hits that they use.")
-      .def(
-          "save",
-          [](const py::object& self, const py::object& path, double min_power) {
-            return in_package("frame_file", "save_paths")(self, path, py::arg("min_power") = min_power);
-          },
-          py::arg("path"), py::arg("min_power") = 0.0, R"(Writes the paths with their scene and radar to an HDF5 file.
-
-path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
-below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.)")
-      .def_static(
-          "load", [](const py::object& path) { return in_package("frame_file", "load_paths")(path); }, py::arg("path"),
-          "Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.")
       .def_property_readonly("effects", from_package("effects", "of_paths"),
                              "list of Effect: what the trace modelled, what not, and why")
-      .def("partition", &partition_paths, py::arg("parts"),
-           "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".")
-      .def_static("from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
-                  py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                  py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(), py::arg("scene"),
-                  py::arg("radar"), py::arg("frame"),
-                  R"(Paths of arrays as the properties give them.
-
-hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
-[P, 2, 2] complex or None
-scene, radar, frame: what they belong to
-Raises ValueError where an index leads nowhere.)")
       .def(py::pickle(&paths_state, &paths_of_state))
-      .def("to_dataframe", from_package("tables", "paths_table"),
-           R"(A table with a row for each path, as a pandas.DataFrame.
-
-Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
-D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
-objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
-at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
-Needs pandas, raises ModuleNotFoundError without it.)")
-      .def("to_xarray", from_package("xarray_maps", "paths_dataset"),
-           R"(The record as an xarray.Dataset, without a copy of its arrays.
-
-Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and
-power (W) at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
-attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)")
-      .def("_repr_html_", from_package("notebook", "paths_html"), "A table for notebooks.")
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
+  bind_series(type);
+  bind_parts(type);
+  bind_exports(type);
 }
 
 }  // namespace echopath::bindings

@@ -13,8 +13,6 @@
 #include "define.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
-#include "in_package.h"
-#include "keywords.h"
 #include "value.h"
 
 namespace echopath::bindings {

@@ -22,20 +22,24 @@
 namespace echopath::bindings {
 namespace {
 
-Node node(std::string name, int parent, const py::object& placement, std::shared_ptr<Motion> motion,
-          std::shared_ptr<Mesh> mesh, std::shared_ptr<Deformation> deformation, std::shared_ptr<Material> material,
-          std::string material_name, bool smooth, bool visible) {
+template <class T>
+using OrNone = Optional<Instance<std::shared_ptr<T>>>;
+
+Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<int>::max()>> parent,
+          Arg<"placement", Optional<Matrix>> placement, Arg<"motion", OrNone<Motion>> motion, Arg<"mesh", OrNone<Mesh>> mesh,
+          Arg<"deformation", OrNone<Deformation>> deformation, Arg<"material", OrNone<Material>> material,
+          Arg<"material_name", Text> material_name, Arg<"smooth", Flag> smooth, Arg<"visible", Flag> visible) {
   Node made;
-  made.name = std::move(name);
-  made.parent = parent;
-  if (!placement.is_none()) made.placement = as_transform(placement, "transform");
-  made.motion = std::move(motion);
-  made.mesh = std::move(mesh);
-  made.deformation = std::move(deformation);
-  made.material = std::move(material);
-  made.material_name = std::move(material_name);
-  made.smooth = smooth;
-  made.visible = visible;
+  made.name = *name;
+  made.parent = *parent;
+  if (*placement) made.placement = **placement;
+  made.motion = motion->value_or(nullptr);
+  made.mesh = mesh->value_or(nullptr);
+  made.deformation = deformation->value_or(nullptr);
+  made.material = material->value_or(nullptr);
+  made.material_name = *material_name;
+  made.smooth = *smooth;
+  made.visible = *visible;
   return made;
 }
 
@@ -201,12 +205,13 @@ std::string scene_text(const Scene& self) {
 }
 
 void bind_nodes(py::module_& m) {
-  py::class_<Node>(m, "Node", "A node of a scene; cannot be changed.")
-      .def(py::init(&node), py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
-           py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
-           py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
-           py::arg("visible") = true)
-      .def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
+  py::class_<Node> type(m, "Node", "A node of a scene; cannot be changed.");
+  define_init(type, &node, py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
+              py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
+              py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
+              py::arg("visible") = true);
+  define(type, "replace", &changed_node, "A copy with some fields changed: node.replace(visible=False).");
+  type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
       .def_property_readonly(
           "placement", [](const Node& self) { return to_numpy(self.placement); },
@@ -222,7 +227,6 @@ void bind_nodes(py::module_& m) {
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
       .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
       .def_readonly("visible", &Node::visible, "False: neither it nor what is below it takes part in anything")
-      .def("replace", &changed_node, "A copy with some fields changed: node.replace(visible=False).")
       .def(py::pickle([](const Node& self) { return node_fields(self); },
                       [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "echopath/sim/stream/signal_probe.h"
 
 namespace echopath::bindings {
@@ -54,14 +56,14 @@ py::array share_powers(const SignalProbe& self) {
 }  // namespace
 
 void bind_signal_probe(py::module_& m) {
-  py::class_<SignalProbe>(m, "SignalProbe",
-                          R"(Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
+  py::class_<SignalProbe> type(m, "SignalProbe",
+                               R"(Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
 
 A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each
 as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
-there.)")
-      .def(py::init([](uint64_t seed) { return SignalProbe{seed, 0, {}}; }), py::kw_only(), py::arg("seed") = 1)
-      .def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
+there.)");
+  define_init(type, [](Arg<"seed", Seed> seed) { return SignalProbe{*seed, 0, {}}; }, py::kw_only(), py::arg("seed") = 1);
+  type.def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
       .def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")
       .def_property_readonly("rx", column(&ProbedChirp::rx), "[N] index of the receiver")
       .def_property_readonly("chirp", column(&ProbedChirp::chirp), "[N] index of the chirp in the frame")

@@ -13,6 +13,7 @@
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
 #include "run_job.h"
+#include "warn.h"
 
 namespace echopath::bindings {
 namespace {
@@ -56,7 +57,7 @@ void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSetting
        << std::llround(seconds) << " s on this machine"
        << (settings.keyframes.retrace == Retrace::kNever ? "" : ", more with keyframes") << " for " << paths.num_paths()
        << " paths; 'interpolated' is quick, with phases to phase_tolerance";
-  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.str().c_str(), 2) != 0) throw py::error_already_set();
+  warn_caller(text.str());
 }
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,

@@ -4,8 +4,10 @@
 #include <sstream>
 #include <string>
 
+#include "argument.h"
 #include "array.h"
 #include "cube_array.h"
+#include "define.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "in_package.h"
 #include "run_job.h"
@@ -60,28 +62,28 @@ void bind_spectrum(py::module_& m) {
           "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
-      .def("to_xarray", from_package("xarray_maps", "range_doppler_array"),
-           R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
+      .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
+  define(bound, "to_xarray", from_package("xarray_maps", "range_doppler_array"),
+         R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
 Axes: tx, rx, velocity (m/s, receding positive) and range (m).
 
-Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)")
-      .def(
-          "plot",
-          [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
-             const std::string& title) {
-            return in_package("plots", "draw_range_doppler")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
-                                                             py::arg("vmax") = vmax, py::arg("title") = title);
-          },
-          py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
-          py::arg("title") = "Received power by range and radial velocity",
-          R"(Draws the map, the mean over the channels, cropped to where there is signal.
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
+  define(
+      bound, "plot",
+      [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
+         Arg<"title", Text> title) {
+        return in_package("plots", "draw_range_doppler")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
+                                                         py::arg("vmax") = vmax, py::arg("title") = *title);
+      },
+      py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
+      py::arg("title") = "Received power by range and radial velocity",
+      R"(Draws the map, the mean over the channels, cropped to where there is signal.
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-Returns the axes: range in m across, radial velocity in m/s up (receding positive).)")
-      .def("_repr_html_", from_package("notebook", "range_doppler_html"), "A table for notebooks.")
-      .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
+Returns the axes: range in m across, radial velocity in m/s up (receding positive).)");
+  define(bound, "_repr_html_", from_package("notebook", "range_doppler_html"), "A table for notebooks.");
   def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
                      field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),
                      field("range", &RangeDoppler::range), field("values", &RangeDoppler::values),

@@ -66,7 +66,8 @@ void bind_trace(py::module_& m) {
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
         py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
-  m.attr("MAX_RAYS") = kMaxRays;
+  m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
+  m.attr("MOST_RAYS") = kMostRays;
 }
 
 }  // namespace echopath::bindings

@@ -2,44 +2,75 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
 #include "choice.h"
+#include "define.h"
 #include "echopath/trace/record/paths.h"
 #include "travel.h"
 
 namespace echopath::bindings {
+namespace {
+
+using Tally = Whole<0, std::numeric_limits<int64_t>::max()>;
+using IndexOrNone = Whole<-1, std::numeric_limits<int>::max()>;  // -1: none
+
+Stratum stratum_of(Arg<"axis", Vector3> axis, Arg<"versine", Real> versine, Arg<"num_rays", Tally> num_rays,
+                   Arg<"ray_density", Number> ray_density, Arg<"name", Text> name, Arg<"across", Vector3> across,
+                   Arg<"half_azimuth", Real> half_azimuth, Arg<"low", Real> low, Arg<"high", Real> high,
+                   Arg<"object", IndexOrNone> object, Arg<"num_mirrors", Count> num_mirrors,
+                   Arg<"focus_of", IndexOrNone> focus_of) {
+  Stratum made;
+  made.axis = *axis;
+  made.versine = *versine;
+  made.across = *across;
+  made.half_azimuth = *half_azimuth;
+  made.low = *low;
+  made.high = *high;
+  made.object = *object;
+  made.num_mirrors = *num_mirrors;
+  made.focus_of = *focus_of;
+  made.num_rays = *num_rays;
+  made.ray_density = *ray_density;
+  made.name = *name;
+  return made;
+}
+
+TraceStatistics statistics_of(Arg<"num_rays", Tally> rays, Arg<"num_queries", Tally> queries, Arg<"num_hits", Tally> hits,
+                              Arg<"num_paths", Tally> recorded, Arg<"num_near_antenna", Tally> near,
+                              Arg<"num_grazing", Tally> grazing, Arg<"num_small_mirrors", Tally> small,
+                              Arg<"num_false_hits", Tally> false_hits, Arg<"num_unaimed", Tally> unaimed,
+                              Arg<"num_unfollowed_beams", Tally> unfollowed) {
+  return {*rays, *queries, *hits, *recorded, *near, *grazing, *small, *false_hits, *unaimed, *unfollowed};
+}
+
+TraceFrame frame_of(Arg<"start_time", Real> start_time, Arg<"trace_time", Real> trace_time,
+                    Arg<"transmitter", Vector3> transmitter, Arg<"receiver", Vector3> receiver,
+                    Arg<"strata", List<Instance<Stratum>>> strata, Arg<"seed", Seed> seed,
+                    Arg<"max_bounces", Count> max_bounces, Arg<"polarization", OneOf<kPolarization>> polarization,
+                    Arg<"footprint", OneOf<kFootprint>> footprint, Arg<"statistics", Instance<TraceStatistics>> statistics,
+                    Arg<"num_batches", Count> num_batches, Arg<"target_error_db", Number> target_error_db,
+                    Arg<"error_db", Number> error_db, Arg<"sampler", OneOf<kSampler>> sampler) {
+  return {*start_time, *trace_time, *transmitter, *receiver,    *strata,          *seed,    *max_bounces, *polarization,
+          *footprint,  *sampler,    *statistics,  *num_batches, *target_error_db, *error_db};
+}
+
+}  // namespace
 
 void bind_trace_frame(py::module_& m) {
   py::class_<Stratum> bound_stratum(
       m, "Stratum",
       "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), "
       "rays evenly over them.");
+  define_init(bound_stratum, &stratum_of, py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"),
+              py::arg("ray_density"), py::arg("name"), py::arg("across") = py::make_tuple(0.0, 0.0, 0.0),
+              py::arg("half_azimuth") = 0.0, py::arg("low") = 0.0, py::arg("high") = 0.0, py::arg("object") = -1,
+              py::arg("num_mirrors") = 0, py::arg("focus_of") = -1);
   bound_stratum
-      .def(py::init([](const py::object& axis, double versine, int64_t num_rays, double ray_density, std::string name,
-                       const py::object& across, double half_azimuth, double low, double high, int object, int num_mirrors,
-                       int focus_of) {
-             Stratum made;
-             made.axis = as_vec3(axis, "axis");
-             made.versine = versine;
-             made.across = as_vec3(across, "across");
-             made.half_azimuth = half_azimuth;
-             made.low = low;
-             made.high = high;
-             made.object = object;
-             made.num_mirrors = num_mirrors;
-             made.focus_of = focus_of;
-             made.num_rays = num_rays;
-             made.ray_density = ray_density;
-             made.name = std::move(name);
-             return made;
-           }),
-           py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"), py::arg("ray_density"), py::arg("name"),
-           py::arg("across") = py::make_tuple(0.0, 0.0, 0.0), py::arg("half_azimuth") = 0.0, py::arg("low") = 0.0,
-           py::arg("high") = 0.0, py::arg("object") = -1, py::arg("num_mirrors") = 0, py::arg("focus_of") = -1)
       .def_property_readonly(
           "axis", [](const Stratum& self) { return to_numpy(self.axis); }, "[3] unit, world axes")
       .def_readonly("versine", &Stratum::versine, "1 - cos of the half angle of a cone; 2 is the whole sphere")
@@ -68,16 +99,11 @@ void bind_trace_frame(py::module_& m) {
              field("num_mirrors", &Stratum::num_mirrors), field("focus_of", &Stratum::focus_of));
 
   py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics", "What a trace did.");
-  bound_statistics
-      .def(py::init([](int64_t rays, int64_t queries, int64_t hits, int64_t recorded, int64_t near, int64_t grazing,
-                       int64_t small, int64_t false_hits, int64_t unaimed, int64_t unfollowed) {
-             return TraceStatistics{rays, queries, hits, recorded, near, grazing, small, false_hits, unaimed, unfollowed};
-           }),
-           py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0, py::arg("num_hits") = 0,
-           py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
-           py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
-           py::arg("num_unfollowed_beams") = 0)
-      .def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
+  define_init(bound_statistics, &statistics_of, py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0,
+              py::arg("num_hits") = 0, py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
+              py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
+              py::arg("num_unfollowed_beams") = 0);
+  bound_statistics.def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
       .def_readonly("num_paths", &TraceStatistics::num_paths, "recorded; selections have fewer")
@@ -100,31 +126,11 @@ void bind_trace_frame(py::module_& m) {
              field("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams));
 
   py::class_<TraceFrame> bound_frame(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.");
-  bound_frame
-      .def(py::init([](double start_time, double trace_time, const py::object& transmitter, const py::object& receiver,
-                       std::vector<Stratum> strata, uint64_t seed, int max_bounces, const std::string& polarization,
-                       const std::string& footprint, const TraceStatistics& statistics, int num_batches,
-                       double target_error_db, double error_db, const std::string& sampler) {
-             return TraceFrame{start_time,
-                               trace_time,
-                               as_vec3(transmitter, "transmitter"),
-                               as_vec3(receiver, "receiver"),
-                               std::move(strata),
-                               seed,
-                               max_bounces,
-                               kPolarization.value_of(polarization),
-                               kFootprint.value_of(footprint),
-                               kSampler.value_of(sampler),
-                               statistics,
-                               num_batches,
-                               target_error_db,
-                               error_db};
-           }),
-           py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"), py::arg("receiver"),
-           py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"), py::arg("footprint"),
-           py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0, py::arg("error_db") = 0.0,
-           py::arg("sampler") = "lattice")
-      .def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
+  define_init(bound_frame, &frame_of, py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"),
+              py::arg("receiver"), py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"),
+              py::arg("footprint"), py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0,
+              py::arg("error_db") = 0.0, py::arg("sampler") = "lattice");
+  bound_frame.def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly(
           "transmitter", [](const TraceFrame& self) { return to_numpy(self.transmitter); },

@@ -5,8 +5,10 @@
 #include <sstream>
 #include <string>
 
+#include "argument.h"
 #include "array.h"
 #include "choice.h"
+#include "define.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/validity.h"
 #include "in_package.h"
@@ -178,9 +180,9 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
       .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
                              "[P] largest of a cosine, linear")
-      .def("_repr_html_", from_package("notebook", "validity_html"), "A table for notebooks.")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
+  define(bound, "_repr_html_", from_package("notebook", "validity_html"), "A table for notebooks.");
   def_validity_travel(bound);
 }
 

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "argument.h"
 #include "array.h"
+#include "define.h"
 #include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/array/virtual_array.h"
 
@@ -59,8 +61,8 @@ py::array gaps_of(const VirtualArray& array) {
   return numpy_take(std::move(index), {count, 2});
 }
 
-py::tuple default_axes(const VirtualArray& array, double largest_step) {
-  const AngleGrid grid = default_angles(array, largest_step);
+py::tuple default_axes(const VirtualArray& array, Arg<"largest_step", Real> largest_step) {
+  const AngleGrid grid = default_angles(array, *largest_step);
   return py::make_tuple(to_numpy(grid.azimuth), to_numpy(grid.elevation));
 }
 
@@ -84,11 +86,11 @@ std::string text_of(const VirtualArray& array) {
 }  // namespace
 
 void bind_virtual_array(py::module_& m) {
-  py::class_<VirtualArray>(m, "VirtualArray", R"(Where the channels of a radar lie as one array; made by virtual_array.
+  py::class_<VirtualArray> type(m, "VirtualArray", R"(Where the channels of a radar lie as one array; made by virtual_array.
 
 Elements are ordered by row and column of their grid. A grid's rows count up and its columns count up to the left, as far
-as the array's plane allows.)")
-      .def_readonly("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar")
+as the array's plane allows.)");
+  type.def_readonly("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar")
       .def_readonly("num_receivers", &VirtualArray::num_receivers, "receivers of the radar")
       .def_readonly("wavelength", &VirtualArray::wavelength, "m, at the centre frequency")
       .def_property_readonly("positions", &positions_of, "[tx, rx, 3] m, sums of the antennas' positions")
@@ -106,12 +108,12 @@ as the array's plane allows.)")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
       .def_property_readonly(
           "centre", [](const VirtualArray& self) { return to_numpy(self.centre()); }, "[3] m, mean of the elements")
-      .def("default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
-           R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
+      .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
+  define(type, "default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
+         R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
 Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
-quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.)")
-      .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
+quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.)");
   m.def("virtual_array", &virtual_array, py::arg("radar"), "What ep.virtual_array calls.");
 }
 

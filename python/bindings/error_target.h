@@ -7,6 +7,7 @@
 #include <string>
 
 #include "echopath/sim/rays/trace_to_error.h"
+#include "warn.h"
 
 namespace echopath::bindings {
 
@@ -21,11 +22,10 @@ inline Effort toward(const ErrorTarget& target, std::optional<int64_t> num_rays,
   return {num_rays.value_or(std::min(kFirstRays, target.max_rays)), batches, target};
 }
 
-// A target that was not met is said aloud, and may be made an error. Called by what Python wraps once.
+// A target that was not met is said aloud, and may be made an error.
 inline void warn_of_missed_target(const std::string& subject, double error_db, double target_error_db) {
-  const std::string text = subject + " was reached at an error of " + std::to_string(error_db) + " dB, target_error_db is " +
-                           std::to_string(target_error_db);
-  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 2) != 0) throw pybind11::error_already_set();
+  warn_caller(subject + " was reached at an error of " + std::to_string(error_db) + " dB, target_error_db is " +
+              std::to_string(target_error_db));
 }
 
 }  // namespace echopath::bindings

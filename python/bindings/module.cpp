@@ -3,7 +3,6 @@
 #include <pybind11/pybind11.h>
 
 #include "errors.h"
-#include "keyword_text.h"
 #include "leaving.h"
 
 namespace echopath::bindings {
@@ -23,5 +22,4 @@ PYBIND11_MODULE(_core, m) {
 #define X(module) bindings::bind_##module(m);
   ECHOPATH_BIND_MODULES
 #undef X
-  bindings::refuse_keywords_without_text(m);
 }

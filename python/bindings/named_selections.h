@@ -1,5 +1,5 @@
 #pragma once
-// Selections by name, as Python hands them over.
+// Selections as Python hands them over, alone and by name.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "argument.h"
 #include "echopath/label/expressions/selection.h"
 #include "echopath/label/partition.h"
 
@@ -21,9 +22,31 @@ inline std::vector<NamedSelection> named_selections(const SelectionPairs& pairs)
   return named;
 }
 
+// A Selection, or its text.
+struct SelectionOrText {
+  using Value = Selection;
+  static constexpr auto type_name = py::detail::make_caster<Selection>::name + py::detail::const_name(" | str");
+  static Selection from(py::handle value, const char* argument) {
+    if (py::isinstance<Selection>(value)) return value.cast<Selection>();
+    if (!PyUnicode_Check(value.ptr())) refuse_type(argument, "must be a Selection or its text", value);
+    return Selection(detail::checked_text(value, argument));
+  }
+};
+
 // {name: selection}
-inline std::vector<NamedSelection> named_selections(const pybind11::dict& parts) {
-  return named_selections(pybind11::list(parts.attr("items")()).cast<SelectionPairs>());
-}
+struct SelectionsByName {
+  using Value = std::vector<NamedSelection>;
+  static constexpr auto type_name =
+      py::detail::const_name("dict[str, ") + SelectionOrText::type_name + py::detail::const_name("]");
+  static Value from(py::handle value, const char* argument) {
+    if (!PyDict_Check(value.ptr())) refuse_type(argument, "must be a dict {name: selection}", value);
+    Value named;
+    for (const auto& [name, selection] : py::reinterpret_borrow<py::dict>(value)) {
+      const std::string place = std::string(argument) + "[" + shown(name) + "]";
+      named.push_back({detail::checked_text(name, argument), SelectionOrText::from(selection, place.c_str())});
+    }
+    return named;
+  }
+};
 
 }  // namespace echopath::bindings

@@ -22,18 +22,17 @@ namespace {
 
 constexpr int64_t kHitsPerTask = 1 << 19;
 
-size_t antenna_index(const py::handle& value, const char* argument, size_t count) {
-  const auto index = *checked_array<int64_t>(value, argument, "[]").data();
+size_t antenna_index(int64_t index, const char* argument, size_t count) {
   if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
   throw std::out_of_range(std::string(argument) + ": must lie in 0 to " + std::to_string(count - 1) + ", got " +
                           std::to_string(index));
 }
 
 // The antenna of that index, or an isotropic one at a position [3] in m in the radar's frame.
-Antenna antenna_of(const py::object& value, const char* argument, const std::vector<Antenna>& antennas) {
-  if (py::isinstance<py::int_>(value)) return antennas[antenna_index(value, argument, antennas.size())];
+Antenna antenna_of(const AntennaOrPosition::Value& value, const char* argument, const std::vector<Antenna>& antennas) {
+  if (const auto* index = std::get_if<int64_t>(&value)) return antennas[antenna_index(*index, argument, antennas.size())];
   Antenna made;
-  made.position = as_vec3(value, argument);
+  made.position = std::get<Vec3>(value);
   return made;
 }
 
@@ -72,13 +71,21 @@ Shape series_shape(const Paths& paths, const std::vector<double>& times) {
 
 }  // namespace
 
-py::array amplitudes_of(const Paths& paths, const py::object& times, const py::object& tx, const py::object& rx,
-                        const std::string& replay) {
-  const SpecularPoints specular = kSpecularPoints.value_of(replay);
-  const std::vector<double> at = as_vector<double>(times, "times");
-  const Antenna transmitter = paths.radar.transmitters[antenna_index(tx, "tx", paths.radar.transmitters.size())];
-  const Antenna receiver = paths.radar.receivers[antenna_index(rx, "rx", paths.radar.receivers.size())];
-  return numpy_take(evaluate_one_channel(paths, at, transmitter, receiver, specular).amplitudes, series_shape(paths, at));
+AntennaOrPosition::Value AntennaOrPosition::from(py::handle value, const char* argument) {
+  const bool is_scalar = PyIndex_Check(value.ptr()) && !PySequence_Check(value.ptr());
+  if (is_scalar) return Index::from(value, argument);
+  if (!PySequence_Check(value.ptr())) {
+    refuse_type(argument, "must be the index of an antenna or a position [3] in m in the radar's frame", value);
+  }
+  return as_vec3(value, argument);
+}
+
+py::array amplitudes_of(const Paths& paths, Arg<"times", VectorOf<double>> times, Arg<"tx", Index> tx, Arg<"rx", Index> rx,
+                        Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  const Antenna transmitter = paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())];
+  const Antenna receiver = paths.radar.receivers[antenna_index(*rx, "rx", paths.radar.receivers.size())];
+  return numpy_take(evaluate_one_channel(paths, *times, transmitter, receiver, *replay).amplitudes,
+                    series_shape(paths, *times));
 }
 
 py::array amplitude_of(const Paths& paths) {
@@ -91,18 +98,17 @@ py::array path_power_of(const Paths& paths) {
   return numpy_take(run_job("replay", py::none(), [&](Job& job) { return path_power(paths, &job); }));
 }
 
-py::array lengths_of(const Paths& paths, const py::object& times, const py::object& transmitter, const py::object& receiver,
-                     const std::string& replay) {
-  const SpecularPoints specular = kSpecularPoints.value_of(replay);
-  const std::vector<double> at = as_vector<double>(times, "times");
-  const Antenna from = antenna_of(transmitter, "transmitter", paths.radar.transmitters);
-  const Antenna to = antenna_of(receiver, "receiver", paths.radar.receivers);
-  return numpy_take(evaluate_one_channel(paths, at, from, to, specular).lengths, series_shape(paths, at));
+py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
+                     Arg<"transmitter", AntennaOrPosition> transmitter, Arg<"receiver", AntennaOrPosition> receiver,
+                     Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  const Antenna from = antenna_of(*transmitter, "transmitter", paths.radar.transmitters);
+  const Antenna to = antenna_of(*receiver, "receiver", paths.radar.receivers);
+  return numpy_take(evaluate_one_channel(paths, *times, from, to, *replay).lengths, series_shape(paths, *times));
 }
 
-py::array points_of(const Paths& paths, double time) {
+py::array points_of(const Paths& paths, Arg<"time", Real> time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
-    const PosedScene pose(*paths.scene, time);
+    const PosedScene pose(*paths.scene, *time);
     std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
     parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask,
                  [&](int64_t block) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "define.h"
 #include "shown.h"
 
 namespace echopath::bindings {
@@ -63,8 +64,8 @@ void define_replace(pybind11::class_<Value, Options...>& type, pybind11::dict (*
                     pybind11::object (*maker_for)(const pybind11::dict&) = &detail::constructor_for<Value>) {
   namespace py = pybind11;
   using Held = detail::Held<Value, typename py::class_<Value, Options...>::holder_type>;
-  type.def(
-      "replace",
+  define(
+      type, "replace",
       [keywords_of, maker_for](const Value& self, const py::kwargs& changes) {
         const py::dict keywords = keywords_of(self);
         return detail::remade(maker_for(keywords), keywords, changes).template cast<Held>();

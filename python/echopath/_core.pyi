@@ -14,7 +14,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MAX_RAYS', 'Material', 'Mesh', 'MeshTable', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -403,7 +403,7 @@ class Node:
     """
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, name: str, parent: int = -1, placement: typing.Any = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False, visible: bool = True) -> None:
+    def __init__(self, *, name: str, parent: int = -1, placement: ArrayLike | None = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False, visible: bool = True) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1547,8 +1547,9 @@ class Selection:
         ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
         path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
         diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
-    selection: instead, another one to copy. Text stands wherever a Selection is asked for. Raises ValueError with a caret under
-    the fault; matching raises one when a glob takes no mesh of the scene.
+        Instead, another Selection to copy.
+    Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a glob
+    takes no mesh of the scene.
     """
     def __and__(self, arg0: Selection) -> Selection:
         ...
@@ -1560,11 +1561,7 @@ class Selection:
         ...
     def __hash__(self) -> int:
         ...
-    @typing.overload
-    def __init__(self, text: str) -> None:
-        ...
-    @typing.overload
-    def __init__(self, selection: Selection) -> None:
+    def __init__(self, text: Selection | str) -> None:
         ...
     def __invert__(self) -> Selection:
         ...
@@ -1584,7 +1581,7 @@ class Selection:
         """
         Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.
         """
-    def matches(self, paths: typing.Any) -> numpy.typing.NDArray[numpy.bool]:
+    def matches(self, paths: Paths) -> numpy.typing.NDArray[numpy.bool]:
         """
         Bool [P]: which of the paths are selected.
         """
@@ -1646,7 +1643,7 @@ class Stratum:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, axis: typing.Any, versine: float, num_rays: int, ray_density: float, name: str, across: typing.Any = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
+    def __init__(self, *, axis: ArrayLike, versine: float, num_rays: int, ray_density: float, name: str, across: ArrayLike = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1789,7 +1786,7 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: typing.Any, receiver: typing.Any, strata: collections.abc.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice') -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice') -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -1871,7 +1868,7 @@ class Paths:
     share hits; selections share all hits of their trace.
     """
     @staticmethod
-    def from_arrays(*, hits: numpy.ndarray[typing.Any, typing.Any], offsets: numpy.ndarray[typing.Any, typing.Any], num_bounces: numpy.ndarray[typing.Any, typing.Any], diffuse: numpy.ndarray[typing.Any, typing.Any], weight: numpy.ndarray[typing.Any, typing.Any], stratum: numpy.ndarray[typing.Any, typing.Any], batch: numpy.ndarray[typing.Any, typing.Any], flags: numpy.ndarray[typing.Any, typing.Any], curved_cell: typing.Any = None, jones: typing.Any = None, scene: Scene, radar: Radar, frame: TraceFrame) -> Paths:
+    def from_arrays(*, hits: ArrayLike, offsets: ArrayLike, num_bounces: ArrayLike, diffuse: ArrayLike, weight: ArrayLike, stratum: ArrayLike, batch: ArrayLike, flags: ArrayLike, curved_cell: ArrayLike | None = None, jones: ArrayLike | None = None, scene: Scene, radar: Radar, frame: TraceFrame) -> Paths:
         """
         Paths of arrays as the properties give them.
 
@@ -1897,19 +1894,19 @@ class Paths:
         """
         A table for notebooks.
         """
-    def _select_with_own_hits(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
+    def _select_with_own_hits(self, selection: ArrayLike) -> Paths:
         """
         The paths where a mask, bool [P], is true, with only the hits that they use.
         """
-    def amplitudes(self, times: typing.Any, tx: typing.Any = 0, rx: typing.Any = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+    def amplitudes(self, times: ArrayLike, tx: int = 0, rx: int = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
         """
         Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); replay as in synthesize.
         """
-    def lengths(self, times: typing.Any, transmitter: typing.Any = 0, receiver: typing.Any = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+    def lengths(self, times: ArrayLike, transmitter: int | ArrayLike = 0, receiver: int | ArrayLike = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
         """
         Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame; replay as in synthesize.
         """
-    def partition(self, parts: dict[typing.Any, typing.Any]) -> dict[typing.Any, typing.Any]:
+    def partition(self, parts: dict[str, Selection | str]) -> dict[typing.Any, typing.Any]:
         """
         {name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is "other".
         """
@@ -1924,15 +1921,9 @@ class Paths:
         path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
         below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
         """
-    @typing.overload
-    def select(self, selection: Selection) -> Paths:
+    def select(self, selection: Selection | str | ArrayLike) -> Paths:
         """
-        The paths that `selection`, a path expression or a Selection, takes.
-        """
-    @typing.overload
-    def select(self, selection: numpy.ndarray[typing.Any, typing.Any]) -> Paths:
-        """
-        The paths where `selection`, a mask bool [P], is true.
+        The paths that `selection` takes: a Selection, its text, or a mask bool [P] that is true where a path is taken.
         """
     def to_dataframe(self) -> typing.Any:
         """
@@ -2492,7 +2483,7 @@ class Family:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, object: str, ghost_type: int, order: int, via: collections.abc.Sequence[str]) -> None:
+    def __init__(self, object: str, ghost_type: int, order: int, via: typing.Sequence[str]) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -2899,7 +2890,8 @@ def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray
     Samples [n] of a window: cosines periodic; "chebyshev" symmetric, sidelobes `sidelobe_db` dB down.
     """
 AMPLITUDE_TOLERANCE: float = 0.0001
-MAX_RAYS: int = 16777216
+DEFAULT_MAX_RAYS: int = 16777216
+MOST_RAYS: int = 10000000000
 PHASE_TOLERANCE: float = 1e-05
 __version__: str = '0.1.0'
 boltzmann: float = 1.380649e-23

@@ -28,7 +28,7 @@ Retrace = Literal["never", "invalid", "always"]
 Plane = Literal["range_doppler", "range_azimuth"]
 
 MOST_BOUNCES = MOST_BATCHES = 64
-MOST_RAYS = 10_000_000_000  # as the core has it
+MOST_RAYS: int = _core.MOST_RAYS
 Kind = TypeVar("Kind", bound="Settings")
 
 
@@ -79,7 +79,7 @@ class TraceSettings(Settings):
     sampler: Sampler = "lattice"
     batches: int | None = None
     target_error_db: float | None = None
-    max_rays: int | float = _core.MAX_RAYS
+    max_rays: int | float = _core.DEFAULT_MAX_RAYS
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "num_rays": optional(count(1, MOST_RAYS)), "max_bounces": count(1, MOST_BOUNCES), "seed": seed_rule,

@@ -423,5 +423,5 @@ def test_a_map_that_is_not_finite_is_refused():
     radar = radar_with(receivers=1)
     cube = np.array(ep.add_noise(np.zeros((1, 1, 64, 256)), radar, seed=3))
     cube[0, 0, 5, 7] = np.nan
-    with pytest.raises(ValueError, match="spectrum: must have finite values, power, got nan"):
+    with pytest.raises(ValueError, match="spectrum: must have values whose power is finite, got nan"):
         ep.detect(ep.range_doppler(cube, radar), radar)

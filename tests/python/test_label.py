@@ -172,5 +172,5 @@ def test_selections_that_would_take_for_ever_are_refused():
 
 
 def test_text_that_is_no_unicode_is_refused():
-    with pytest.raises(ValueError, match="text: must be text without lone surrogates, got .*ud800"):
+    with pytest.raises(ValueError, match="text: must be text that UTF-8 can hold, without lone surrogates, got .*ud800"):
         ep.Selection("T '\ud800' R")

@@ -1,5 +1,6 @@
 """Comments of the C++ sources: files that they name exist, and no line is longer than what clang-format holds the code to."""
 import re
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -43,3 +44,52 @@ def test_each_test_file_has_a_namespace_of_its_own():
     wrong = [path.relative_to(ROOT).as_posix() for path in tests
              if f"namespace echopath::{path.stem} {{\n" not in path.read_text(encoding="utf-8")]
     assert len(tests) > 90 and not wrong
+
+
+UNNAMED = re.compile(r"^namespace \{\n(.*?)^\}  // namespace\n", re.M | re.S)
+CLASS = re.compile(r"^(?:struct|class|enum class|enum|union) (\w+)(?: final)?(?: : [^;{]*)? \{|^using (\w+) =", re.M)
+FUNCTION = re.compile(r"^(?!using|struct|class|enum|template|namespace|return|static_assert)(?=\w)[\w:<>,&* ]*?[ &*>]"
+                      r"(\w+)\([^;={}]*\)[^;={}()]* \{", re.M)
+CONSTANT = re.compile(r"^(?:inline |static )*(?:constexpr|const) [\w:<>,&* ]+? (\w+)(?:\[\w*\])* ?[={]([^;]*);", re.M)
+
+
+def own_names(text: str) -> set[str]:
+    """Constants, functions and classes that a file defines in unnamed namespaces."""
+    names: set[str] = set()
+    for body in UNNAMED.findall(text):
+        names |= {name for pair in CLASS.findall(body) for name in pair if name} | set(FUNCTION.findall(body))
+        for first, rest in CONSTANT.findall(body):
+            names |= {first, *re.findall(r", (k[A-Z]\w*)(?:\[\w*\])* =", rest)}
+    return names
+
+
+def test_own_names_are_found():
+    text = """namespace {
+constexpr int kA = 1, kB = 2;
+const std::vector<int> kTable = {1, 2};
+struct Part : Base {
+  void member() {}
+};
+using Row = std::vector<double>;
+std::vector<int> of(const Part& part,
+                    int size) {
+  return part.get(size);
+}
+}  // namespace
+int outside(int value) { return value; }
+"""
+    assert own_names(text) == {"kA", "kB", "kTable", "Part", "Row", "of"}
+
+
+@pytest.mark.skipif(not SOURCES, reason="the sources are not there")
+def test_names_of_unnamed_namespaces_are_unique_within_a_module():
+    """Files of a module are compiled as one: what they name for themselves must not meet."""
+    homes, total = defaultdict(list), 0
+    for path in SOURCES:
+        parts = path.relative_to(ROOT).parts
+        if parts[:2] == ("cpp", "echopath") and len(parts) > 3 and path.suffix == ".cpp":
+            names = own_names(path.read_text(encoding="utf-8"))
+            total += len(names)
+            for name in names:
+                homes[parts[2], name].append("/".join(parts[3:]))
+    assert total > 800 and not {key: files for key, files in homes.items() if len(files) > 1}

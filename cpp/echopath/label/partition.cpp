@@ -5,6 +5,7 @@
 #include <set>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/quoted.h"
 #include "echopath/base/simd.h"
 
 namespace echopath {
@@ -54,8 +55,7 @@ void check_part_names(const std::vector<NamedSelection>& parts) {
   std::set<std::string> names;
   for (const NamedSelection& part : parts) {
     require(!part.name.empty(), "parts", "must have non-empty names", "an empty one");
-    require(part.name.find('\0') == std::string::npos, "parts", "must have names free of the sign NUL, characters",
-            part.name.size());
+    require(part.name.find('\0') == std::string::npos, "parts", "must have names free of the sign NUL", quoted(part.name));
     require(part.name != "other", "parts", "must not use the name of the rest", "other");
     require(names.insert(part.name).second, "parts", "must have names that differ", part.name + " twice");
   }

@@ -34,7 +34,7 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
 
 // Returns the second derivatives of `samples` at the knots, in the same type.
 template <class Value>
-std::vector<Value> curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
+std::vector<Value> key_curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
   if (samples.empty() || !knots.has_curvature()) return {};
   std::vector<Value> result(samples.size());
   std::vector<const double*> rows;
@@ -97,8 +97,8 @@ KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> tran
           "neither");
   check_translations(translations, knots.times().size());
   rotations = continuous(std::move(rotations), knots.times().size());
-  std::vector<Vec3> translation_curvature = curvatures(knots, translations, 3);
-  std::vector<Quaternion> rotation_curvature = curvatures(knots, rotations, 4);
+  std::vector<Vec3> translation_curvature = key_curvatures(knots, translations, 3);
+  std::vector<Quaternion> rotation_curvature = key_curvatures(knots, rotations, 4);
   data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(translations), std::move(translation_curvature),
                                             std::move(rotations), std::move(rotation_curvature)});
 }

@@ -15,11 +15,6 @@ constexpr double kSumTolerance = 1e-4;
 // A sum nearer to 1 than this is left alone, so that saved weights keep their bits.
 constexpr double kSumRounding = 1e-13;
 
-struct Influence {
-  uint32_t joint;
-  double weight;
-};
-
 void check_joint(const Joint& joint, size_t index, std::set<std::string>& names) {
   require(!joint.name.empty(), "joints", "must have names; joint", index);
   require(names.insert(joint.name).second, "joints", "must have names of their own", "'" + joint.name + "' twice");
@@ -58,6 +53,10 @@ void check_shapes(const std::vector<Vec3>& vertices, const SkinWeights& weights)
 }  // namespace
 
 struct Skin::Data {
+  struct Influence {
+    uint32_t joint;
+    double weight;
+  };
   std::vector<Vec3> vertices;
   std::vector<Joint> joints;
   std::vector<uint32_t> first;        // [V + 1] into influences

@@ -19,7 +19,7 @@ void check_frames(const Frames& frames, size_t num_times) {
   }
 }
 
-Frames curvatures(const SplineKnots& knots, const Frames& frames) {
+Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
   if (!knots.has_curvature()) return {};
   Frames result(frames.size());
   std::vector<const double*> rows;
@@ -49,7 +49,7 @@ struct VertexSequence::Data {
 VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Interpolation interpolation) {
   SplineKnots knots(std::move(times), interpolation);
   check_frames(vertices, knots.times().size());
-  Frames curvature = curvatures(knots, vertices);
+  Frames curvature = frame_curvatures(knots, vertices);
   data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(curvature)});
 }
 

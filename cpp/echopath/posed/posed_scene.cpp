@@ -47,7 +47,11 @@ void PosedScene::place_meshes() {
   require_time(time_, "time");
   for (const Transform& world_from_mesh : world_from_meshes(*scene_, time_)) {
     const std::string& name = scene_->node_of(num_meshes()).name;
-    require(world_from_mesh.linear().allFinite(), "scene", "motions must turn by finite angles, time", time_);
+    if (!world_from_mesh.linear().allFinite()) {
+      std::ostringstream value;
+      value << "one that is not finite at " << time_ << " s";
+      require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles", value.str());
+    }
     require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
     linear_.push_back(world_from_mesh.linear());
     normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/quoted.h"
 
 namespace echopath {
 namespace {
@@ -13,9 +14,9 @@ void check_name(const std::string& name) {
   require(!name.empty(), "name", "must not be empty", "''");
   require(name.find_first_of("/*?'\"") == std::string::npos, "name", "must be free of / * ? and quotes", name);
   // These characters join names into keys (label/objects/families.h, label/grouping.h).
-  require(name.find_first_of("\x1e\x1f") == std::string::npos, "name", "must be free of the signs 0x1e and 0x1f", name);
-  require(name.find('\0') == std::string::npos, "name", "must be free of the sign NUL, at which files cut it, characters",
-          name.size());
+  require(name.find_first_of("\x1e\x1f") == std::string::npos, "name", "must be free of the signs 0x1e and 0x1f",
+          quoted(name));
+  require(name.find('\0') == std::string::npos, "name", "must be free of the sign NUL, at which files cut it", quoted(name));
   const std::string blanks = " \t\r\n\v\f";
   const bool bare = blanks.find(name.front()) == std::string::npos && blanks.find(name.back()) == std::string::npos;
   require(bare, "name", "must not begin or end with white space", "'" + name + "'");

@@ -13,7 +13,6 @@
 namespace echopath {
 namespace {
 
-constexpr int kMaxZeroPad = 64;
 constexpr int kColumnsPerTask = 8;  // neighbouring range bins share cache lines
 
 struct Taper {

@@ -10,14 +10,16 @@
 
 namespace echopath {
 
+inline constexpr int kMaxZeroPad = 64;  // of all transforms
+
 struct RangeDoppler {
   int num_transmitters = 0, num_receivers = 0;
   std::vector<double> velocity;              // [V] m/s, ascending, receding positive
   std::vector<double> range;                 // [R] m, ascending from 0
   std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |peak|^2 is received power
   Window window;                             // on both axes
-  int zero_pad = 1;
-  bool is_tdm_compensated = false;  // whether the phase between TDM slots has been taken out
+  int zero_pad = 1;                          // 1 to kMaxZeroPad
+  bool is_tdm_compensated = false;           // whether the phase between TDM slots has been taken out
 };
 
 // Returns the range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for

@@ -10,10 +10,10 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kPathsPerBlock = 2048;
+constexpr int64_t kPathsRenewedTogether = 2048;
 constexpr double kStaysPut = 1e-3;   // rad: points of reflection that change the length by less keep their hits
 constexpr double kConverged = 1e-6;  // rad, of the length that the next Newton step would change
-constexpr int kMaxSteps = 12;        // they converge quadratically; what needs more is at a caustic
+constexpr int kMaxNewtonSteps = 12;  // they converge quadratically; what needs more is at a caustic
 
 enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
 
@@ -81,7 +81,7 @@ class Renewer {
 
   // Takes Newton steps from the recorded points of reflection to Fermat's.
   Outcome find_reflections(const LocalPath& path, Scratch& scratch) const {
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < kMaxNewtonSteps; ++step) {
       if (!scratch.slide.solve(path, scratch.posed.data(), start_of(path))) return Outcome::kLost;
       const double phase = wavenumber_ * std::abs(scratch.slide.excess());
       if (phase < (step == 0 ? kStaysPut : kConverged)) return step == 0 ? Outcome::kKept : Outcome::kMoved;
@@ -171,12 +171,12 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
 
 std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
-  const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsPerBlock - 1) / kPathsPerBlock;
+  const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsRenewedTogether - 1) / kPathsRenewedTogether;
   std::vector<BlockOutcome> blocks(static_cast<size_t>(num_blocks));
   if (job) job->start(num_blocks);
   parallel_for(num_blocks, [&](int64_t i) {
-    const int64_t begin = i * kPathsPerBlock;
-    std::vector<int64_t> indices(static_cast<size_t>(std::min(kPathsPerBlock, num_paths - begin)));
+    const int64_t begin = i * kPathsRenewedTogether;
+    std::vector<int64_t> indices(static_cast<size_t>(std::min(kPathsRenewedTogether, num_paths - begin)));
     std::iota(indices.begin(), indices.end(), begin);
     blocks[static_cast<size_t>(i)] = renewer.renew_block(indices);
   }, job);

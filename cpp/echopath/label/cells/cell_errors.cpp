@@ -14,7 +14,7 @@ namespace {
 constexpr int64_t kCellsPerErrorTask = 1 << 11;
 constexpr double kStandardErrorsOfLead = 2.0;
 
-void check(const std::vector<BatchPowers>& parts, int num_batches, size_t num_cells) {
+void check_batches(const std::vector<BatchPowers>& parts, int num_batches, size_t num_cells) {
   require(!parts.empty(), "parts", "must be one or more", "none");
   require(num_batches >= 2, "num_batches", "must be at least 2", num_batches);
   const size_t size = num_cells * static_cast<size_t>(num_batches);
@@ -132,7 +132,7 @@ class Cell {
 ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches, std::span<const int16_t> dominant,
                          Job* job) {
   const size_t num_cells = dominant.size(), size = parts.size() * num_cells;
-  check(parts, num_batches, num_cells);
+  check_batches(parts, num_batches, num_cells);
   ShareErrors errors{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size),
                      std::vector<double>(size), std::vector<uint8_t>(num_cells)};
   const auto label = [&](size_t i) {

@@ -102,7 +102,8 @@ void set_rows(LabelRegion& region, const std::vector<int64_t>& occupied, const M
   }
 }
 
-void check(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels, const MapShape& shape) {
+void check_label_map(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,
+                     const MapShape& shape) {
   const std::string cells = "must have one value for each of " + std::to_string(shape.size()) + " cells";
   require(static_cast<int64_t>(label.size()) == shape.size(), "label", cells, label.size());
   require(static_cast<int64_t>(power.size()) == num_labels * shape.size(), "power", cells + " and label", power.size());
@@ -113,7 +114,7 @@ void check(std::span<const int16_t> label, std::span<const double> power, int64_
 
 std::vector<LabelRegion> label_regions(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,
                                        const MapShape& shape) {
-  check(label, power, num_labels, shape);
+  check_label_map(label, power, num_labels, shape);
   std::vector<LabelRegion> regions(static_cast<size_t>(num_labels));
   std::vector<std::vector<int64_t>> occupied(regions.size());
   for (int64_t i = 0; i < shape.size(); ++i) {

@@ -15,16 +15,16 @@
 namespace echopath {
 namespace {
 
-constexpr int kMaxPositions = 8192;         // states before determinisation; bounds the time to compile
-constexpr int64_t kPathsPerTask = 1 << 14;  // 0.2 ms of work at most
+constexpr int kMaxPositions = 8192;                 // states before determinisation; bounds the time to compile
+constexpr int64_t kPathsMatchedTogether = 1 << 14;  // 0.2 ms of work at most
 
 uint64_t mesh_bit(size_t mesh_id) { return uint64_t{1} << (mesh_id % 64); }
 
 // Calls body(begin, end) for ranges of all paths, on all threads.
 void for_paths(const Paths& paths, Job* job, const std::function<void(size_t begin, size_t end)>& body) {
-  parallel_for((paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kPathsPerTask, paths.num_paths());
-    body(static_cast<size_t>(task * kPathsPerTask), static_cast<size_t>(end));
+  parallel_for((paths.num_paths() + kPathsMatchedTogether - 1) / kPathsMatchedTogether, [&](int64_t task) {
+    const int64_t end = std::min((task + 1) * kPathsMatchedTogether, paths.num_paths());
+    body(static_cast<size_t>(task * kPathsMatchedTogether), static_cast<size_t>(end));
   }, job);
 }
 
@@ -141,7 +141,7 @@ struct MeshClasses {
   std::vector<std::vector<bool>> taken_by;  // [class][pattern]
 };
 
-MeshClasses classify(const Nfa& nfa, const PathExpression& expression, const std::vector<std::string>& mesh_names) {
+MeshClasses classify_meshes(const Nfa& nfa, const PathExpression& expression, const std::vector<std::string>& mesh_names) {
   std::vector<std::vector<bool>> meshes;  // [pattern][M]
   for (const HitPattern* pattern : nfa.patterns) meshes.push_back(meshes_of(*pattern, expression, mesh_names));
   MeshClasses classes;
@@ -233,7 +233,7 @@ class Determiniser {
 
 Automaton::Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names) {
   const Nfa nfa = NfaBuilder(expression).take();
-  const MeshClasses classes = classify(nfa, expression, mesh_names);
+  const MeshClasses classes = classify_meshes(nfa, expression, mesh_names);
   const Determiniser dfa(nfa, classes, expression.text);
   num_states_ = static_cast<int>(dfa.num_states());
   num_classes_ = static_cast<int>(classes.taken_by.size());

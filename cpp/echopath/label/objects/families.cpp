@@ -11,7 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kPathsPerTask = 1 << 16;
+constexpr int64_t kPathsSortedTogether = 1 << 16;
 
 // Identifies a family by indices into SurfaceMap::names; it sorts as the families do.
 struct Key {
@@ -21,7 +21,7 @@ struct Key {
   auto operator<=>(const Key&) const = default;
 };
 
-void classify(const Hit* hits, int num_hits, const SurfaceMap& surfaces, Key& key) {
+void classify_hits(const Hit* hits, int num_hits, const SurfaceMap& surfaces, Key& key) {
   key = {surfaces.num_objects, 0, 0, {}};
   for (int k = 0; k < num_hits; ++k) key.owner = std::min(key.owner, surfaces.of_mesh[hits[k].mesh_id]);
   if (key.owner == surfaces.num_objects) return;
@@ -50,7 +50,7 @@ Block classify_block(const Paths& paths, const SurfaceMap& surfaces, int64_t beg
   Key key;
   auto found = block.index_of.end();
   for (int64_t path = begin; path < end; ++path) {
-    classify(paths.hits_of(path), paths.num_bounces[static_cast<size_t>(path)], surfaces, key);
+    classify_hits(paths.hits_of(path), paths.num_bounces[static_cast<size_t>(path)], surfaces, key);
     const bool is_like_the_last = found != block.index_of.end() && found->first == key;  // neighbours often are
     if (!is_like_the_last) found = block.index_of.try_emplace(key, static_cast<uint32_t>(block.index_of.size())).first;
     block.local.push_back(found->second);
@@ -116,11 +116,11 @@ Partition Families::partition() const {
 Families find_families(const Paths& paths, const SurfaceMap& surfaces, Job* job) {
   require(paths.scene != nullptr && surfaces.of_mesh.size() == paths.scene->meshes().size(), "surfaces",
           "must be of the scene of the paths, meshes", surfaces.of_mesh.size());
-  const int64_t num_tasks = (paths.num_paths() + kPathsPerTask - 1) / kPathsPerTask;
+  const int64_t num_tasks = (paths.num_paths() + kPathsSortedTogether - 1) / kPathsSortedTogether;
   std::vector<Block> blocks(static_cast<size_t>(num_tasks));
   parallel_for(num_tasks, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kPathsPerTask, paths.num_paths());
-    blocks[static_cast<size_t>(task)] = classify_block(paths, surfaces, task * kPathsPerTask, end);
+    const int64_t end = std::min((task + 1) * kPathsSortedTogether, paths.num_paths());
+    blocks[static_cast<size_t>(task)] = classify_block(paths, surfaces, task * kPathsSortedTogether, end);
   }, job);
 
   const std::map<Key, uint32_t> index_of = number_keys(blocks, surfaces);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/scene/mesh/farthest_vertex.h"
 #include "echopath/scene/mesh/manifold.h"
 
 namespace echopath {
@@ -37,12 +38,6 @@ bool is_degenerate(const std::vector<Vec3>& vertices, const Triangle& triangle) 
   const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
   const double height_times_edge = ab.cross(ac).norm();
   return height_times_edge <= kMinHeightPerEdge * longest2;
-}
-
-// Tells whether areas of triangles with this vertex have a double; NaN has none.
-bool has_area_around(const Vec3& vertex) {
-  constexpr double kFarthest = 1e70;  // m
-  return (vertex.array().abs() <= kFarthest).all();
 }
 
 // Renumbers the corners to the vertices in use, which keep their order; returns the old number of each.
@@ -108,7 +103,7 @@ Vec3 area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
   return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
 }
 
-double area_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+double surface_area(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   double area = 0.0;
   for (const Triangle& triangle : triangles) area += area_vector(vertices, triangle).norm();
   return area;
@@ -136,7 +131,7 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
     for (const uint32_t vertex : triangles[t]) {
       require(vertex < vertices.size(), "triangles",
               "must hold indices below the number of vertices, " + std::to_string(vertices.size()), vertex);
-      if (!has_area_around(vertices[vertex])) {
+      if (!is_vertex_in_range(vertices[vertex])) {
         require(false, "vertices", "vertex " + std::to_string(vertex) + " must be finite and within 1e70 m",
                 vertices[vertex].transpose());
       }
@@ -155,7 +150,7 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   vertices_.reserve(original_vertex_.size());
   for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
   is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
-  area_ = area_of(vertices_, triangles_);
+  area_ = surface_area(vertices_, triangles_);
   is_flat_ = lie_in_a_plane(vertices_, triangles_);
 }
 
@@ -181,7 +176,7 @@ MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
   }
   made->num_input_vertices_ = whole->num_input_vertices_;
   made->is_closed_ = made->num_duplicated_vertices_ == 0 && !has_boundary(made->triangles_);
-  made->area_ = area_of(made->vertices_, made->triangles_);
+  made->area_ = surface_area(made->vertices_, made->triangles_);
   made->is_flat_ = lie_in_a_plane(made->vertices_, made->triangles_);
   return made;
 }

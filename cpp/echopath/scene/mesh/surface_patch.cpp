@@ -6,7 +6,7 @@ namespace echopath {
 namespace {
 
 // Marks the vertices [V of the surface] that are corners of the triangles taken.
-std::vector<uint8_t> corners_of(const Mesh& mesh, const std::vector<uint8_t>& takes) {
+std::vector<uint8_t> used_as_corners(const Mesh& mesh, const std::vector<uint8_t>& takes) {
   std::vector<uint8_t> is_corner(mesh.surface().vertices().size(), 0);
   for (size_t t = 0; t < takes.size(); ++t) {
     if (!takes[t]) continue;
@@ -27,7 +27,7 @@ std::vector<Triangle> ring_of(const Mesh& surface, const std::vector<uint8_t>& i
 
 SurfacePatch make_patch(const Mesh& mesh, const std::vector<uint8_t>& takes, bool with_normals) {
   const Mesh& surface = mesh.surface();
-  const std::vector<uint8_t> is_corner = corners_of(mesh, takes);
+  const std::vector<uint8_t> is_corner = used_as_corners(mesh, takes);
   SurfacePatch patch;
   if (with_normals) patch.triangles = ring_of(surface, is_corner);
   std::vector<uint8_t> is_needed = is_corner;

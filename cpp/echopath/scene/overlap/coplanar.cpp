@@ -29,7 +29,9 @@ struct OverlapPair {
   std::pair<uint32_t, uint32_t> meshes() const { return {first_mesh_id, second_mesh_id}; }
 };
 
-double area_of(const Corners& corners) { return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm(); }
+double triangle_area(const Corners& corners) {
+  return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+}
 
 PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   PosedTriangles posed;
@@ -43,7 +45,7 @@ PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
     if (id == 0) origin = vertices.front();
     for (const Triangle& t : scene.node_of(id).mesh->triangles()) {
       const Corners corners = {vertices[t[0]] - origin, vertices[t[1]] - origin, vertices[t[2]] - origin};
-      if (area_of(corners) == 0.0) continue;  // a deformation may flatten a triangle
+      if (triangle_area(corners) == 0.0) continue;  // a deformation may flatten a triangle
       posed.corners.push_back(corners);
       posed.mesh_id.push_back(id);
     }
@@ -155,7 +157,7 @@ std::vector<CoplanarOverlap> summed_by_meshes(std::vector<OverlapPair> pairs) {
 CoplanarOverlap of_copy(const PosedTriangles& posed, uint32_t original, uint32_t copy, const CoplanarOverlap* on_itself) {
   const size_t begin = posed.begin[copy], end = posed.begin[copy + 1];
   CoplanarOverlap found{original, copy, 2 * static_cast<int64_t>(end - begin)};
-  for (size_t k = begin; k < end; ++k) found.area += area_of(posed.corners[k]);
+  for (size_t k = begin; k < end; ++k) found.area += triangle_area(posed.corners[k]);
   if (on_itself) {
     found.area += 2.0 * on_itself->area;
     found.distance = on_itself->distance;

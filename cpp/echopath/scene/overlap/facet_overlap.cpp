@@ -34,7 +34,7 @@ Polygon clipped(const Polygon& polygon, const Vec2& outward, double reach) {
   return kept;
 }
 
-double area_of(const Polygon& polygon) {
+double polygon_area(const Polygon& polygon) {
   double twice = 0.0;
   for (size_t k = 2; k < polygon.size; ++k) {
     const Vec3 one = polygon.corners[k - 1] - polygon.corners[0], two = polygon.corners[k] - polygon.corners[0];
@@ -111,7 +111,7 @@ std::optional<FacetOverlap> FacetPlane::overlap(const Corners& other, double max
   Polygon common;
   for (const Vec3& corner : laid) common.add(corner);
   for (const Side& side : sides_) common = clipped(common, side.outward, side.reach);
-  const FacetOverlap found{area_of(common), largest_height(common)};
+  const FacetOverlap found{polygon_area(common), largest_height(common)};
   return found.distance <= max_distance ? std::optional(found) : std::nullopt;
 }
 

@@ -9,8 +9,6 @@ namespace {
 // Rounding of `turn`, relative to the lengths that it multiplies, with room to spare.
 constexpr double kTurnRounding = 1e-14;
 
-double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) { return (b - a).cross(c - b).dot(normal); }
-
 // Returns whether no point of the box can be to the left of the line from a to b, seen against the normal.
 bool is_right_of(const Eigen::AlignedBox3d& box, const Vec3& a, const Vec3& b, const Vec3& normal) {
   const Vec3 line = b - a, left = normal.cross(line);  // turn(a, b, p, normal) = (p - b) . left

@@ -8,6 +8,11 @@
 
 namespace echopath {
 
+// Returns how far the way from a over b to c turns, seen against the normal: above 0 to the left, below 0 to the right.
+inline double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+  return (b - a).cross(c - b).dot(normal);
+}
+
 // Holds a triangle of a polygon with that normal, turning about it as the polygon does.
 struct Ear {
   std::array<Vec3, 3> points;

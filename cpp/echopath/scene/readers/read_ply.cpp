@@ -118,7 +118,7 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
   }
 }
 
-std::vector<uint32_t> corners_of(const PlyValues& values, const std::vector<double>& items, const Soup& soup) {
+std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector<double>& items, const Soup& soup) {
   const std::string face = "face " + std::to_string(soup.num_faces);
   if (items.size() < 3) values.refuse(face + " has fewer than 3 corners");
   std::vector<uint32_t> corners;
@@ -144,7 +144,7 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
     for (size_t p = 0; p < element.properties.size(); ++p) {
       read_property(values, element.properties[p], p == static_cast<size_t>(list) ? corners : items);
     }
-    soup.add_polygon(corners_of(values, corners, soup), 0);
+    soup.add_polygon(polygon_corners(values, corners, soup), 0);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/scene/mesh/farthest_vertex.h"
 #include "echopath/scene/readers/soup.h"
 
 namespace echopath {
@@ -18,7 +19,6 @@ struct Reader {
   std::string_view extension;
   Soup (*read)(std::istream& stream, const std::string& name);
 };
-constexpr double kFarthest = 1e70;  // m; areas beyond it have no double
 
 constexpr Reader kReaders[] = {{".obj", read_obj}, {".ply", read_ply}};
 
@@ -41,7 +41,7 @@ Soup read(std::istream& stream, const std::string& name, double unit) {
   if (soup.triangles.empty()) throw FileError(name + ": has no faces");
   for (Vec3& vertex : soup.vertices) {
     vertex *= unit;
-    if (!(vertex.cwiseAbs().maxCoeff() <= kFarthest)) throw FileError(name + ": has a vertex beyond 1e70 m");
+    if (!is_vertex_in_range(vertex)) throw FileError(name + ": has a vertex beyond 1e70 m");
   }
   return soup;
 }

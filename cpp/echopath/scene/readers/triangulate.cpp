@@ -23,8 +23,6 @@ Vec3 polygon_normal(const std::vector<Vec3>& vertices, const std::vector<uint32_
   return normal;
 }
 
-double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) { return (b - a).cross(c - b).dot(normal); }
-
 bool is_convex(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners, const Vec3& normal) {
   const size_t n = corners.size();
   for (size_t i = 0; i < n; ++i) {

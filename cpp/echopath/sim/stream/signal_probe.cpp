@@ -19,6 +19,24 @@
 #include "echopath/signal/methods/per_sample.h"
 
 namespace echopath {
+
+// What a pass keeps. These types have names that others could see, because what PassProbe declares is made of them.
+
+// Holds sums of samples, or the offsets of these in samples from the first of the chirp.
+using SampleSums = std::array<double, ProbedChirp::kSamples>;
+
+// Holds the samples of a row, real parts first.
+struct SampleRow {
+  SampleSums re{}, im{};
+};
+
+// Holds an echo as the polynomials have it.
+struct DrawnEcho {
+  int64_t path;
+  double delay;                    // s
+  std::complex<double> amplitude;  // sqrt(W)
+};
+
 namespace {
 
 constexpr int kSamples = ProbedChirp::kSamples;
@@ -26,14 +44,6 @@ constexpr int kMostChirps = 2;                 // of a pass
 constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
 constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
 constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
-
-// Holds sums of kSamples samples, or the offsets of these in samples from the first of the chirp.
-using SampleSums = std::array<double, kSamples>;
-
-// Holds the samples of a row, real parts first.
-struct SampleRow {
-  SampleSums re{}, im{};
-};
 
 // At most so many carriers are computed side by side.
 constexpr int kMaxLanes = 8;
@@ -102,13 +112,6 @@ bool is_dark(const Echoes& echoes, int64_t echo) {
   }
   return true;
 }
-
-// Holds an echo as the polynomials have it.
-struct DrawnEcho {
-  int64_t path;
-  double delay;                    // s
-  std::complex<double> amplitude;  // sqrt(W)
-};
 
 DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   EchoStates state;

@@ -15,7 +15,6 @@ namespace echopath {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr int kMaxZeroPad = 64;
 constexpr int64_t kRangesPerTask = 8;  // neighbouring range bins share cache lines
 
 // Holds one axis of the grid: its transform and the direction cosines of its bins.

@@ -14,13 +14,14 @@ enum class Combine { kSum, kPeak };  // sum or largest of the powers of several 
 class BeamKernel {
  public:
   static constexpr int64_t kColumns = 32;  // handled together
+  using Powers = std::vector<double>;      // [directions, kColumns]
 
   explicit BeamKernel(const Eigen::MatrixXcd& steering);  // [elements, directions]
   int64_t num_directions() const { return steering_.cols(); }
   int64_t num_elements() const { return steering_.rows(); }
 
-  // Combines power [directions, kColumns] with |steering^H columns|^2 of each of at most kColumns columns [elements].
-  void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, Combine combine, std::vector<double>& power) const;
+  // Combines power with |steering^H columns|^2 of each of at most kColumns columns [elements].
+  void add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, Combine combine, Powers& power) const;
 
   // Returns |steering^H column|^2 [directions], combined over all columns. Raises Cancelled.
   Eigen::VectorXd power(const Eigen::MatrixXcd& columns, Combine combine = Combine::kSum, const Job* job = nullptr) const;

@@ -35,16 +35,14 @@ std::vector<Strip> strips_of(const std::vector<Cell>& cells) {
   return strips;
 }
 
-using Powers = std::vector<double>;  // [directions, BeamKernel::kColumns]
-
-Powers bartlett_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip) {
-  Powers power(beams.num_directions() * BeamKernel::kColumns);
+BeamKernel::Powers bartlett_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip) {
+  BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
   beams.add_squares(source.weighted(strip.velocity, strip.first, strip.count), Combine::kSum, power);
   return power;
 }
 
-Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip, const Job* job) {
-  Powers power(beams.num_directions() * BeamKernel::kColumns);
+BeamKernel::Powers capon_strip(const BeamSource& source, const BeamKernel& beams, const Strip& strip, const Job* job) {
+  BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
   for (int64_t i = 0; i < strip.count; ++i) {
     const Eigen::VectorXd values = source.cell(strip.velocity, strip.first + i).power(beams, Combine::kSum, job);
     for (int64_t d = 0; d < values.size(); ++d) power[d * BeamKernel::kColumns + i] = values[d];
@@ -61,7 +59,8 @@ std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, Be
   parallel_for(static_cast<int64_t>(strips.size()), [&](int64_t task) {
     const Strip& strip = strips[task];
     const bool is_bartlett = method == BeamMethod::kBartlett;
-    const Powers values = is_bartlett ? bartlett_strip(source, beams, strip) : capon_strip(source, beams, strip, job);
+    const BeamKernel::Powers values =
+        is_bartlett ? bartlett_strip(source, beams, strip) : capon_strip(source, beams, strip, job);
     for (int64_t d = 0; d < beams.num_directions(); ++d) {
       std::copy_n(values.data() + d * BeamKernel::kColumns, strip.count, power.data() + d * num_cells + strip.out);
     }

@@ -28,8 +28,6 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   return nearest - map.velocity.begin();
 }
 
-using Powers = std::vector<double>;  // [directions, BeamKernel::kColumns]
-
 // Computes the map of one choice of velocities, by strips of ranges.
 struct Picture {
   const BeamSource& source;
@@ -38,8 +36,8 @@ struct Picture {
   Combine combine;
   const Job* job;
 
-  Powers bartlett(int64_t first, int64_t count) const {
-    Powers power(beams.num_directions() * BeamKernel::kColumns);
+  BeamKernel::Powers bartlett(int64_t first, int64_t count) const {
+    BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
     const int64_t begin = velocity.value_or(0), end = velocity ? begin + 1 : source.num_velocities();
     for (int64_t v = begin; v < end; ++v) {
       if (job) job->throw_if_cancelled();
@@ -48,8 +46,8 @@ struct Picture {
     return power;
   }
 
-  Powers capon(int64_t first, int64_t count) const {
-    Powers power(beams.num_directions() * BeamKernel::kColumns);
+  BeamKernel::Powers capon(int64_t first, int64_t count) const {
+    BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
     for (int64_t i = 0; i < count; ++i) {
       const CellBeam beam = velocity ? source.cell(*velocity, first + i) : source.all_velocities(first + i);
       const Eigen::VectorXd values = beam.power(beams, combine, job);
@@ -84,7 +82,7 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   parallel_for(num_tasks, [&](int64_t task) {
     const int64_t first = task * BeamKernel::kColumns, count = std::min(BeamKernel::kColumns, num_ranges - first);
     const bool is_bartlett = options.method == BeamMethod::kBartlett;
-    const Powers power = is_bartlett ? picture.bartlett(first, count) : picture.capon(first, count);
+    const BeamKernel::Powers power = is_bartlett ? picture.bartlett(first, count) : picture.capon(first, count);
     for (int64_t d = 0; d < beams.num_directions(); ++d) {
       double* out = result.power.data() + d % num_azimuths * num_ranges + first;
       for (int64_t i = 0; i < count; ++i) out[i] = std::max(out[i], scale * power[d * BeamKernel::kColumns + i]);

@@ -131,7 +131,8 @@ CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& 
   result.num_velocities = static_cast<int64_t>(map.velocity.size());
   result.num_ranges = static_cast<int64_t>(map.range.size());
   result.power = mean_power(map, job);
-  for (const double power : result.power) require(std::isfinite(power), "spectrum", "must have finite values, power", power);
+  for (const double power : result.power)
+    require(std::isfinite(power), "spectrum", "must have values whose power is finite", power);
   detect(result, job);
   return result;
 }

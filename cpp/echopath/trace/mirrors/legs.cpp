@@ -6,8 +6,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kOnPlane = 1e-4;  // m: a point this near a mirror's plane has no leg over it
-constexpr double kRim = 1e-3;      // m: single precision of the mirrors in the rays' scene, generously
+constexpr double kNoLegWithin = 1e-4;  // m: a point this near a mirror's plane has no leg over it
+constexpr double kRim = 1e-3;          // m: single precision of the mirrors in the rays' scene, generously
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& anten
   const Vec3& point = query.point;
   const Vec3 line = frustum.image() - point;
   if (query.normal.dot(line) <= 0) return;
-  const bool is_on_plane = frustum.lit_normal.dot(point) - frustum.offset < kOnPlane;
+  const bool is_on_plane = frustum.lit_normal.dot(point) - frustum.offset < kNoLegWithin;
   if (is_on_plane || !frustum.reaches(point, kRim)) return;
   const size_t num_segments = search.segments.size();
   Leg& leg = legs.emplace_back();

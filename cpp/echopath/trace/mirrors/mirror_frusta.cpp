@@ -8,9 +8,9 @@
 namespace echopath {
 namespace {
 
-constexpr double kOnPlane = 1e-4;  // m: an antenna or image this near the plane has no image in it
-constexpr double kFlatBox = 1e-4;  // m: mirrors may stray this far from their outlines
-constexpr size_t kTogether = 512;  // frusta that are followed side by side
+constexpr double kNoImageWithin = 1e-4;  // m: an antenna or image this near the plane has no image in it
+constexpr double kFlatBox = 1e-4;        // m: mirrors may stray this far from their outlines
+constexpr size_t kTogether = 512;        // frusta that are followed side by side
 
 std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -49,7 +49,7 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
                             MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double side = mirror.height(source);
-  if (std::abs(side) < kOnPlane) return false;
+  if (std::abs(side) < kNoImageWithin) return false;
   std::vector<Vec3> window = mirror.outline;
   if (frustum) {
     window = clipped(window, frustum->lit_normal, frustum->offset - slack);

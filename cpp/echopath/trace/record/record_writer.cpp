@@ -10,7 +10,7 @@ namespace {
 
 // Factor on the room that blocks alike are expected to need, because those to come differ. Memory that is not touched costs
 // nothing.
-constexpr double kMargin = 1.1;
+constexpr double kRoomToSpare = 1.1;
 
 void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_queries += part.num_queries;
@@ -68,7 +68,7 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   std::vector<const PathBlock*> blocks;
   for (const PathBlock& block : like) blocks.push_back(&block);
   const Places places(blocks, 0, 0);
-  const double times = kMargin * static_cast<double>(num_blocks) / static_cast<double>(like.size());
+  const double times = kRoomToSpare * static_cast<double>(num_blocks) / static_cast<double>(like.size());
   const auto rows = static_cast<size_t>(times * static_cast<double>(places.paths.back()));
   hits_->reserve(static_cast<size_t>(times * static_cast<double>(places.hits.back())));
   paths_.offsets.reserve(rows);

@@ -9,7 +9,7 @@ namespace echopath {
 namespace {
 
 constexpr double kConfirmed = 0.03;  // rad: a step beyond the triangles around a hit counts where it leaves no more
-constexpr double kLost = 1.0;        // rad: a step that leaves more has not come near the point of reflection
+constexpr double kMostRest = 1.0;    // rad: a step that leaves more has not come near the point of reflection
 constexpr double kTurned = 2.0;      // factor
 constexpr double kOnePlace = 1e-9;   // m
 
@@ -128,7 +128,7 @@ FrameProbe::Slides FrameProbe::slides_from(const LocalPath& path, const Vec3& st
   const bool is_solved = scratch.check.solve(path, scratch.found.data(), start);
   const double rest = scratch.check.excess(), length = scratch.check.length() - rest;
   const double rest_phase = wavenumber_ * std::abs(rest);
-  if (!is_solved || rest_phase > kLost) found.left = path.sliding;
+  if (!is_solved || rest_phase > kMostRest) found.left = path.sliding;
   else if (rest_phase > kConfirmed) found.left = far;
   found.frozen = std::abs(scratch.slide.length() - length);
   scratch.check.solve(path, scratch.stepped.data(), start);

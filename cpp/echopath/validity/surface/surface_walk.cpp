@@ -11,7 +11,7 @@ namespace {
 constexpr double kInside = -1e-9;    // barycentric: on an edge is inside
 constexpr double kOverEdge = -0.05;  // barycentric: how far outside of a facet the point above its edge may lie
 constexpr double kOnePlane = 1e-5;   // 1 - cosine between facets of one plane: 0.26 degrees
-constexpr int kMaxSteps = 128;       // triangles on the way
+constexpr int kMaxCrossings = 128;   // triangles on the way
 
 // Returns the barycentric coordinates of the point's projection, by corner.
 Vec3 barycentric(const std::array<Vec3, 3>& corners, const Vec3& normal, const Vec3& point) {
@@ -93,13 +93,13 @@ std::optional<SurfaceWalk::Spot> SurfaceWalk::find(uint32_t mesh_id, uint32_t tr
   };
   uint32_t at = triangle, last = kNoTriangle;
   bool in_plane = true;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxCrossings; ++step) {
     const Vec3 weights = barycentric(over.corners(at, vertices), over.cross(at, vertices), point);
     if (weights.minCoeff() >= kInside) return spot(at, weights, in_plane);
     const Crossing crossing = over.cross_toward(at, weights, vertices);
     if (crossing.triangle == kNoTriangle) return std::nullopt;
     // A point off the surface may lie outside of all the facets that meet at an edge or at a vertex.
-    const bool is_over_edge = crossing.triangle == last || step + 1 == kMaxSteps;
+    const bool is_over_edge = crossing.triangle == last || step + 1 == kMaxCrossings;
     if (is_over_edge && weights.minCoeff() > kOverEdge) return spot(at, weights, in_plane);
     in_plane = in_plane && crossing.in_plane;
     last = at;

@@ -1,0 +1,41 @@
+"""Warnings of the core name the line of the user, however many functions of the package lie between."""
+import warnings
+
+import pytest
+
+import echopath as ep
+
+METAL = ep.Material.metal()
+
+
+@pytest.fixture(scope="module")
+def radar():
+    return ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=16), ep.Antenna(), ep.Antenna())
+
+
+@pytest.fixture(scope="module")
+def scene():
+    made = ep.Scene()
+    corners = [[5, -1, -1], [5, 1, -1], [5, 1, 1], [5, -1, 1]]
+    made.add("plate", ep.Mesh(corners, [[0, 2, 1], [0, 3, 2]]), ep.Material(reflectivity=0.5, scattering=0.5),
+             motion=ep.LinearMotion((1, 0, 0)))
+    return made
+
+
+def _lines(record, words: str) -> list[str]:
+    return [one.filename for one in record if words in str(one.message)]
+
+
+def test_a_missed_target(scene, radar):
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        ep.trace(scene, radar, num_rays=100, target_error_db=1e-3, max_rays=2000)
+    assert _lines(record, "was reached at an error") == [__file__]
+
+
+def test_antennas_that_tell_no_azimuths_apart(scene, radar):
+    spectrum = ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=1000), radar), radar)
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        ep.range_azimuth(spectrum, radar)
+    assert _lines(record, "tell no azimuths apart") == [__file__]

@@ -10,14 +10,14 @@ METAL = ep.Material.metal()
 
 @pytest.fixture(scope="module")
 def radar():
-    return ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=16), ep.Antenna(), ep.Antenna())
+    return ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=16), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
 
 
 @pytest.fixture(scope="module")
 def scene():
     made = ep.Scene()
     corners = [[5, -1, -1], [5, 1, -1], [5, 1, 1], [5, -1, 1]]
-    made.add("plate", ep.Mesh(corners, [[0, 2, 1], [0, 3, 2]]), ep.Material(reflectivity=0.5, scattering=0.5),
+    made.add(ep.Mesh(corners, [[0, 2, 1], [0, 3, 2]]), name="plate", material=ep.Material(reflectivity=0.5, scattering=0.5),
              motion=ep.LinearMotion((1, 0, 0)))
     return made
 

@@ -53,9 +53,10 @@ MESH = ep.Mesh(CORNERS, TRIANGLES)
 KEYS = ep.KeyframeMotion([0, 1, 2], [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
 SEQUENCE = ep.VertexSequence([0, 1], [CORNERS, CORNERS])
 SKIN = ep.Skin(CORNERS, [ep.Joint("a"), ep.Joint("b", "a")], [[0.5, 0.5]] * 4)
-RADAR = ep.Radar(ep.ChirpSequence(num_samples=16, num_chirps=4), ep.Antenna(), ep.Antenna())
+RADAR = ep.Radar(ep.ChirpSequence(num_samples=16, num_chirps=4), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
 PLATE = ep.Scene()
-PLATE.add("plate", ep.Mesh([[5, -1, -1], [5, 1, -1], [5, 1, 1], [5, -1, 1]], [[0, 2, 1], [0, 3, 2]]), ep.Material.metal())
+PLATE.add(ep.Mesh([[5, -1, -1], [5, 1, -1], [5, 1, 1], [5, -1, 1]], [[0, 2, 1], [0, 3, 2]]), name="plate",
+          material=ep.Material.metal())
 PATHS = ep.trace(PLATE, RADAR, num_rays=1000)
 NODE = {"name": "a", "parent": -1, "placement": np.eye(4), "motion": None, "mesh": MESH, "deformation": None,
         "material": ep.Material.metal(), "material_name": "", "smooth": False, "visible": True}
@@ -112,7 +113,9 @@ CALLS = {
     "Node": (type(PLATE.nodes[0]), NODE),
 }
 # Where two arguments do not fit each other, the message may name the other one and say what of this one it lacks.
-FAULT_OF = {("Skin", "vertices"): "weights: must have a row for each vertex"}
+FAULT_OF = {("Skin", "vertices"): "weights: must have a row for each vertex",
+            ("select", "selection"): "path expression: expected",  # and a caret under the fault
+            ("amplitudes", "times"): "time: must lie in", ("lengths", "times"): "time: must lie in"}
 ARGUMENTS = [(call, argument) for call, (_, right) in CALLS.items() for argument in right]
 
 
@@ -143,7 +146,7 @@ def _assert_reads_back(made, argument, given) -> None:
     """What was accepted is what is there: no number is cut or wrapped on its way in."""
     kept = getattr(made, argument, None)
     if isinstance(given, (int, float, np.number)) and isinstance(kept, (int, float)):
-        assert kept == (float(given) if isinstance(kept, float) else given)
+        assert kept == (float(given) if isinstance(kept, float) else given) or kept != kept and given != given
 
 
 CALL_FAULTS = [(call, *fault) for call in CALLS for fault in [

@@ -112,7 +112,7 @@ void Paths::validate_path(size_t path) const {
 }
 
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
-  require(static_cast<int64_t>(keep.size()) == num_paths(), "keep", "must have one entry per path", keep.size());
+  require(static_cast<int64_t>(keep.size()) == num_paths(), "selection", "must have one entry per path", keep.size());
   const auto count = static_cast<size_t>(std::count_if(keep.begin(), keep.end(), [](uint8_t value) { return value != 0; }));
   const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
   Paths out;

@@ -125,8 +125,9 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   const Channels channels = channels_of(polarization);
   const RcsSettings defaults;
   const int num_batches = batches.value_or(return_error ? kErrorBatches : defaults.batches);
-  const Effort effort = target_error_db ? toward(ErrorTarget{*target_error_db, max_rays}, num_rays, num_batches)
-                                        : Effort{num_rays.value_or(defaults.num_rays), num_batches, std::nullopt};
+  const Effort effort = target_error_db
+                            ? toward(ErrorTarget{*target_error_db, max_rays}, num_rays, num_batches)
+                            : Effort{num_rays.value_or(defaults.num_rays * num_batches), num_batches, std::nullopt};
   require(!return_error || effort.batches > 1, "batches", "must be >= 2 for return_error", effort.batches);
   const RcsSettings settings{frequency,
                              channels.rows,

@@ -140,7 +140,8 @@ class Frame:
 
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"
-        return f"Frame(paths={self.paths.num_paths}, cube={list(self.cube.shape)}, partitions: {partitions})"
+        cube = None if self.cube is None else list(self.cube.shape)
+        return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions})"
 
 
 def with_spectra(frame: Frame) -> Frame:

@@ -17,11 +17,12 @@ def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str]) -
 
     callee: name of the function, as its caller sees it; words, known: names of keywords
     """
-    known = list(known)
+    known, words = list(known), list(words)
     for word in words:
         if word not in known:
             readable = str(word).encode("utf-8", "backslashreplace").decode("utf-8")
-            nearest = _core.nearest_names(readable, known, 1)
+            left = [name for name in known if name not in words and name != "self"]
+            nearest = _core.nearest_names(readable, left, 1)
             hint = f", the nearest right one is '{nearest[0]}'" if nearest else ""
             raise TypeError(f"{callee}: unknown keyword '{readable}'{hint}")
 

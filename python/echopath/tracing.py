@@ -108,15 +108,17 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
         (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of
         these. Of a vector its part across the line of sight counts
     model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in `trace`
-    num_rays: rays per direction and transmit polarization, 131 072 unless given; max_bounces: 1 to 64
+    num_rays: rays per direction and transmit polarization, for all batches together; 131 072 for each batch unless given;
+        max_bounces: 1 to 64
     seed, footprint, sampler: as in `trace`
     batches: as in `trace`; None: 8 for return_error, else 1
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
         each cross section, of a list of polarizations the first with each transmitter, is known that well
     components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
     return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
-        and comes from the batches. An estimate from batches is free of bias, so that it may fall below zero where it is
-        smaller than its error
+        and comes from the batches: what the footprints of too few rays leave out is not in it, and each batch has a part
+        of the rays alone, so give enough of them. An estimate from batches is free of bias by chance, so that it may fall
+        below zero where it is smaller than its error
     progress: callable (stage, fraction), True for bars, or None
     Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero

@@ -436,3 +436,13 @@ def test_columns_of_curved_and_polarised_paths_come_back(tmp_path):
     assert np.array_equal(again.jones, paths.jones) and np.array_equal(again.curved_cell, paths.curved_cell)
     assert again.frame.polarization == "jones" and again.scene.nodes[0].smooth
     assert np.array_equal(again.amplitude, paths.amplitude)
+
+
+def test_a_record_alone_is_shown_and_saved_as_paths_alone(saved, tmp_path):
+    record = tmp_path / "record.h5"
+    ep.Paths.load(saved).save(record)
+    frame = ep.load_frame(record)
+    assert "cube=None" in repr(frame)
+    with pytest.raises(ValueError, match="^frame: must be a frame with its signals .frame.paths.save"):
+        ep.save_frame(frame, tmp_path / "other.h5")
+    assert not (tmp_path / "other.h5").exists()

@@ -298,6 +298,20 @@ def test_errors_have_the_shape_of_what_they_belong_to():
         ep.rcs(rough_plate(), return_error=True, batches=1, **keywords)
 
 
+def test_a_cross_section_with_its_error_is_that_without():
+    """Off broadside a plate needs fine footprints: each batch has the rays of a call without errors, unless told otherwise.
+
+    Truth: 4 pi a^4 / lambda^2 cos^2 sinc^2 at a side lobe (physical optics of a square plate).
+    """
+    side, lobe, wavelength = 0.2, 50.5, ep.speed_of_light / FREQUENCY
+    angle = np.arcsin(lobe * wavelength / (2.0 * side))
+    truth = 4.0 * np.pi * side ** 4 / wavelength ** 2 * np.cos(angle) ** 2 * np.sinc(lobe) ** 2
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(side, side), name="plate", material="metal")
+    value, error = ep.rcs(scene, frequency=FREQUENCY, incidence=(-np.cos(angle), np.sin(angle), 0.0), return_error=True)
+    assert abs(decibel(value / truth)) < PLATE_ANGLE_TOLERANCE_DB and error < 0.02 * value
+
+
 def test_rays_double_until_the_error_is_met(recwarn):
     keywords = dict(frequency=FREQUENCY, incidence=in_plane([0, 30]), num_rays=64, sampler="random", return_error=True)
     value, error = ep.rcs(rough_plate(), target_error_db=0.1, **keywords)

@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 
+from ..checks import refused
 from ..equality import has_same_fields
 from ..files import written_whole
 from ..tables import make_table
@@ -77,8 +78,11 @@ class Detections:
         Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for
         the first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that
         hold 99.99 % of the sum of the powers of single paths, of which the shares are.
-        i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, IndexError.
+        i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, TypeError for what
+        is no index, IndexError.
         """
+        if not hasattr(i, "__index__"):
+            raise refused(TypeError, "i", "the index of a detection, a whole number", i)
         if self.echoes is None:
             raise ValueError("paths: detect(..., paths=) was not given any")
         if not -len(self) <= i < len(self):

@@ -77,10 +77,13 @@ def load_paths(path):
 @checked(frame=an(Frame), min_power=real(0.0, unit="W"))
 @interrupts_are_kept()
 def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
-    """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `save_paths`.
+    """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `Paths.save`.
 
-    The cubes hold all paths, also those that the record leaves out. Raises ep.FileError when the file cannot be written.
+    The cubes hold all paths, also those that the record leaves out. Raises ep.FileError when the file cannot be written,
+    ValueError for a frame without signals, as of a file that holds a record alone: its `paths.save` writes that.
     """
+    if frame.cube is None:
+        raise refused(ValueError, "frame", "a frame with its signals (frame.paths.save writes the record alone)", frame)
     with _new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         _write_signal(file, frame)
@@ -100,7 +103,7 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
 def load_frame(path: str | os.PathLike[str]) -> Frame:
     """Reads the frame file at `path`: the same bits that were written. Raises ep.FileError.
 
-    A file of `save_paths` gives a frame whose cube and spectrum are None.
+    A file of `Paths.save` gives a frame whose cube and spectrum are None.
     """
     with _our_file(path) as file:
         paths = _read_record(file)

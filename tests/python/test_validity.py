@@ -257,8 +257,7 @@ def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
                          paths.flags & 1])
     last_of_kind = sorted({tuple(column): path for path, column in enumerate(findings.T)}.values())
     points = points_of_paths(paths)
-    distinct = [path for k, path in enumerate(last_of_kind)
-                if points[path] not in {points[one] for one in last_of_kind[:k]}]
+    distinct = sorted({points[path]: path for path in reversed(last_of_kind)}.values())
     assert len(last_of_kind) > 40 and len(distinct) > 20
     for chosen in (distinct, *([path] for path in last_of_kind[::len(last_of_kind) // 4])):
         some = ep.validity(paths.select(np.isin(np.arange(paths.num_paths), chosen)), times=times, arrays=True)

@@ -37,6 +37,7 @@ from .meshes import load_mesh, load_meshes
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .powers import received_power, received_powers
+from .readers import Model, ModelNode, foreign_materials, load_model
 from .resolution import Interval, Unresolved, unresolved
 from .scene import Scene
 from .scene_file import SceneFile, load_scene
@@ -56,14 +57,14 @@ __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
     "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families",
     "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint",
-    "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh", "Motion", "ObjectLabel",
+    "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh", "Model", "ModelNode", "Motion", "ObjectLabel",
     "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler",
     "ReceivedPower", "Renewal", "Scene", "SceneFile", "SceneNode", "Selection", "Sight", "SignalProbe", "SignalSettings",
     "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity",
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame",
-    "effects", "estimate_angles", "families", "first", "hits", "last", "load_antenna", "load_frame", "load_labels",
-    "load_mesh", "load_meshes", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads",
+    "effects", "estimate_angles", "families", "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels",
+    "load_mesh", "load_meshes", "load_model", "load_scene", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads",
     "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "rcs",
     "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads",
     "simulate", "speed_of_light", "synthesize", "trace", "unresolved", "validity", "view", "virtual_array", "visibility",

@@ -10,9 +10,10 @@ from .actors import Actor
 from .checks import anything, checked, flag, optional, real, refused, text, vector
 from .materials import known_material, materials
 from .placements import ORIGIN, motion_ahead, placement
+from .readers.model import Model
 from .scene_node import SceneNode, split_motion
 
-Content = _core.Mesh | Actor | Sequence[tuple[str, _core.Mesh]] | None
+Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 
 
 class Scene(_core.Scene):
@@ -45,7 +46,8 @@ class Scene(_core.Scene):
         """Adds an object and returns its full name, "street/pedestrian".
 
         mesh_or_actor: a Mesh; an Actor or a list of (name, Mesh), which becomes a node with a child for each part
-            (a '/' in a part's name makes a group, a node at rest, in between); None: an empty node to hang others on
+            (a '/' in a part's name makes a group, a node at rest, in between); a Model (load_model), which becomes a node
+            with the tree of the file below it; None: an empty node to hang others on
         name: without '/', '*', '?' and quotes, unique among its siblings
         material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given
             here replaces them)
@@ -128,6 +130,9 @@ class _Batch:
         if content is None or isinstance(content, _core.Mesh):
             self._add_mesh(name, self._parent, place, motion, content, material)
             return
+        if isinstance(content, Model):
+            self._add_model(content, name, material, motion, place)
+            return
         parts = _parts_of(content, material)
         if motion is None:
             motion = getattr(content, "motion", None)
@@ -138,14 +143,22 @@ class _Batch:
             self._add_mesh(own_name, self._group(groups, tuple(path)), part_placement, part_motion, mesh, part_material,
                            part_smooth)
 
-    def _add_mesh(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> None:
-        """A node with the mesh; below it the mesh's regions where a skin moves them."""
+    def _add_model(self, model: Model, name, material, motion, place) -> None:
+        indices = {-1: self._add(name, self._parent, place, motion, None, None)}
+        for index, node in enumerate(model.nodes):
+            own_material = material if material is not None and node.mesh is not None else node.material
+            moved = node.motion if node.deformation is None else node.deformation
+            indices[index] = self._add_mesh(node.name, indices[node.parent], node.placement, moved, node.mesh, own_material,
+                                            node.smooth)
+
+    def _add_mesh(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> int:
+        """A node with the mesh; below it the mesh's regions where a skin moves them. Returns its index."""
         if not isinstance(motion, _core.Skin) or mesh is None or mesh.whole is not None:
-            self._add(name, parent, place, motion, mesh, material, smooth)
-            return
+            return self._add(name, parent, place, motion, mesh, material, smooth)
         group = self._add(name, parent, place, None, None, None)
         for joint, part in motion.parts(mesh):
             self._add(joint, group, None, motion, part, material, smooth)
+        return group
 
     def _group(self, groups: dict, path: tuple) -> int:
         """The node of a group, added with those above it where it is not there yet."""

@@ -1,0 +1,59 @@
+"""What a foreign file holds, in the axes and units of a scene."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class ModelNode:
+    """One node of a model.
+
+    name: its own, without the parent's; unique among its siblings and fit for a scene (readers see to both)
+    parent: index of an earlier node of the model, -1: the model itself
+    placement: [4, 4] at rest, relative to the parent, m; None: at the parent's place
+    motion: a Motion relative to the parent, or None; a node with a deformation has none, as in a scene
+    mesh: ep.Mesh, or None for a group; deformation: a VertexSequence or a Skin of that mesh, or None
+    material: ep.Material or a name in ep.materials, None without a mesh; foreign_material: its name in the file, ""
+    without one; smooth: whether the mesh stands for a curved surface (Scene.add)
+    """
+
+    name: str
+    parent: int = -1
+    placement: Any = None
+    motion: Any = None
+    mesh: Any = None
+    deformation: Any = None
+    material: Any = None
+    foreign_material: str = ""
+    smooth: bool = False
+
+
+@dataclass(frozen=True)
+class Model:
+    """A tree of nodes read from a file: x forward, y left, z up, lengths in m (Scene.add puts it into a scene).
+
+    nodes: tuple of ModelNode, parents before their children
+    format: of the file, such as "glTF 2.0"; unit: m per unit of the file; up: its vertical axis, "x", "y" or "z"
+    animations: names of all animations of the file; animation: the one that the motions follow, None: at rest
+    duration: of that animation in s, 0 at rest
+    notes: sentences that say what of the file was left out, guessed or mended
+    """
+
+    nodes: tuple[ModelNode, ...]
+    format: str = ""
+    unit: float = 1.0
+    up: str = "z"
+    animations: tuple[str, ...] = ()
+    animation: str | None = None
+    duration: float = 0.0
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def num_triangles(self) -> int:
+        """Of all meshes."""
+        return sum(len(node.mesh.triangles) for node in self.nodes if node.mesh is not None)
+
+    def __repr__(self) -> str:
+        meshes = sum(node.mesh is not None for node in self.nodes)
+        return f"Model({self.format}, {meshes} meshes, {self.num_triangles} triangles)"

@@ -2,6 +2,8 @@
 from .actor import Actor, Part
 from .human.pedestrian import pedestrian
 from .shapes import box, capsule, dihedral, ellipsoid, ground, plate, sphere, trihedral, wall
+from .vehicles.cars import car
+from .vehicles.vans import van
 
-__all__ = ["Actor", "Part", "box", "capsule", "dihedral", "ellipsoid", "ground", "pedestrian", "plate", "sphere",
-           "trihedral", "wall"]
+__all__ = ["Actor", "Part", "box", "capsule", "car", "dihedral", "ellipsoid", "ground", "pedestrian", "plate", "sphere",
+           "trihedral", "van", "wall"]

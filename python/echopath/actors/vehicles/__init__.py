@@ -1,0 +1,1 @@
+"""Road vehicles: bodies of smooth panels on turning wheels."""

@@ -65,3 +65,27 @@ def _without_slivers(vertices, triangles):
     """Triangles with three different corners."""
     a, b, c = triangles.T
     return vertices, triangles[(a != b) & (b != c) & (c != a)]
+
+
+def round_segments(radius, least=8):
+    """Segments of a round bar of `radius` m whose coherent echo at 77 GHz is right to 0.3 dB where it is smooth."""
+    edge = 1.4 * np.sqrt(radius * 0.0039)   # 4 times 0.4 sqrt(radius wavelength) would do
+    return max(least, int(np.ceil(2.0 * np.pi * radius / edge)))
+
+
+def extruded(outline, length):
+    """A closed outline [N, 2] of (y, z), counter-clockwise seen from +x, drawn along x from -length/2 to length/2.
+
+    Its ends are closed by triangles between the first half of the outline's points and the second: for bent sheets, whose
+    outline goes forth along one face and back along the other.
+    """
+    outline = np.asarray(outline, dtype=float)
+    count = len(outline)
+    vertices = np.concatenate([np.column_stack([np.full(count, x), outline]) for x in (-length / 2, length / 2)])
+    k = np.arange(count)
+    n = (k + 1) % count
+    sides = np.concatenate([np.stack([k, n, count + n], -1), np.stack([k, count + n, count + k], -1)])
+    k = np.arange(count // 2 - 1)
+    m = count - 1 - k
+    cap = np.concatenate([np.stack([k, m, m - 1], -1), np.stack([k, m - 1, k + 1], -1)])
+    return outward((vertices, np.concatenate([sides, cap, cap[:, ::-1] + count])))

@@ -34,10 +34,14 @@ class Gait:
 
     def __init__(self, body, speed):
         self.body, self.speed = body, float(speed)
-        self.cycle = Cycle.of(self.speed, body.hip_height)
-        self.walk = Walk(self.speed / body.hip_height, self.cycle.support)
-        self.steps = Steps(Sole.of(body), self.walk, self.cycle)
+        self.cycle, self.walk, self.steps = self._model()
         self.lead, self.pelvis_height = self._fit_pelvis()
+
+    def _model(self):
+        """Cycle, trajectories and steps of walking."""
+        cycle = Cycle.of(self.speed, self.body.hip_height)
+        walk = Walk(self.speed / self.body.hip_height, cycle.support)
+        return cycle, walk, Steps(Sole.of(self.body), walk, cycle)
 
     def frames(self, phase):
         """Frames of every part, by name, at phases [T].

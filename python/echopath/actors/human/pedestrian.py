@@ -9,7 +9,7 @@ from ..actor import Actor, PartArrays
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
-from .gait import Gait, relative_speed_limit
+from .gait import Frames, Gait, relative_speed_limit
 from .rotations import quaternions
 
 HEIGHTS = (0.5, 2.5)          # m
@@ -61,19 +61,35 @@ def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyfr
     real(MIN_SPEED, round(relative_speed_limit(body), 3), "m/s")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
     real(0.0, 0.05 * body.height, "m")("edge", edge)
-    gait = Gait(body, speed)
+    return walker_arrays(body, Gait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
+                         keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
+
+
+def walker_arrays(body, gait, *, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
+    """The parts of a body that moves by a gait, as plain arrays. Arguments as of pedestrian()."""
     times = keyframe_times(start_time, duration, keyframe_rate)
     frames = gait.frames(phase + times / gait.cycle.duration)
     start = np.array([phase * gait.cycle.length, 0.0, 0.0])
+    moved = {name: Frames(frame.origin - start, frame.rotation) for name, frame in frames.items()}
+    return body_arrays(body, moved, times, edge=edge, clothing=clothing, skin=skin)
+
+
+def body_arrays(body, frames, times, *, edge, clothing, skin):
+    """The parts of a body at frames {name: Frames} of times [T], as plain arrays; times None: placed once, at rest."""
     surfaces = {}
     parts = []
     for name, frame in frames.items():
         kind = name.rsplit("/")[-1]
         if kind not in surfaces:
             surfaces[kind] = surface(name, body, edge)
+        vertices, triangles = surfaces[kind]
         material = skin if kind in SKIN_PARTS else clothing
-        parts.append(PartArrays(name, *surfaces[kind], material, times, frame.origin - start,
-                                quaternions(frame.rotation), smooth=True))
+        if times is None:
+            placed = vertices @ frame.rotation[0].T + frame.origin[0]
+            parts.append(PartArrays(name, placed, triangles, material, smooth=True))
+        else:
+            parts.append(PartArrays(name, vertices, triangles, material, times, frame.origin, quaternions(frame.rotation),
+                                    smooth=True))
     return parts
 
 

@@ -1,0 +1,71 @@
+"""Persons who run, stand, or are children."""
+from __future__ import annotations
+
+from ... import _core
+from ...checks import checked, optional, positive, real
+from ..actor import Actor
+from ..surfaces import edge_length
+from .anthropometry import Proportions
+from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, _material, body_arrays, pedestrian, walker_arrays
+from .posture import standing
+from .running import RunningGait, running_speeds
+
+CHILD_HEIGHTS = (0.8, 1.5)   # m, of children of about 1 to 12 years
+
+
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
+         phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
+         clothing=_material, skin=_material)
+def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.0,
+           edge: float = 0.018, keyframe_rate: float = 240.0, clothing: str | _core.Material = "clothing",
+           skin: str | _core.Material = "skin") -> Actor:
+    """A person who runs along +x: as `pedestrian`, whose parts and arguments it shares, with a flight between the steps.
+
+    Step frequency, share of stance and joint angles at characteristic instants follow what is published of adults
+    (running.py); between them the trajectories are sines. A foot that touches the floor z = 0 does not slide.
+
+    speed: in m/s, 1.8 to 5 for an adult of 1.78 m, others by the root of their height. phase: of the cycle of two steps at
+    time 0, in cycles; 0 is the strike of the right foot. keyframe_rate: in 1/s, at least 60.
+    Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
+    """
+    body = Proportions(height)
+    real(*running_speeds(body), "m/s")("speed", speed)
+    edge = edge_length(edge, 3.0 * body.height)
+    arrays = walker_arrays(body, RunningGait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
+                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
+    return Actor([part.build() for part in arrays])
+
+
+@checked(height=real(*HEIGHTS, unit="m"), edge=positive("m"), clothing=_material, skin=_material)
+def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str | _core.Material = "clothing",
+                    skin: str | _core.Material = "skin") -> Actor:
+    """A person who stands still at the origin and looks along +x, arms hanging; the parts are those of `pedestrian`.
+
+    height: of the body in m, 0.5 to 2.5. edge: length in m of the triangles' sides. clothing, skin: materials.
+    Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
+    """
+    body = Proportions(height)
+    frames = standing(body)
+    arrays = body_arrays(body, frames, None, edge=edge_length(edge, 3.0 * height), clothing=clothing, skin=skin)
+    return Actor([part.build() for part in arrays])
+
+
+@checked(height=real(*CHILD_HEIGHTS, unit="m"), speed=optional(real(0.0, unit="m/s")), start_time=real(unit="s"),
+         duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"))
+def child(*, height: float = 1.15, speed: float | None = None, start_time: float = -0.5, duration: float = 2.5,
+          phase: float = 0.0, edge: float = 0.014) -> Actor:
+    """A child who walks, runs or stands: `pedestrian`, `runner` or `standing_person` of a child's height.
+
+    The proportions are those of an adult, so that the head, which is larger in children, is up to a third too small.
+    height: in m, 0.8 to 1.5 (about 1 to 12 years). speed: m/s along +x: 0 stands, below twice the hip height a second it
+    walks, above it runs; unless given it walks at 1.4 m/s times the root of its height over an adult's. start_time, duration,
+    phase, edge: as of `pedestrian`.
+    Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
+    """
+    body = Proportions(height)
+    if speed is None:
+        speed = 1.4 * (height / 1.78) ** 0.5
+    if speed == 0.0:
+        return standing_person(height=height, edge=edge)
+    make = pedestrian if speed < max(2.0 * body.hip_height, running_speeds(body)[0]) else runner
+    return make(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase, edge=edge)

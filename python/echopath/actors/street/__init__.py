@@ -1,0 +1,1 @@
+"""What stands beside roads: poles, signs, guard rails, trees."""

@@ -1,0 +1,126 @@
+"""Poles, traffic signs and guard rails."""
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from ... import _core
+from ...checks import checked, one_of, positive, real
+from ..actor import Actor, Part
+from ..solids import block, extruded, outward, round_segments, tube
+from ..surfaces import joined
+
+SignShape = Literal["round", "triangle", "rectangle", "octagon"]
+
+SIGN_THICKNESS = 0.003     # m, of aluminium sheet
+SIGN_POLE_RADIUS = 0.038   # m: tubes of 76 mm
+SIGN_GAP = 0.03            # m between sign and tube
+# Corners of the shapes and the turn of the first one about the sign's axis, in rad from the top.
+SIGN_CORNERS = {"round": (32, 0.0), "triangle": (3, 0.0), "octagon": (8, np.pi / 8)}
+
+RAIL_HEIGHT, RAIL_DEPTH, RAIL_THICKNESS = 0.311, 0.081, 0.003   # m: the W profile of steel guard rails (EN 1317 systems)
+RAIL_TOP = 0.75            # m above the ground
+POST = (0.10, 0.055)       # m, along and across
+# The W profile from its lower to its upper edge: height over that of the rail, depth behind the front over the whole depth.
+RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0), (0.31, 0.06), (0.40, 0.78), (0.45, 0.97),
+             (0.50, 1.0), (0.55, 0.97), (0.60, 0.78), (0.69, 0.06), (0.75, 0.0), (0.81, 0.02), (0.88, 0.30), (0.95, 0.80),
+             (1.0, 0.86))
+
+
+@checked(height=positive("m"), radius=positive("m"), end_radius=positive("m"))
+def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04) -> Actor:
+    """A round metal pole that tapers from `radius` at the ground to `end_radius` at `height`, all in m.
+
+    It stands at the origin with its foot at z = 0. One part, "tube". Raises TypeError or ValueError naming the argument.
+    """
+    surface = tube((0, 0, 0), (0, 0, height), radius, end_radius, segments=round_segments(radius, 14))
+    return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])
+
+
+@checked(shape=one_of(SignShape), size=positive("m"), height=positive("m"))
+def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float = 2.2) -> Actor:
+    """A flat metal traffic sign that looks along -x, on a tube of 76 mm.
+
+    Parts: sign, pole. The sign's front is in the plane x = 0, its middle over the origin; the tube stands behind it.
+    shape: "round", "triangle" (a corner up), "rectangle" (2/3 as wide as high) or "octagon"
+    size: m, diameter, side of the triangle, height of the rectangle, or width over two sides of the octagon
+    height: m, of the sign's lower edge above the ground
+    Raises TypeError or ValueError naming the argument.
+    """
+    outline = _sign_outline(shape, size)
+    outline[:, 1] += height - outline[:, 1].min()
+    top = outline[:, 1].max() - 0.05 * size
+    x = SIGN_THICKNESS + SIGN_GAP + SIGN_POLE_RADIUS
+    mast = tube((x, 0, 0), (x, 0, top), SIGN_POLE_RADIUS, segments=round_segments(SIGN_POLE_RADIUS, 14))
+    return Actor([Part("sign", _core.Mesh(*_prism(outline, SIGN_THICKNESS)), "metal"),
+                  Part("pole", _core.Mesh(*mast), "metal", smooth=True)])
+
+
+@checked(length=positive("m"), spacing=positive("m"), edge=real(0.02, unit="m"))
+def guard_rail(*, length: float = 20.0, spacing: float = 2.0, edge: float = 1.0) -> Actor:
+    """A steel guard rail along x about the origin, its front towards -y, 0.75 m high, on posts.
+
+    Parts: rail (the W profile of 311 mm x 81 mm, 3 mm thick), posts.
+    length, spacing: m, of the rail and of its posts. edge: m, longest side of the rail's triangles along it.
+    Raises TypeError or ValueError naming the argument.
+    """
+    count = max(2, int(round(length / spacing)) + 1)
+    places = np.linspace(-length / 2 + POST[0], length / 2 - POST[0], count)
+    back = RAIL_DEPTH + RAIL_THICKNESS + 0.002
+    posts = [block((x - POST[0] / 2, back, 0.0), (x + POST[0] / 2, back + POST[1], RAIL_TOP - 0.03)) for x in places]
+    return Actor([Part("rail", _core.Mesh(*_rail(length, edge)), "metal", smooth=True),
+                  Part("posts", _core.Mesh(*joined(*posts)), "metal")])
+
+
+def _rail(length, edge):
+    """Pieces of the rail one behind the other, without walls between them."""
+    line = np.array(RAIL_LINE)
+    dense = np.interp(np.linspace(0, 1, 49), np.linspace(0, 1, len(line)), np.arange(len(line)))
+    z = np.interp(dense, np.arange(len(line)), line[:, 0])
+    depth = _smoothed(np.interp(dense, np.arange(len(line)), line[:, 1]))
+    front = np.column_stack([RAIL_DEPTH * depth, RAIL_TOP - RAIL_HEIGHT * (1.0 - z)])
+    slope = np.gradient(front, axis=0)
+    normal = np.column_stack([slope[:, 1], -slope[:, 0]]) / np.linalg.norm(slope, axis=1)[:, None]
+    outline = np.concatenate([front, (front + RAIL_THICKNESS * normal)[::-1]])
+    pieces = max(1, int(np.ceil(length / edge)))
+    vertices, triangles = extruded(outline, length)
+    return _cut_along_x(vertices, triangles, len(outline), pieces)
+
+
+def _smoothed(values):
+    """Rounds the bends of a line by two means over three neighbours; its ends stay."""
+    for _ in range(2):
+        values = np.concatenate([values[:1], 0.25 * values[:-2] + 0.5 * values[1:-1] + 0.25 * values[2:], values[-1:]])
+    return values
+
+
+def _cut_along_x(vertices, triangles, count, pieces):
+    """The extruded surface with its long sides in `pieces` pieces; its first 2 `count` triangles are those sides."""
+    first, last = vertices[:count], vertices[count:]
+    rings = np.concatenate([first + (last - first) * share for share in np.linspace(0.0, 1.0, pieces + 1)])
+    sides, caps = triangles[:2 * count], triangles[2 * count:]
+    along = np.concatenate([sides + step * count for step in range(pieces)])
+    return rings, np.concatenate([along, np.where(caps >= count, caps + (pieces - 1) * count, caps)])
+
+
+def _sign_outline(shape, size):
+    """Corners [N, 2] of (y, z) about the middle."""
+    if shape == "rectangle":
+        return 0.5 * size * np.array([[2 / 3, 1], [-2 / 3, 1], [-2 / 3, -1], [2 / 3, -1]])
+    count, turn = SIGN_CORNERS[shape]
+    radius = {"round": size / 2, "triangle": size / np.sqrt(3.0), "octagon": size / (2.0 * np.cos(np.pi / 8))}[shape]
+    angle = turn + 2.0 * np.pi * np.arange(count) / count
+    return radius * np.column_stack([-np.sin(angle), np.cos(angle)])
+
+
+def _prism(outline, thickness):
+    """A plate [0, thickness] along x of a convex outline [N, 2] of (y, z)."""
+    count = len(outline)
+    vertices = np.concatenate([np.column_stack([np.full(count, x), outline]) for x in (0.0, thickness)])
+    k = np.arange(count)
+    n = (k + 1) % count
+    fan = np.stack([np.zeros(count - 2, int), k[1:-1], k[2:]], -1)
+    triangles = np.concatenate([fan, fan[:, ::-1] + count, np.stack([k, count + k, n], -1),
+                                np.stack([n, count + k, count + n], -1)])
+    return outward((vertices, triangles))

@@ -1,12 +1,20 @@
-"""Actors: bodies to put into a scene, from plates to walking people."""
+"""Actors: bodies to put into a scene, from plates to vehicles and walking people."""
 from .actor import Actor, Part
+from .animals.dog import dog
+from .drone import drone
 from .human.pedestrian import pedestrian
 from .human.persons import child, runner, standing_person
 from .shapes import box, capsule, dihedral, ellipsoid, ground, plate, sphere, trihedral, wall
 from .street.furniture import guard_rail, pole, traffic_sign
 from .street.tree import tree
+from .vehicles.bicycle import bicycle
 from .vehicles.cars import car
+from .vehicles.cyclist import cyclist
+from .vehicles.motorcycles import motorcycle
+from .vehicles.parked import parked_row
+from .vehicles.trucks import truck
 from .vehicles.vans import van
 
-__all__ = ["Actor", "Part", "box", "capsule", "car", "child", "dihedral", "ellipsoid", "ground", "guard_rail", "pedestrian", "plate",
-           "pole", "runner", "sphere", "standing_person", "traffic_sign", "tree", "trihedral", "van", "wall"]
+__all__ = ["Actor", "Part", "bicycle", "box", "capsule", "car", "child", "cyclist", "dihedral", "dog", "drone", "ellipsoid",
+           "ground", "guard_rail", "motorcycle", "parked_row", "pedestrian", "plate", "pole", "runner", "sphere",
+           "standing_person", "traffic_sign", "tree", "trihedral", "truck", "van", "wall"]

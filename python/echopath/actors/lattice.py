@@ -84,3 +84,27 @@ def _between_sheets(quads, sheets):
             if home.setdefault(key, sheet) != sheet:
                 sharp.append(key)
     return np.array(sharp, dtype=int).reshape(-1, 2)
+
+
+def rounded_box(low, high, radius, pieces, *, bow=0.0):
+    """Points [X, Y, Z, 3] of a lattice whose limit surface is a box from `low` to `high` [3] in m with rounded edges.
+
+    radius: m, about that of the edges; pieces [3]: of its length between them; bow: m by which the middle of each side
+    stands out. All cells are full.
+    """
+    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    axes = [np.concatenate([[a, a + 0.5 * radius], np.linspace(a + radius, b - radius, n + 1), [b - 0.5 * radius, b]])
+            for a, b, n in zip(low, high, pieces)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    share = (2.0 * points - low - high) / (high - low)
+    for axis in range(3):
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        out = bow * (1.0 - share[..., first]**2) * (1.0 - share[..., second]**2)
+        points[..., axis] += np.where(np.abs(share[..., axis]) > 1.0 - 1e-9, np.sign(share[..., axis]) * out, 0.0)
+    return points
+
+
+def rounded_parts(points, label, materials, levels=1):
+    """Parts of a lattice of full cells; label(Face) -> part name."""
+    full = np.ones(np.array(points.shape[:3]) - 1, dtype=bool)
+    return parts_of(refined(cage_of(points, full, lambda face: ("skin", label(face))), levels), materials)

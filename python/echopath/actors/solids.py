@@ -89,3 +89,10 @@ def extruded(outline, length):
     m = count - 1 - k
     cap = np.concatenate([np.stack([k, m, m - 1], -1), np.stack([k, m - 1, k + 1], -1)])
     return outward((vertices, np.concatenate([sides, cap, cap[:, ::-1] + count])))
+
+
+def ring(radius, tube_radius, segments, around=8, *, width=None):
+    """A torus about the y axis: `radius` to the middle of its tube, whose half width along y is `width` (that of its radius)."""
+    angle = 2.0 * np.pi * np.arange(around) / around
+    half = tube_radius if width is None else width
+    return revolved(np.column_stack([radius + tube_radius * np.cos(angle), half * np.sin(angle)]), segments)

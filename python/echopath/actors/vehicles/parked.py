@@ -1,0 +1,54 @@
+"""Rows of parked cars."""
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ... import _core
+from ...checks import checked, count, positive, seed as seed_rule
+from ..actor import Actor
+from .cars import CARS, car
+
+SHARES = {"small": 0.2, "compact": 0.3, "saloon": 0.15, "estate": 0.15, "suv": 0.2}   # of the classes
+
+
+@checked(number=count(1, 100), spacing=positive("m"), seed=seed_rule)
+def parked_row(*, number: int = 5, spacing: float = 2.5, seed: int = 1) -> Actor:
+    """Cars of mixed classes side by side along y, as in a car park; they face along +x or -x.
+
+    The middle of the row is at the origin. Parts: those of `car` under car_1/, car_2/ and so on, from right to left.
+    number: of cars. spacing: m from one to the next, at least 2.3 so that their mirrors do not meet. seed: of the classes,
+    directions and small differences in place.
+    Returns an Actor. Raises TypeError or ValueError naming the argument.
+    """
+    if spacing < 2.3:
+        raise ValueError(f"spacing: must be a finite number of at least 2.3 m, got {spacing!r}")
+    random = np.random.default_rng(seed)
+    parts, made = [], {}
+    for n in range(number):
+        kind = str(random.choice(list(CARS), p=[SHARES[name] for name in CARS]))
+        made.setdefault(kind, car(kind=kind))
+        turn = 1.0 if random.random() < 0.5 else -1.0
+        place = np.array([random.normal(0.0, 0.12), (n - 0.5 * (number - 1)) * spacing + random.uniform(-0.06, 0.06), 0.0])
+        parts += _placed(made[kind].parts, f"car_{n + 1}", place, turn * _about_z(np.radians(random.normal(0.0, 1.0)), turn))
+    return Actor(parts)
+
+
+def _about_z(angle, sign):
+    """A turn about z [3, 3], whose x and y axes `sign` reverses."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, sign]])
+
+
+def _placed(parts, group, place, rotation):
+    """Parts at rest at another place; those of one surface stay parts of one."""
+    wholes, moved = {}, []
+    for part in parts:
+        whole = part.mesh.whole or part.mesh
+        if id(whole) not in wholes:
+            vertices = (np.asarray(whole.vertices) + part.position) @ rotation.T + place
+            wholes[id(whole)] = _core.Mesh(vertices, whole.triangles)
+        mesh = wholes[id(whole)] if part.mesh.whole is None else wholes[id(whole)].part(part.mesh.whole_triangle)
+        moved.append(replace(part, name=f"{group}/{part.name}", mesh=mesh, position=(0.0, 0.0, 0.0)))
+    return moved

@@ -94,7 +94,7 @@ void bind_motions(py::module_& m) {
   define(type, "turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
   type.def_property_readonly(
           "breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
-          "Times [N] in s, ascending, where the motion is not smooth.")
+          "Times [N] in s, ascending, where the motion is not smooth; of a loop those of one run.")
       .def_property_readonly(
           "span", [](const Motion& self) { return as_tuple(self.span()); },
           "(begin, end) in s of the times it is defined on; infinite where unlimited.");
@@ -160,7 +160,7 @@ void bind_deformation(py::module_& m) {
   type.def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
       .def_property_readonly(
           "breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
-          "Times [N] in s, ascending, where it is not smooth.")
+          "Times [N] in s, ascending, where it is not smooth; of a loop those of one run.")
       .def_property_readonly(
           "span", [](const Deformation& self) { return as_tuple(self.span()); },
           "(begin, end) in s of the times it is defined on; infinite where unlimited.");

@@ -78,11 +78,12 @@ SkinWeights skin_weights(const py::array_t<double>& given, const std::optional<p
 
 std::shared_ptr<Skin> skin(Arg<"vertices", Points> vertices, Arg<"joints", List<Instance<NamedJoint>>> joints,
                            Arg<"weights", Array<double, "[V, K]">> weights,
-                           Arg<"joint_indices", Optional<Array<uint32_t, "[V, K]">>> joint_indices) {
+                           Arg<"joint_indices", Optional<Array<uint32_t, "[V, K]">>> joint_indices,
+                           Arg<"shape", Optional<Instance<std::shared_ptr<Deformation>>>> shape) {
   std::vector<Joint> all = numbered(*joints);
   const SkinWeights rows = skin_weights(*weights, *joint_indices, all.size());
   const WithoutGil released;
-  return std::make_shared<Skin>(*vertices, std::move(all), rows);
+  return std::make_shared<Skin>(*vertices, std::move(all), rows, shape->value_or(nullptr));
 }
 
 std::vector<NamedJoint> named_joints(const Skin& skin) {
@@ -137,7 +138,8 @@ py::dict keywords_of(const NamedJoint& self) {
 py::dict keywords_of(const Skin& self) {
   return py::dict(py::arg("vertices") = to_numpy(self.vertices()), py::arg("joints") = named_joints(self),
                   py::arg("weights") = by_vertex(self, self.weights().weight),
-                  py::arg("joint_indices") = by_vertex(self, self.weights().joint));
+                  py::arg("joint_indices") = by_vertex(self, self.weights().joint),
+                  py::arg("shape") = std::const_pointer_cast<Deformation>(self.shape()));
 }
 
 void bind_joint(py::module_& m) {
@@ -146,7 +148,7 @@ void bind_joint(py::module_& m) {
 name: unique within its skin; the part of a mesh that it moves is named after it
 parent: name of an earlier joint; None: it moves in the frame of the skin
 position [3] in m, or transform [4, 4]: at rest, relative to the parent
-motion: LinearMotion or KeyframeMotion about its own origin, as of a node of a scene; None: at rest
+motion: LinearMotion, KeyframeMotion or CurveMotion about its own origin, as of a node of a scene; None: at rest
 inverse_bind: [4, 4] frame of the skin -> frame of the joint where the vertices were bound to it; None: as the joints rest
 With transform none and inverse_bind given, a motion is the joint's transform relative to its parent, as in glTF files.
 Raises TypeError or ValueError naming the argument.)");
@@ -179,8 +181,10 @@ vertices: [V, 3] in m as bound, in the node's frame and in the order of the vert
 joints: list [J] of Joint, parents first
 weights: [V, J], or [V, K] with joint_indices; >= 0, and each row adds up to 1 (less than 1e-4 off is scaled)
 joint_indices: [V, K] which joint each weight is of; None: column j of weights is joint j
+shape: MorphTargets or VertexSequence that replaces v at each time before the joints move it; None: none
 Raises TypeError or ValueError naming the argument.)");
-  define_init(type, &skin, py::arg("vertices"), py::arg("joints"), py::arg("weights"), py::arg("joint_indices") = py::none())
+  define_init(type, &skin, py::arg("vertices"), py::arg("joints"), py::arg("weights"), py::arg("joint_indices") = py::none(),
+              py::arg("shape") = py::none())
       .def_property_readonly(
           "vertices", [](const Skin& self) { return to_numpy(self.vertices()); }, "[V, 3] in m, as bound")
       .def_property_readonly("joints", &named_joints, "list [J] of Joint, each with its inverse_bind")
@@ -190,6 +194,9 @@ Raises TypeError or ValueError naming the argument.)");
       .def_property_readonly(
           "joint_indices", [](const Skin& self) { return by_vertex(self, self.weights().joint); },
           "[V, K] joint of each weight")
+      .def_property_readonly(
+          "shape", [](const Skin& self) { return std::const_pointer_cast<Deformation>(self.shape()); },
+          "the Deformation before the joints move it, or None")
       .def("__repr__", [](const Skin& self) {
         return "Skin(" + std::to_string(self.num_vertices()) + " vertices, " + std::to_string(self.joints().size()) +
                " joints)";

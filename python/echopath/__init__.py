@@ -14,8 +14,8 @@ answer_version_before_loading()
 from . import actors, plots
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
-    CosinePower, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion,
-    Material, Mesh, Motion, ObjectValidity, Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection,
+    CosinePower, Curve, CurveMotion, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion,
+    Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection,
     SignalProbe, Skin, Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray,
     __version__, boltzmann, speed_of_light,
 )
@@ -55,9 +55,9 @@ from .visibility import ObjectVisibility, Sight, visibility
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
-    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Deformation", "Detections", "DeviceError", "Effect", "Families",
+    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections", "DeviceError", "Effect", "Families",
     "Family", "FileError", "Frame", "GainTable", "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint",
-    "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh", "Model", "ModelNode", "Motion", "ObjectLabel",
+    "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel",
     "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler",
     "ReceivedPower", "Renewal", "Scene", "SceneFile", "SceneNode", "Selection", "Sight", "SignalProbe", "SignalSettings",
     "Skin", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity",

@@ -14,7 +14,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -33,7 +33,7 @@ class Motion:
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Times [N] in s, ascending, where the motion is not smooth.
+        Times [N] in s, ascending, where the motion is not smooth; of a loop those of one run.
         """
     @property
     def span(self) -> tuple[typing.Any, ...]:
@@ -148,7 +148,7 @@ class Deformation:
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Times [N] in s, ascending, where it is not smooth.
+        Times [N] in s, ascending, where it is not smooth; of a loop those of one run.
         """
     @property
     def num_vertices(self) -> int:
@@ -204,6 +204,180 @@ class VertexSequence(Deformation):
     def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [T, V, 3] in m, a copy
+        """
+class Curve:
+    """
+    Numbers through keys, as animation files have them (glTF 2.0, appendix C).
+
+    times: [T] in s, ascending, T >= 1
+    values: [T, C], in the unit of what they stand for
+    interpolation: "step" (the earlier key holds until the next), "linear", or "hermite" (cubic splines with given tangents)
+    in_tangents, out_tangents: [T, C] per s, before and behind each key; for "hermite" alone
+    Before its first key and after its last one it holds their values. Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, times: ArrayLike, values: ArrayLike, interpolation: str = 'linear', *, in_tangents: ArrayLike | None = None, out_tangents: ArrayLike | None = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Values [C] at `time` in s, column by column. Raises ValueError.
+        """
+    def replace(self, **kwargs: typing.Any) -> Curve:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def in_tangents(self) -> typing.Any:
+        """
+        [T, C] per s, or None
+        """
+    @property
+    def interpolation(self) -> str:
+        """
+        "step", "linear" or "hermite"
+        """
+    @property
+    def out_tangents(self) -> typing.Any:
+        """
+        [T, C] per s, or None
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T] in s
+        """
+    @property
+    def values(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [T, C]
+        """
+class CurveMotion(Motion):
+    """
+    Motion of curves: an animation.
+
+    translation: Curve of [T, 3] in m; rotation: Curve of [T, 4] quaternions (w, x, y, z), which go the shorter way between linear
+        keys; scale: Curve of [T, 3], for joints of a Skin alone. None: none
+    period: s; it begins anew after this time. None: it is played once, held before and after
+    offset: s, the time of the curves at time 0
+    It is defined at every time; each key, and each end of a loop, is a breakpoint. Raises TypeError or ValueError naming the
+    argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, translation: Curve | None = None, rotation: Curve | None = None, scale: Curve | None = None, *, period: float | None = None, offset: float = 0.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> CurveMotion:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def offset(self) -> float:
+        """
+        s, time of its curves at time 0
+        """
+    @property
+    def period(self) -> typing.Any:
+        """
+        s, or None where it is no loop
+        """
+    @property
+    def rotation(self) -> Curve | None:
+        """
+        Curve of [T, 4] (w, x, y, z), or None
+        """
+    @property
+    def scale(self) -> Curve | None:
+        """
+        Curve of [T, 3], or None
+        """
+    @property
+    def translation(self) -> Curve | None:
+        """
+        Curve of [T, 3] in m, or None
+        """
+class MorphTargets(Deformation):
+    """
+    Deforming mesh: shares of other shapes.
+
+    v(t) = vertices + sum over targets of weight(t) * target, exact at every time.
+    vertices: [V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
+    targets: [K, V, 3] in m, displacements
+    weights: Curve of [T, K]
+    period, offset: s, as of a CurveMotion
+    A Skin moves its result with `Skin(..., shape=...)`. Raises TypeError or ValueError naming the argument.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, vertices: ArrayLike, targets: ArrayLike, weights: Curve, *, period: float | None = None, offset: float = 0.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    def replace(self, **kwargs: typing.Any) -> MorphTargets:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def offset(self) -> float:
+        """
+        s, time of its curves at time 0
+        """
+    @property
+    def period(self) -> typing.Any:
+        """
+        s, or None where it is no loop
+        """
+    @property
+    def targets(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [K, V, 3] in m, a copy
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [V, 3] in m
+        """
+    @property
+    def weights(self) -> Curve:
+        """
+        Curve of [T, K]
         """
 class Material:
     """
@@ -641,7 +815,7 @@ class Joint:
     name: unique within its skin; the part of a mesh that it moves is named after it
     parent: name of an earlier joint; None: it moves in the frame of the skin
     position [3] in m, or transform [4, 4]: at rest, relative to the parent
-    motion: LinearMotion or KeyframeMotion about its own origin, as of a node of a scene; None: at rest
+    motion: LinearMotion, KeyframeMotion or CurveMotion about its own origin, as of a node of a scene; None: at rest
     inverse_bind: [4, 4] frame of the skin -> frame of the joint where the vertices were bound to it; None: as the joints rest
     With transform none and inverse_bind given, a motion is the joint's transform relative to its parent, as in glTF files.
     Raises TypeError or ValueError naming the argument.
@@ -701,6 +875,7 @@ class Skin(Deformation):
     joints: list [J] of Joint, parents first
     weights: [V, J], or [V, K] with joint_indices; >= 0, and each row adds up to 1 (less than 1e-4 off is scaled)
     joint_indices: [V, K] which joint each weight is of; None: column j of weights is joint j
+    shape: MorphTargets or VertexSequence that replaces v at each time before the joints move it; None: none
     Raises TypeError or ValueError naming the argument.
     """
     def __eq__(self, other: object) -> bool:
@@ -711,7 +886,7 @@ class Skin(Deformation):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, vertices: ArrayLike, joints: typing.Sequence[Joint], weights: ArrayLike, joint_indices: ArrayLike | None = None) -> None:
+    def __init__(self, vertices: ArrayLike, joints: typing.Sequence[Joint], weights: ArrayLike, joint_indices: ArrayLike | None = None, shape: Deformation | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -747,6 +922,11 @@ class Skin(Deformation):
     def joints(self) -> list[Joint]:
         """
         list [J] of Joint, each with its inverse_bind
+        """
+    @property
+    def shape(self) -> Deformation:
+        """
+        the Deformation before the joints move it, or None
         """
     @property
     def vertices(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -18,8 +18,8 @@ class Deformation {
   virtual std::vector<Vec3> at(double time) const = 0;
   // Writes only the vertices `indices` [I] to out [I], at the cost of these. Raises invalid_argument for an index beyond V.
   virtual void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const = 0;
-  // Returns the times (s) where the deformation is not smooth, ascending, without the ends of the span.
-  virtual std::vector<double> breakpoints() const = 0;
+  // Returns the times (s) where the deformation is not smooth, as Motion::breakpoints does.
+  virtual std::vector<double> breakpoints(const TimeSpan& during = {}) const = 0;
   virtual TimeSpan span() const = 0;
   // Returns the bound of Motion::turn_rate for the fastest vertex, rad/s.
   virtual double turn_rate(const TimeSpan& during) const = 0;
@@ -35,7 +35,7 @@ class VertexSequence : public Deformation {
   int64_t num_vertices() const override;
   std::vector<Vec3> at(double time) const override;
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
-  std::vector<double> breakpoints() const override;
+  std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   TimeSpan span() const override;
   double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;

@@ -113,7 +113,7 @@ Transform KeyframeMotion::at(double time) const {
   return transform;
 }
 
-std::vector<double> KeyframeMotion::breakpoints() const { return data_->knots.breakpoints(); }
+std::vector<double> KeyframeMotion::breakpoints(const TimeSpan&) const { return data_->knots.breakpoints(); }
 TimeSpan KeyframeMotion::span() const { return data_->knots.span(); }
 
 double KeyframeMotion::turn_rate(const TimeSpan& during) const {

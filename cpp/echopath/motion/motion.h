@@ -1,5 +1,5 @@
 #pragma once
-// A motion maps time to a rigid transform in the axes of the parent of its node, about the node's own origin.
+// A motion maps time to a transform, mostly a rigid one, in the axes of the parent of its node, about the node's own origin.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -19,12 +19,18 @@ enum class Interpolation { kCubic, kLinear };
 class Motion {
  public:
   virtual ~Motion() = default;
-  // Returns the rigid transform at `time` (s), in the axes of the node's parent about the node's origin:
+  // Returns the transform at `time` (s), in the axes of the node's parent about the node's origin:
   // parent_from_node(t) = Translation(placement) * at(t) * Rotation(placement).
   // Raises invalid_argument when `time` lies outside span().
   virtual Transform at(double time) const = 0;
-  // Returns the times (s) where the motion is not smooth, ascending, without the ends of the span.
-  virtual std::vector<double> breakpoints() const { return {}; }
+  // Returns the times (s) where the motion is not smooth, ascending, without the ends of the span: all those within
+  // `during`, and others where that is easier. Of a loop without end an unlimited `during` stands for one run.
+  virtual std::vector<double> breakpoints(const TimeSpan& during = {}) const {
+    static_cast<void>(during);
+    return {};
+  }
+  // Tells whether at(t) keeps lengths at every time. Others move joints of a Skin, but no nodes.
+  virtual bool is_rigid() const { return true; }
   virtual TimeSpan span() const { return {}; }
   // Returns a bound (rad/s) of how fast the motion oscillates within `during`: the larger of its angular speed and, where it
   // moves to and fro between samples, pi over the shortest time between two turning points. 0 means that it goes straight
@@ -58,7 +64,7 @@ class KeyframeMotion : public Motion {
                  Interpolation interpolation = Interpolation::kCubic);
   ~KeyframeMotion() override;
   Transform at(double time) const override;
-  std::vector<double> breakpoints() const override;
+  std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   TimeSpan span() const override;
   double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;

@@ -59,11 +59,12 @@ struct Skin::Data {
   };
   std::vector<Vec3> vertices;
   std::vector<Joint> joints;
-  std::vector<uint32_t> first;        // [V + 1] into influences
-  std::vector<Influence> influences;  // by vertex
+  std::shared_ptr<const Deformation> shape;  // may be null
+  std::vector<uint32_t> first;               // [V + 1] into influences
+  std::vector<Influence> influences;         // by vertex
 
   void add_row(const SkinWeights& weights, size_t vertex);
-  Vec3 vertex(const std::vector<Transform>& transforms, size_t index) const;
+  Vec3 moved_vertex(const std::vector<Transform>& transforms, size_t index, const Vec3& from) const;
   int64_t longest_row() const;
 };
 
@@ -85,10 +86,10 @@ void Skin::Data::add_row(const SkinWeights& weights, size_t vertex) {
   first.push_back(static_cast<uint32_t>(influences.size()));
 }
 
-Vec3 Skin::Data::vertex(const std::vector<Transform>& transforms, size_t index) const {
+Vec3 Skin::Data::moved_vertex(const std::vector<Transform>& transforms, size_t index, const Vec3& from) const {
   Vec3 sum = Vec3::Zero();
   for (uint32_t i = first[index]; i < first[index + 1]; ++i) {
-    sum += influences[i].weight * (transforms[influences[i].joint] * vertices[index]);
+    sum += influences[i].weight * (transforms[influences[i].joint] * from);
   }
   return sum;
 }
@@ -99,9 +100,14 @@ int64_t Skin::Data::longest_row() const {
   return longest;
 }
 
-Skin::Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights) {
+Skin::Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights,
+           std::shared_ptr<const Deformation> shape) {
   check_shapes(vertices, weights);
-  Data data{std::move(vertices), bound(std::move(joints)), {0}, {}};
+  const auto num_vertices = static_cast<int64_t>(vertices.size());
+  require(!shape || shape->num_vertices() == num_vertices, "shape", "must have as many vertices as the skin",
+          shape ? shape->num_vertices() : 0);
+  require(!dynamic_cast<const Skin*>(shape.get()), "shape", "must not be a skin itself", "one");
+  Data data{std::move(vertices), bound(std::move(joints)), std::move(shape), {0}, {}};
   data.first.reserve(data.vertices.size() + 1);
   for (size_t v = 0; v < data.vertices.size(); ++v) data.add_row(weights, v);
   data_ = std::make_shared<const Data>(std::move(data));
@@ -112,6 +118,7 @@ Skin::~Skin() = default;
 int64_t Skin::num_vertices() const { return static_cast<int64_t>(data_->vertices.size()); }
 const std::vector<Vec3>& Skin::vertices() const { return data_->vertices; }
 const std::vector<Joint>& Skin::joints() const { return data_->joints; }
+const std::shared_ptr<const Deformation>& Skin::shape() const { return data_->shape; }
 
 std::vector<Transform> Skin::joint_transforms(double time) const {
   std::vector<Transform> transforms;  // skin_from_joint at first, because children need it
@@ -126,37 +133,39 @@ std::vector<Transform> Skin::joint_transforms(double time) const {
 
 std::vector<Vec3> Skin::at(double time) const {
   const std::vector<Transform> transforms = joint_transforms(time);
-  std::vector<Vec3> out(data_->vertices.size());
-  for (size_t i = 0; i < out.size(); ++i) out[i] = data_->vertex(transforms, i);
+  std::vector<Vec3> out = data_->shape ? data_->shape->at(time) : data_->vertices;
+  for (size_t i = 0; i < out.size(); ++i) out[i] = data_->moved_vertex(transforms, i, out[i]);
   return out;
 }
 
 void Skin::at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const {
   const std::vector<Transform> transforms = joint_transforms(time);
+  if (data_->shape) data_->shape->at(time, indices, out);
   out.resize(indices.size());
   for (size_t i = 0; i < indices.size(); ++i) {
     require(indices[i] < data_->vertices.size(), "indices", "must be below the number of vertices", indices[i]);
-    out[i] = data_->vertex(transforms, indices[i]);
+    const Vec3 from = data_->shape ? out[i] : data_->vertices[indices[i]];
+    out[i] = data_->moved_vertex(transforms, indices[i], from);
   }
 }
 
-std::vector<double> Skin::breakpoints() const {
+std::vector<double> Skin::breakpoints(const TimeSpan& during) const {
   std::set<double> times;
+  const auto add = [&](const std::vector<double>& own) { times.insert(own.begin(), own.end()); };
   for (const Joint& joint : data_->joints) {
-    if (!joint.motion) continue;
-    const std::vector<double> own = joint.motion->breakpoints();
-    times.insert(own.begin(), own.end());
+    if (joint.motion) add(joint.motion->breakpoints(during));
   }
+  if (data_->shape) add(data_->shape->breakpoints(during));
   return {times.begin(), times.end()};
 }
 
 TimeSpan Skin::span() const {
   TimeSpan common;
+  const auto cut = [&](const TimeSpan& own) { common = {std::max(common.begin, own.begin), std::min(common.end, own.end)}; };
   for (const Joint& joint : data_->joints) {
-    if (!joint.motion) continue;
-    const TimeSpan own = joint.motion->span();
-    common = {std::max(common.begin, own.begin), std::min(common.end, own.end)};
+    if (joint.motion) cut(joint.motion->span());
   }
+  if (data_->shape) cut(data_->shape->span());
   return common;
 }
 
@@ -168,7 +177,7 @@ double Skin::turn_rate(const TimeSpan& during) const {
     rates.push_back(above + (joint.motion ? joint.motion->turn_rate(during) : 0.0));
     fastest = std::max(fastest, rates.back());
   }
-  return fastest;
+  return fastest + (data_->shape ? data_->shape->turn_rate(during) : 0.0);
 }
 
 SkinWeights Skin::weights() const {

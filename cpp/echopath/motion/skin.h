@@ -29,24 +29,28 @@ struct SkinWeights {
 
 // Computes v(t) = sum_j weight_j * skin_from_joint_j(t) * inverse_bind_j * v, exactly at every time (Magnenat-Thalmann,
 // Laperriere, Thalmann 1988, "Joint-dependent local deformations"). Where a vertex follows several joints, the surface
-// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Immutable.
+// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Where it has a shape, v is
+// that of the shape at the same time. Immutable.
 class Skin : public Deformation {
  public:
   // vertices [V] in m as bound, in the frame of the skin. A vertex may follow any number of joints; rows whose sum is off 1
   // by less than 1e-4 are scaled. Raises invalid_argument naming the argument.
-  Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights);
+  // `shape` replaces the vertices at each time, before the joints move them; null: they stay. It must have V vertices.
+  Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights,
+       std::shared_ptr<const Deformation> shape = nullptr);
   ~Skin() override;
 
   int64_t num_vertices() const override;
   std::vector<Vec3> at(double time) const override;
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
-  std::vector<double> breakpoints() const override;         // of all joints
-  TimeSpan span() const override;                           // common to all joints; begin > end where there is none
-  double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, with the joints above it added
+  std::vector<double> breakpoints(const TimeSpan& during = {}) const override;  // of all joints and of the shape
+  TimeSpan span() const override;                           // common to all of them; begin > end where there is none
+  double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, those above it and the shape added
 
   const std::vector<Vec3>& vertices() const;
   const std::vector<Joint>& joints() const;  // all with inverse_bind
-  SkinWeights weights() const;               // rows are padded with joint 0, weight 0
+  const std::shared_ptr<const Deformation>& shape() const;
+  SkinWeights weights() const;  // rows are padded with joint 0, weight 0
 
   // Returns skin_from_joint(t) * inverse_bind [J], which moves the vertices that follow one joint alone.
   std::vector<Transform> joint_transforms(double time) const;

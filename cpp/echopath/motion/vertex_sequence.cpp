@@ -74,7 +74,7 @@ void VertexSequence::at(double time, const std::vector<uint32_t>& indices, std::
   }
 }
 
-std::vector<double> VertexSequence::breakpoints() const { return data_->knots.breakpoints(); }
+std::vector<double> VertexSequence::breakpoints(const TimeSpan&) const { return data_->knots.breakpoints(); }
 TimeSpan VertexSequence::span() const { return data_->knots.span(); }
 
 double VertexSequence::turn_rate(const TimeSpan& during) const {

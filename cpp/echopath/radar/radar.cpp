@@ -140,6 +140,7 @@ void Radar::validate() const {
   require_positive(transmit_power, "transmit_power");
   require(std::isfinite(noise_figure_db) && noise_figure_db >= 0.0, "noise_figure_db", "must be finite and not negative",
           noise_figure_db);
+  require(!motion || motion->is_rigid(), "motion", "must keep lengths", "one with scales");
   require_in_range(position, "position", "the radar");
   require(std::isfinite(yaw), "yaw", "must be finite", yaw);
   require(std::abs(pitch) <= 0.5 * kPi, "pitch", "must be from -pi/2 to pi/2 rad", pitch);

@@ -28,6 +28,8 @@ void check_content(const Node& node) {
   require(!node.mesh || node.material, "material", "must be given with a mesh in node", node.name);
   require(node.mesh || !node.material, "material", "must not be given without a mesh in node", node.name);
   if (node.material) node.material->validate();
+  require(!node.motion || node.motion->is_rigid(), "motion", "must keep lengths: scales move joints of a Skin alone; node",
+          node.name);
   if (!node.deformation) return;
   require(node.mesh != nullptr, "deformation", "must not be given without a mesh in node", node.name);
   const int64_t num_input = node.mesh->num_input_vertices();
@@ -168,14 +170,14 @@ bool Scene::may_stretch(uint32_t mesh_id) const {
   return false;
 }
 
-std::vector<double> Scene::breakpoints() const {
+std::vector<double> Scene::breakpoints(const TimeSpan& during) const {
   std::vector<double> all;
   const auto append = [&](const std::vector<double>& times) { all.insert(all.end(), times.begin(), times.end()); };
   for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) {
     const Node& node = at(index);
     if (!takes_part(index)) continue;
-    if (node.motion) append(node.motion->breakpoints());
-    if (node.deformation) append(node.deformation->breakpoints());
+    if (node.motion) append(node.motion->breakpoints(during));
+    if (node.deformation) append(node.deformation->breakpoints(during));
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());

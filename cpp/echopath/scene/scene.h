@@ -68,7 +68,8 @@ class Scene {
   // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
   // scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;
-  std::vector<double> breakpoints() const;  // of all motions that take part, ascending
+  // Returns those of all motions that take part, ascending (Motion::breakpoints).
+  std::vector<double> breakpoints(const TimeSpan& during = {}) const;
   // Raises invalid_argument naming the node when a motion that takes part is not defined on all of [begin, end] (s).
   void require_times(double begin, double end) const;
 

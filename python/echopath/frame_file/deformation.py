@@ -1,21 +1,26 @@
-"""Vertex sequences and skins in HDF5 groups (layout: data/README.md)."""
+"""Vertex sequences, skins and morph targets in HDF5 groups (layout: data/README.md)."""
 from __future__ import annotations
 
 import numpy as np
 
 from .. import _core
+from .curves import read_morph_targets, write_morph_targets
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
 
 def write_deformation(group, deformation) -> None:
-    """Writes a vertex sequence or a skin."""
+    """Writes a vertex sequence, a skin or morph targets."""
     if isinstance(deformation, _core.Skin):
         write_attribute(group, "kind", "skin")
         _write_skin(group, deformation)
         return
+    if isinstance(deformation, _core.MorphTargets):
+        write_attribute(group, "kind", "morph")
+        write_morph_targets(group, deformation)
+        return
     if not isinstance(deformation, _core.VertexSequence):
-        raise ValueError(f"motion: must be a VertexSequence or a Skin to deform a mesh, got {deformation!r}")
+        raise ValueError(f"motion: must be a VertexSequence, Skin or MorphTargets to deform a mesh, got {deformation!r}")
     write_attribute(group, "kind", "vertices")
     write_attribute(group, "interpolation", deformation.interpolation)
     write_array(group, "times", deformation.times, unit="s")
@@ -24,10 +29,12 @@ def write_deformation(group, deformation) -> None:
 
 @blames_group
 def read_deformation(group):
-    """The vertex sequence or skin of a group."""
+    """The vertex sequence, skin or morph targets of a group."""
     kind = read_attribute(group, "kind", str)
     if kind == "skin":
         return _read_skin(group)
+    if kind == "morph":
+        return read_morph_targets(group)
     if kind != "vertices":
         raise _core.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
     times = read_array(group, "times", np.float64, (None,))
@@ -50,6 +57,8 @@ def _write_skin(group, skin) -> None:
     write_array(group, "vertices", skin.vertices, unit="m", compress=True)
     write_array(group, "weights", skin.weights, compress=True)
     write_array(group, "joint_indices", skin.joint_indices, compress=True)
+    if skin.shape is not None:
+        write_deformation(group.create_group("shape"), skin.shape)
 
 
 def _read_skin(group):
@@ -69,4 +78,15 @@ def _read_skin(group):
                                   inverse_bind=inverse_binds[index]))
     vertices = read_array(group, "vertices", np.float64, (None, 3))
     weights = read_array(group, "weights", np.float64, (len(vertices), None))
-    return _core.Skin(vertices, joints, weights, joint_indices=read_array(group, "joint_indices", np.uint32, weights.shape))
+    indices = read_array(group, "joint_indices", np.uint32, weights.shape)
+    return _core.Skin(vertices, joints, weights, joint_indices=indices, shape=_read_shape(group))
+
+
+def _read_shape(group):
+    """What shapes the vertices before the joints move them, or None; a file may nest them no deeper."""
+    if "shape" not in group:
+        return None
+    shape = read_group(group, "shape")
+    if read_attribute(shape, "kind", str) == "skin":  # skins in skins may be nested without end
+        raise _core.FileError(f"{shape.name}: must not be a skin")
+    return read_deformation(shape)

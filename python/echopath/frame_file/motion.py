@@ -4,18 +4,23 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from .curves import read_curve_motion, write_curve_motion
 from .h5 import blames_group, read_array, read_attribute, write_array, write_attribute
 
 
 def write_motion(group, motion) -> None:
-    """Writes a linear motion or keyframes."""
+    """Writes a linear motion, keyframes or curves."""
     if isinstance(motion, _core.LinearMotion):
         write_attribute(group, "kind", "linear")
         write_array(group, "velocity", motion.velocity, unit="m/s")
         write_array(group, "angular_velocity", motion.angular_velocity, unit="rad/s")
         return
+    if isinstance(motion, _core.CurveMotion):
+        write_attribute(group, "kind", "curves")
+        write_curve_motion(group, motion)
+        return
     if not isinstance(motion, _core.KeyframeMotion):
-        raise ValueError(f"motion: must be a LinearMotion or KeyframeMotion, got {motion!r}")
+        raise ValueError(f"motion: must be a LinearMotion, KeyframeMotion or CurveMotion, got {motion!r}")
     write_attribute(group, "kind", "keyframes")
     write_attribute(group, "interpolation", motion.interpolation)
     write_array(group, "times", motion.times, unit="s")
@@ -35,6 +40,8 @@ def read_motion(group):
                                     translations=_filled(group, "translations", (None, 3)),
                                     rotations=_filled(group, "rotations", (None, 4)),
                                     interpolation=read_attribute(group, "interpolation", str))
+    if kind == "curves":
+        return read_curve_motion(group)
     raise _core.FileError(f"{group.name}: unknown kind of motion '{kind}'")
 
 

@@ -50,7 +50,7 @@ class Stretch : public Deformation {
     const Vec3 size = from_ + time * (to_ - from_);
     for (const uint32_t v : indices) out.push_back(Vec3(kDistance, 0, 0) + size.cwiseProduct(sheet_[v] - Vec3(0, 0.5, 0.5)));
   }
-  std::vector<double> breakpoints() const override { return {}; }
+  std::vector<double> breakpoints(const TimeSpan&) const override { return {}; }
   TimeSpan span() const override { return {-1.0, 2.0}; }
   double turn_rate(const TimeSpan&) const override { return 0.0; }
   mutable std::atomic<int64_t> num_posed = 0;

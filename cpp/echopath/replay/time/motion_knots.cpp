@@ -22,6 +22,7 @@ void append_knots(const Deformation* deformation, std::vector<double>& all) {
   if (const auto* sequence = dynamic_cast<const VertexSequence*>(deformation)) append(sequence->times(), all);
   if (const auto* skin = dynamic_cast<const Skin*>(deformation)) {
     for (const Joint& joint : skin->joints()) append_knots(joint.motion.get(), all);
+    append_knots(skin->shape().get(), all);
   }
 }
 
@@ -33,14 +34,14 @@ std::vector<double> ascending(std::vector<double> times) {
 
 }  // namespace
 
-std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar) {
-  std::vector<double> times = scene.breakpoints();
-  if (radar.motion) append(radar.motion->breakpoints(), times);
+std::vector<double> motion_breakpoints(const Scene& scene, const Radar& radar, const TimeSpan& during) {
+  std::vector<double> times = scene.breakpoints(during);
+  if (radar.motion) append(radar.motion->breakpoints(during), times);
   return ascending(std::move(times));
 }
 
-std::vector<double> motion_knots(const Scene& scene, const Radar& radar) {
-  std::vector<double> times = motion_breakpoints(scene, radar);
+std::vector<double> motion_knots(const Scene& scene, const Radar& radar, const TimeSpan& during) {
+  std::vector<double> times = motion_breakpoints(scene, radar, during);
   append_knots(radar.motion.get(), times);
   for (int index = 0; index < static_cast<int>(scene.nodes().size()); ++index) {
     const Node& node = scene.nodes()[static_cast<size_t>(index)];

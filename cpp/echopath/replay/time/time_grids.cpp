@@ -32,7 +32,8 @@ TimeGrids::TimeGrids(const Paths& paths, const Radar& radar, const ReplaySetting
 
 void TimeGrids::find_polynomials(const Scene& scene, const Radar& radar) {
   const double start = start_time_, end = start + radar.frame_duration();
-  std::vector<double> breakpoints = motion_breakpoints(scene, radar), knots = motion_knots(scene, radar);
+  std::vector<double> breakpoints = motion_breakpoints(scene, radar, {start, end});
+  std::vector<double> knots = motion_knots(scene, radar, {start, end});
   for (std::vector<double>* cuts : {&breakpoints, &knots}) {
     std::erase_if(*cuts, [&](double time) { return time <= start || time >= end; });
   }

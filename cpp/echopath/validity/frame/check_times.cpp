@@ -20,10 +20,10 @@ int64_t breakpoints_within(const Scene& scene, const Radar& radar, uint32_t mesh
   const auto add = [&](const std::vector<double>& times) {
     count += std::count_if(times.begin(), times.end(), [&](double time) { return time > frame.begin && time < frame.end; });
   };
-  if (radar.motion) add(radar.motion->breakpoints());
-  if (const auto& deformation = scene.node_of(mesh_id).deformation) add(deformation->breakpoints());
+  if (radar.motion) add(radar.motion->breakpoints(frame));
+  if (const auto& deformation = scene.node_of(mesh_id).deformation) add(deformation->breakpoints(frame));
   for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
-    if (const auto& motion = scene.nodes()[static_cast<size_t>(i)].motion) add(motion->breakpoints());
+    if (const auto& motion = scene.nodes()[static_cast<size_t>(i)].motion) add(motion->breakpoints(frame));
   }
   return count;
 }

@@ -1,0 +1,63 @@
+#pragma once
+// Curves through keys as animation files have them, and the clock by which they are played.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "echopath/motion/motion.h"
+
+namespace echopath {
+
+// How a curve goes from one key to the next (glTF 2.0, appendix C): it holds the earlier value and jumps at the later key, it
+// goes straight, or it follows a cubic Hermite spline with the tangents of the keys.
+enum class CurveInterpolation { kStep, kLinear, kHermite };
+
+// Holds C numbers at each of T key times, T >= 1. Beyond its first and last key it holds their values. Immutable.
+struct Curve {
+  std::vector<double> times;   // [T] s, strictly ascending
+  std::vector<double> values;  // [T, C]
+  CurveInterpolation interpolation = CurveInterpolation::kLinear;
+  std::vector<double> in_tangents, out_tangents;  // [T, C] per s, before and behind each key; kHermite alone
+
+  size_t num_columns() const { return times.empty() ? 0 : values.size() / times.size(); }
+  // Raises invalid_argument naming `argument` unless the sizes fit `num_columns` and all numbers are finite.
+  void validate(const char* argument, size_t num_columns) const;
+};
+
+// Tells which time of its curves a motion shows: at the time t of the scene it is t + offset, taken back into [0, period)
+// where there is a period. Runs of a loop are counted, so that breakpoints and values agree to the bit on which side of a
+// key a time lies.
+struct Playback {
+  double offset = 0.0;  // s
+  double period = 0.0;  // s, 0: played once, and held before and after
+
+  // Raises invalid_argument naming the argument.
+  void validate() const;
+  int64_t run_at(double time) const;                   // 0 where there is no period
+  double time_of(double key_time, int64_t run) const;  // s, of the scene
+  // Appends the times of the scene within `during` at which these keys and the ends of runs lie. An unlimited `during` stands
+  // for run 0 alone. A single key never changes anything and has none.
+  void append_times(const std::vector<double>& key_times, const TimeSpan& during, std::vector<double>& out) const;
+};
+
+// Where a time lies among the keys of a curve: between keys k and k + 1 (the same one beyond the ends), at the fraction s of
+// the time between them.
+struct CurvePlace {
+  size_t k = 0, next = 0;
+  double s = 0.0;
+};
+CurvePlace place_on(const Curve& curve, const Playback& playback, double time);
+
+// Returns the weights of value k, out-tangent k, value next and in-tangent next, by which a column has its value at the
+// place: linear between keys, or Hermite. Tangents weigh 0 unless the curve has them.
+std::array<double, 4> curve_weights(const Curve& curve, const CurvePlace& place);
+// Writes the columns [C] at `time` (s, of the scene) to `out`.
+void evaluate(const Curve& curve, const Playback& playback, double time, std::span<double> out);
+
+// Returns pi over the shortest time between two turning points of any column within `during`, rad/s. Column c counts in
+// metres as extents[c] times its value; beyond the columns of `extents` it counts as it is.
+double curve_turn_rate(const Curve& curve, const Playback& playback, const TimeSpan& during,
+                       const std::vector<double>& extents = {});
+
+}  // namespace echopath

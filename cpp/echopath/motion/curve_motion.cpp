@@ -1,0 +1,137 @@
+#include "echopath/motion/curve_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/motion/spline.h"
+
+namespace echopath {
+namespace {
+
+// A quaternion farther from length 1 than this is a mistake; 8-bit ones are off by 0.7 %.
+constexpr double kKeyLengthTolerance = 1e-2;
+// A quaternion nearer to length 1 than this is left alone, so that saved ones keep their bits.
+constexpr double kKeyLengthRounding = 1e-14;
+
+Quaternion quaternion_at(const std::vector<double>& values, size_t key) {
+  const double* q = values.data() + 4 * key;
+  return {q[0], q[1], q[2], q[3]};
+}
+
+// Normalises the keys. Those of splines stay as they are, because only what lies between them is normalised.
+void normalise_keys(Curve& curve) {
+  for (size_t k = 0; k < curve.times.size(); ++k) {
+    const double norm = quaternion_at(curve.values, k).norm();
+    require(std::abs(norm - 1.0) <= kKeyLengthTolerance, "rotation", "must hold unit quaternions (w, x, y, z); norm", norm);
+    if (curve.interpolation == CurveInterpolation::kHermite || std::abs(norm - 1.0) <= kKeyLengthRounding) continue;
+    for (size_t c = 4 * k; c < 4 * k + 4; ++c) curve.values[c] /= norm;
+  }
+}
+
+Vec3 vector_at(const Curve& curve, const Playback& playback, double time) {
+  Vec3 value;
+  evaluate(curve, playback, time, {value.data(), 3});
+  return value;
+}
+
+Quaternion rotation_at(const Curve& curve, const Playback& playback, double time) {
+  const CurvePlace place = place_on(curve, playback, time);
+  if (curve.interpolation == CurveInterpolation::kLinear) {
+    return quaternion_at(curve.values, place.k).slerp(place.s, quaternion_at(curve.values, place.next));
+  }
+  std::array<double, 4> q;
+  evaluate(curve, playback, time, q);
+  const Quaternion value(q[0], q[1], q[2], q[3]);
+  return value.norm() > 0.0 ? value.normalized() : quaternion_at(curve.values, place.k);
+}
+
+// Returns a bound of the angular speed between two keys, rad/s. The derivative of a Hermite spline lies in the hull of
+// three vectors (its Bezier form), and its length is seen at some places.
+double angular_speed(const Curve& curve, size_t k) {
+  if (curve.interpolation == CurveInterpolation::kStep) return 0.0;
+  const double step = curve.times[k + 1] - curve.times[k];
+  const Quaternion from = quaternion_at(curve.values, k), to = quaternion_at(curve.values, k + 1);
+  if (curve.interpolation == CurveInterpolation::kLinear) return from.angularDistance(to) / step;
+  constexpr int kPlaces = 16;
+  constexpr double kShortest = 0.05;  // keys more than 170 degrees apart come near 0
+  const Quaternion leaving = quaternion_at(curve.out_tangents, k), arriving = quaternion_at(curve.in_tangents, k + 1);
+  const Eigen::Vector4d middle = 3.0 * (to.coeffs() - from.coeffs()) / step - leaving.coeffs() - arriving.coeffs();
+  double shortest = 1.0;
+  for (int i = 1; i < kPlaces; ++i) {
+    const auto w = curve_weights(curve, {k, k + 1, static_cast<double>(i) / kPlaces});
+    const Eigen::Vector4d q = w[0] * from.coeffs() + w[1] * leaving.coeffs() + w[2] * to.coeffs() + w[3] * arriving.coeffs();
+    shortest = std::min(shortest, q.norm());
+  }
+  const double fastest = std::max({leaving.norm(), middle.norm(), arriving.norm()});
+  return 2.0 * fastest / std::max(shortest, kShortest);
+}
+
+// The keys between which an unlooped curve is played; all of them where it is looped.
+KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSpan& during) {
+  const size_t last = curve.times.size() - 1;
+  if (last == 0) return {};
+  if (playback.period > 0.0) return {0, last};
+  return knots_around(curve.times, {during.begin + playback.offset, during.end + playback.offset});
+}
+
+}  // namespace
+
+struct CurveMotion::Data {
+  MotionCurves curves;
+  Playback playback;
+};
+
+CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) {
+  playback.validate();
+  require(curves.translation || curves.rotation || curves.scale, "translation",
+          "must be given where there is neither rotation nor scale", "none");
+  if (curves.translation) curves.translation->validate("translation", 3);
+  if (curves.rotation) {
+    curves.rotation->validate("rotation", 4);
+    normalise_keys(*curves.rotation);
+  }
+  if (curves.scale) curves.scale->validate("scale", 3);
+  data_ = std::make_shared<const Data>(Data{std::move(curves), playback});
+}
+
+CurveMotion::~CurveMotion() = default;
+
+Transform CurveMotion::at(double time) const {
+  const auto& [curves, playback] = *data_;
+  Transform transform = Transform::Identity();
+  if (curves.translation) transform.translation() = vector_at(*curves.translation, playback, time);
+  if (curves.rotation) transform.linear() = rotation_at(*curves.rotation, playback, time).toRotationMatrix();
+  if (curves.scale) transform.linear() *= vector_at(*curves.scale, playback, time).asDiagonal();
+  return transform;
+}
+
+std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
+  const auto& [curves, playback] = *data_;
+  std::vector<double> times;
+  for (const std::optional<Curve>* curve : {&curves.translation, &curves.rotation, &curves.scale}) {
+    if (*curve) playback.append_times((*curve)->times, during, times);
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+bool CurveMotion::is_rigid() const { return !data_->curves.scale; }
+
+double CurveMotion::turn_rate(const TimeSpan& during) const {
+  const auto& [curves, playback] = *data_;
+  double fastest = 0.0;
+  if (curves.translation) fastest = curve_turn_rate(*curves.translation, playback, during);
+  if (curves.scale) fastest = std::max(fastest, curve_turn_rate(*curves.scale, playback, during));
+  if (!curves.rotation) return fastest;
+  const auto [first, last] = keys_played(*curves.rotation, playback, during);
+  for (size_t k = first; k < last; ++k) fastest = std::max(fastest, angular_speed(*curves.rotation, k));
+  return fastest;
+}
+
+const MotionCurves& CurveMotion::curves() const { return data_->curves; }
+const Playback& CurveMotion::playback() const { return data_->playback; }
+
+}  // namespace echopath

@@ -1,0 +1,34 @@
+#pragma once
+// Morph targets: a mesh takes on shares of other shapes.
+#include <memory>
+
+#include "echopath/motion/curve.h"
+#include "echopath/motion/deformation.h"
+
+namespace echopath {
+
+// Computes v(t) = base + sum_k weight_k(t) * target_k, with targets that are displacements. Exact at every time; defined at
+// all of them, with breakpoints as CurveMotion has them. It computes only the vertices it is asked for. Immutable.
+class MorphTargets : public Deformation {
+ public:
+  // vertices [V] in m; targets [K][V] in m; weights: a curve of K columns. Raises invalid_argument naming the argument.
+  MorphTargets(std::vector<Vec3> vertices, std::vector<std::vector<Vec3>> targets, Curve weights,
+               const Playback& playback = {});
+  ~MorphTargets() override;
+  int64_t num_vertices() const override;
+  std::vector<Vec3> at(double time) const override;
+  void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
+  std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
+  TimeSpan span() const override { return {}; }
+  double turn_rate(const TimeSpan& during) const override;
+  const std::vector<Vec3>& vertices() const;
+  const std::vector<std::vector<Vec3>>& targets() const;
+  const Curve& weights() const;
+  const Playback& playback() const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace echopath

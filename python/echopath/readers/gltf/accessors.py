@@ -1,0 +1,111 @@
+"""Accessors: typed views into buffers, as NumPy arrays."""
+from __future__ import annotations
+
+import numpy as np
+
+from .document import Document
+from .item import Item
+
+# componentType -> (type, what a normalised number is divided by)
+COMPONENTS = {5120: ("<i1", 127.0), 5121: ("<u1", 255.0), 5122: ("<i2", 32767.0), 5123: ("<u2", 65535.0),
+              5125: ("<u4", 4294967295.0), 5126: ("<f4", 1.0)}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+FLOAT, UNSIGNED = (5126,), (5121, 5123, 5125)
+ANY = tuple(COMPONENTS)
+
+
+class Accessors:
+    """The accessors of a document; each is read once."""
+
+    def __init__(self, document: Document):
+        self._document = document
+        self._items = document.json["accessors"].objects()
+        self._views = document.json["bufferViews"].objects()
+        self._read: dict[int, np.ndarray] = {}
+
+    def numbers(self, reference: Item, kind: str, components=ANY) -> np.ndarray:
+        """Numbers [N] or [N, columns] in double precision of the accessor that `reference` names; normalised where it says so.
+
+        kind: "VEC3" and the like; components: the types that may hold them. Raises FileError, also for what is not finite.
+        """
+        index, item = self._item_of(reference, kind, components)
+        values = self._stored(index, item)
+        self._document.spend(8 * values.size, reference)
+        result = values.astype(np.float64)
+        if item["normalized"].flag(False):
+            result = np.maximum(result / COMPONENTS[item["componentType"].value][1], -1.0)
+        bad = np.flatnonzero(~np.isfinite(result))
+        if len(bad):
+            width = WIDTHS[kind]
+            reference.fail(f"must hold finite numbers, holds {result.flat[bad[0]]:g} at entry {bad[0] // width}")
+        return result
+
+    def indices(self, reference: Item, kind: str = "SCALAR") -> np.ndarray:
+        """Whole numbers >= 0, [N] or [N, columns]."""
+        index, item = self._item_of(reference, kind, UNSIGNED)
+        values = self._stored(index, item)
+        self._document.spend(8 * values.size, reference)
+        return values.astype(np.int64)
+
+    def count(self, reference: Item) -> int:
+        """Entries of the accessor that `reference` names."""
+        return self._items[reference.index(len(self._items))]["count"].whole(1, 2**31)
+
+    def is_stored(self, reference: Item) -> bool:
+        """Whether it has any bytes; one that has none is all zeros."""
+        item = self._items[reference.index(len(self._items))]
+        return "bufferView" in item or "sparse" in item
+
+    def _item_of(self, reference: Item, kind: str, components) -> tuple[int, Item]:
+        index = reference.index(len(self._items))
+        item = self._items[index]
+        if item["type"].text() != kind:
+            item["type"].fail(f"must be {kind} for {reference.place}, is {item['type'].value!r}"[:200])
+        if item["componentType"].whole(0, 2**16) not in components:
+            wanted = ", ".join(str(component) for component in components)
+            item["componentType"].must_be(f"one of {wanted} for {reference.place}")
+        return index, item
+
+    def _stored(self, index: int, item: Item) -> np.ndarray:
+        if index not in self._read:
+            dtype = np.dtype(COMPONENTS[item["componentType"].value][0])
+            width = WIDTHS[item["type"].value]
+            shape = (item["count"].whole(1, 2**31),) + ((width,) if width > 1 else ())
+            self._document.spend(int(np.prod(shape)) * dtype.itemsize, item["count"])
+            if item["bufferView"].is_given:
+                values = self._viewed(item, item["bufferView"], shape, dtype)
+            else:
+                values = np.zeros(shape, dtype)
+            self._read[index] = self._with_exceptions(item["sparse"], values) if item["sparse"].is_given else values
+        return self._read[index]
+
+    def _viewed(self, item: Item, reference: Item, shape: tuple, dtype) -> np.ndarray:
+        """Entries of a buffer view, without a copy."""
+        view = self._views[reference.index(len(self._views))]
+        buffers = self._document.json["buffers"].objects()
+        content = self._document.buffer(view["buffer"].index(len(buffers)))
+        begin, length = view["byteOffset"].whole(0, 2**53, 0), view["byteLength"].whole(1, 2**53)
+        if begin + length > len(content):
+            view["byteLength"].fail(f"ends at byte {begin + length} of a buffer of {len(content)} bytes")
+        row = dtype.itemsize * (shape[1] if len(shape) > 1 else 1)
+        stride = view["byteStride"].whole(1, 252, row)
+        offset = item["byteOffset"].whole(0, 2**53, 0)
+        end = offset + stride * (shape[0] - 1) + row
+        if end > length:
+            item.fail(f"ends at byte {end} of {view.place}, which has {length} bytes")
+        strides = (stride, dtype.itemsize) if len(shape) > 1 else (stride,)
+        return np.ndarray(shape, dtype, content, begin + offset, strides)
+
+    def _with_exceptions(self, sparse: Item, values: np.ndarray) -> np.ndarray:
+        """A copy of the values with those put in that the accessor names one by one."""
+        count = sparse["count"].whole(1, len(values))
+        indices, entries = sparse["indices"], sparse["values"]
+        if indices["componentType"].whole(0, 2**16) not in UNSIGNED:
+            indices["componentType"].must_be("5121, 5123 or 5125")
+        dtype = np.dtype(COMPONENTS[indices["componentType"].value][0])
+        where = self._viewed(indices, indices["bufferView"], (count,), dtype).astype(np.int64)
+        if where.max() >= len(values):
+            indices.fail(f"must be 0 to {len(values) - 1}, holds {where.max()}")
+        changed = values.copy()
+        changed[where] = self._viewed(entries, entries["bufferView"], (count, *values.shape[1:]), values.dtype)
+        return changed

@@ -1,0 +1,106 @@
+"""Animations: which curves move which node."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ... import _core
+from ..options import ReadOptions
+from .accessors import FLOAT, Accessors
+from .document import Document
+from .item import Item
+from .names import fit_name, unique
+
+PATHS = {"translation": "VEC3", "rotation": "VEC4", "scale": "VEC3", "weights": "SCALAR"}
+INTERPOLATIONS = {"LINEAR": "linear", "STEP": "step", "CUBICSPLINE": "hermite"}
+SHORTEST_LOOP = 1e-6  # s, as of ep.CurveMotion
+SIGNED_OR_UNSIGNED = (5120, 5121, 5122, 5123)
+
+
+@dataclass(frozen=True)
+class Animation:
+    """One animation of a file, or rest.
+
+    name: None at rest; curves: {(node, path): Curve}, values as the file has them: rotations (x, y, z, w)
+    duration: s; period: s or None; offset: s
+    """
+
+    name: str | None = None
+    curves: dict = field(default_factory=dict)
+    duration: float = 0.0
+    period: float | None = None
+    offset: float = 0.0
+
+
+def animation_names(document: Document) -> tuple[str, ...]:
+    """Of all animations, each another one."""
+    taken: dict[str, int] = {}
+    return tuple(unique(fit_name(item["name"].text(""), f"animation_{index}"), taken)
+                 for index, item in enumerate(document.json["animations"].objects()))
+
+
+def chosen_animation(document: Document, accessors: Accessors, names: tuple, options: ReadOptions) -> Animation:
+    """The animation that the caller asks for. Raises ValueError for a name that is not there."""
+    if options.animation == "" or (options.animation is None and not names):
+        return Animation()
+    if options.animation is not None and options.animation not in names:
+        there = "'" + "', '".join(names) + "'" if names else "none"
+        raise ValueError(f"animation: {document.file} has no '{options.animation}', it has {there}")
+    index = 0 if options.animation is None else names.index(options.animation)
+    item = document.json["animations"].objects()[index]
+    curves = _Channels(document, accessors, item).curves()
+    duration = max((curve.times[-1] for curve in curves.values()), default=0.0)
+    looped = options.loop and duration >= SHORTEST_LOOP
+    return Animation(names[index], curves, duration, duration if looped else None, options.offset)
+
+
+class _Channels:
+    """The channels of one animation."""
+
+    def __init__(self, document: Document, accessors: Accessors, item: Item):
+        self._document, self._accessors, self._item = document, accessors, item
+        self._samplers = item["samplers"].objects()
+        self._nodes = document.json["nodes"].objects()
+
+    def curves(self) -> dict:
+        found: dict = {}
+        for channel in self._item["channels"].objects():
+            target = channel["target"]
+            path = target["path"].text()
+            if path not in PATHS or not target["node"].is_given:
+                self._document.note(f"channels of animations that move '{path}' of no node are left out"[:200])
+                continue
+            key = target["node"].index(len(self._nodes)), path
+            if key in found:
+                self._document.note(f"{channel.place} moves what an earlier channel moves, and is left out")
+                continue
+            found[key] = self._curve(self._samplers[channel["sampler"].index(len(self._samplers))], path)
+        return found
+
+    def _curve(self, sampler: Item, path: str):
+        word = sampler["interpolation"].text("LINEAR")
+        if word not in INTERPOLATIONS:
+            sampler["interpolation"].must_be("LINEAR, STEP or CUBICSPLINE")
+        times = self._accessors.numbers(sampler["input"], "SCALAR", FLOAT)
+        values = self._accessors.numbers(sampler["output"], PATHS[path], FLOAT + SIGNED_OR_UNSIGNED)
+        rows = len(times) * (3 if word == "CUBICSPLINE" else 1)
+        if len(values) % rows or (path != "weights" and len(values) != rows):
+            sampler["output"].fail(f"must have {rows} entries for {len(times)} times, has {len(values)}")
+        return self._made(sampler, times, values.reshape(rows, -1), INTERPOLATIONS[word])
+
+    def _made(self, sampler: Item, times: np.ndarray, values: np.ndarray, interpolation: str):
+        steps = np.diff(times)
+        if (steps < 0.0).any():
+            at = int(np.flatnonzero(steps < 0.0)[0])
+            sampler["input"].fail(f"must ascend, falls from {times[at]:g} to {times[at + 1]:g} s")
+        if times[-1] > 1e9 or times[0] < -1e9:
+            sampler["input"].fail("must lie within 1e9 s")
+        kept = np.append(steps > 0.0, True)
+        if not kept.all():
+            self._document.note("of keys at the same time the last one counts")
+        tangents = {}
+        if interpolation == "hermite":
+            tangents = {"in_tangents": values[0::3][kept], "out_tangents": values[2::3][kept]}
+            values = values[1::3]
+        return _core.Curve(times[kept], values[kept], interpolation, **tangents)

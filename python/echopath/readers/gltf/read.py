@@ -1,0 +1,156 @@
+"""A glTF file -> Model."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..material_names import material_of
+from ..model import Model, ModelNode
+from ..options import ReadOptions
+from .accessors import Accessors
+from .animations import animation_names, chosen_animation
+from .document import Document
+from .extensions import check_extensions
+from .motions import Motions
+from .names import fit_name, unique
+from .nodes import Nodes
+from .primitives import Primitives
+from .surfaces import Surface, Surfaces
+
+UNIT, UP = 1.0, "y"
+ROOT = -1
+NAME_BYTES = 65      # of a level in the full name of a node
+NODE_BYTES = 2000    # of a node of a scene, about
+
+
+def read(path: Path, options: ReadOptions) -> Model:
+    """The scene that a .gltf or .glb file shows. Raises FileError naming the file and the place; ValueError for a name of an
+    animation that is not there."""
+    document = Document(path)
+    _check_version(document)
+    check_extensions(document)
+    accessors = Accessors(document)
+    names = animation_names(document)
+    animation = chosen_animation(document, accessors, names, options)
+    axes, unit = options.axes_of(UP), UNIT if options.unit is None else options.unit
+    nodes = Nodes(document, axes, unit)
+    motions = Motions(nodes, animation)
+    surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes, unit), animation)
+    made = _Tree(document, nodes, motions, surfaces, options).nodes()
+    if not made:
+        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in document.notes[:3]))
+    return Model(nodes=made, format="glTF 2.0", unit=unit, up=options.up or UP, animations=names, animation=animation.name,
+                 duration=animation.duration, notes=tuple(document.notes))
+
+
+def _check_version(document: Document) -> None:
+    asset = document.json["asset"]
+    for key in ("version", "minVersion"):
+        version = asset[key].text("2.0" if key == "minVersion" else None)
+        if version is None or version.partition(".")[0] != "2" or (key == "minVersion" and version != "2.0"):
+            asset[key].fail(f"must be 2.0, is {version!r}"[:100] + "; only glTF 2.0 is read")
+
+
+class _Tree:
+    """Makes the nodes of a model: those of the file that have surfaces, and those above them."""
+
+    def __init__(self, document: Document, nodes: Nodes, motions: Motions, surfaces: Surfaces, options: ReadOptions):
+        self._document, self._nodes, self._motions = document, nodes, motions
+        self._surfaces, self._materials = surfaces, options.materials
+        self._made: list[ModelNode] = []
+        self._level: list[int] = []                      # of each node of the model
+        self._place: dict[int, int] = {ROOT: ROOT}       # node of the file -> node of the model
+        self._taken: dict[int, dict] = {}                # node of the model -> names of its children
+
+    def nodes(self) -> tuple[ModelNode, ...]:
+        plain, moved = self._with_surfaces()
+        needed = {above for node in plain for above in self._nodes.chain(node)}
+        needed |= {above for _, carrier in moved for above in self._nodes.chain(carrier)}
+        for node in self._nodes.order:
+            if node in needed:
+                placement, motion = self._motions.of(node)
+                self._place[node] = self._add_with(node, self._nodes.parent[node], placement, motion, plain.get(node, []))
+        for (node, carrier), found in moved.items():
+            world = self._still_world(carrier)
+            self._add_with(node, carrier, np.linalg.inv(world) if carrier != ROOT else np.eye(4), None, found)
+        return tuple(self._made)
+
+    def _with_surfaces(self) -> tuple[dict, dict]:
+        """{node: surfaces that its place and motion move}, {(node, carrier): surfaces that joints move}.
+
+        Joints begin at the root of the scene, so what they move hangs on a node that stands still, turned back by its place.
+        """
+        plain, moved = {}, {}
+        for node in self._shown():
+            chain = self._nodes.chain(node)
+            stretched = any(self._motions.stretches(above) for above in chain)
+            if stretched and not self._surfaces.is_skinned(node) and not any(map(self._motions.moves, chain)):
+                self._document.note(f"nodes[{node}] is scaled to nothing and left out")
+                continue
+            jointed = stretched or self._surfaces.is_skinned(node)
+            found = self._surfaces.of(node, chain if jointed else [])
+            if found and jointed:
+                moved[node, self._carrier(node)] = found
+            elif found:
+                plain[node] = found
+        return plain, moved
+
+    def _shown(self) -> list[int]:
+        """Nodes with meshes that the file does not hide."""
+        hidden: set[int] = set()
+        for node in self._nodes.order:
+            if self._nodes.parent[node] in hidden or self._nodes.is_hidden(node):
+                hidden.add(node)
+        if hidden:
+            self._document.note(f"{len(hidden)} nodes that the file hides are left out")
+        return [node for node in self._nodes.order if node not in hidden and self._nodes.item(node)["mesh"].is_given]
+
+    def _carrier(self, node: int) -> int:
+        """The lowest node above that stands still, as do all above it."""
+        carrier = ROOT
+        for above in self._nodes.chain(node)[:-1]:
+            if self._motions.of(above)[1] is not None:
+                break
+            carrier = above
+        return carrier
+
+    def _still_world(self, node: int) -> np.ndarray:
+        world = np.eye(4)
+        for above in self._nodes.chain(node):
+            world = world @ self._motions.of(above)[0]
+        return world
+
+    def _add_with(self, node: int, parent: int, placement, motion, found: list[Surface]) -> int:
+        """A node, with its mesh if it has one alone, with a node below it for each otherwise."""
+        name, parent = self._nodes.name[node], self._place[parent]
+        if len(found) == 1:
+            return self._add_surface(name, parent, placement, motion, found[0])
+        index = self._add(name, parent, placement, motion)
+        for number, surface in enumerate(found):
+            part = fit_name(surface.primitive.material, f"primitive_{number}")
+            self._add_surface(part, index, None, None, surface)
+        return index
+
+    def _add_surface(self, name: str, parent: int, placement, motion, surface: Surface) -> int:
+        if not surface.regions:
+            return self._add(name, parent, placement, motion, surface.mesh, surface)
+        index = self._add(name, parent, placement, motion)
+        for joint, part in surface.regions:
+            self._add(joint, index, None, None, part, surface)
+        return index
+
+    def _add(self, name: str, parent: int, placement, motion, mesh=None, surface: Surface | None = None) -> int:
+        self._level.append(1 if parent < 0 else self._level[parent] + 1)
+        self._document.spend(NODE_BYTES + NAME_BYTES * self._level[-1], self._document.json["nodes"])
+        fields = {} if surface is None else self._fields_of(surface)
+        self._made.append(ModelNode(unique(name, self._taken.setdefault(parent, {})), parent, placement, motion, mesh, **fields))
+        return len(self._made) - 1
+
+    def _fields_of(self, surface: Surface) -> dict:
+        primitive = surface.primitive
+        material, note = material_of(primitive.material, self._materials)
+        if note:
+            self._document.note(note)
+        return {"deformation": surface.deformation, "material": material, "foreign_material": primitive.material,
+                "smooth": primitive.smooth}

@@ -1,0 +1,196 @@
+"""Meshes of nodes with what deforms them: morph targets, skins, and joints in place of nodes whose scale moves."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _core
+from .accessors import FLOAT, Accessors
+from .animations import Animation
+from .document import Document
+from .item import Item
+from .motions import Motions
+from .names import unique
+from .nodes import Nodes
+from .primitives import Primitive, Primitives
+
+JOINT_BYTES = 2000   # of a joint in memory, about
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A mesh with its deformation, or None; regions: the meshes by joint of a skin at rest, instead of one mesh."""
+
+    mesh: object
+    deformation: object
+    primitive: Primitive
+    regions: tuple = ()
+
+
+class Surfaces:
+    """Makes the surfaces of nodes."""
+
+    def __init__(self, document: Document, accessors: Accessors, nodes: Nodes, motions: Motions, primitives: Primitives,
+                 animation: Animation):
+        self._document, self._accessors, self._nodes = document, accessors, nodes
+        self._motions, self._primitives, self._animation = motions, primitives, animation
+        self._skins = document.json["skins"].objects()
+        self._resting = Motions(nodes, Animation())
+        self._meshes: dict[int, object] = {}
+
+    def is_skinned(self, node: int) -> bool:
+        return self._nodes.item(node)["skin"].is_given
+
+    def of(self, node: int, chain: list[int]) -> list[Surface]:
+        """Those of the node's primitives. chain: nodes, the lowest last, that move it as joints; without any it is rigid."""
+        found = []
+        for primitive in self._primitives.of_mesh(self._nodes.item(node)["mesh"].index(self._primitives.num_meshes)):
+            try:
+                made = self._surface(node, primitive, chain)
+            except ValueError as error:  # what the core refuses: places beyond all bounds
+                primitive.item.fail(str(error))
+            if made is not None:
+                found.append(made)
+        return found
+
+    def _surface(self, node: int, primitive: Primitive, chain: list[int]) -> Surface | None:
+        vertices, shape = self._shape(node, primitive)
+        if self.is_skinned(node) and primitive.joints is not None:
+            return self._skinned(node, primitive, vertices, shape)
+        if chain:
+            return self._jointed(primitive, vertices, shape, chain)
+        mesh = self._mesh(primitive, vertices)
+        return None if mesh is None else Surface(mesh, shape, primitive)
+
+    def _mesh(self, primitive: Primitive, vertices: np.ndarray):
+        """The Mesh, shared by the nodes that have it as it stands in the file; None where it has no area."""
+        is_own = vertices is not primitive.vertices
+        if not is_own and id(primitive) in self._meshes:
+            return self._meshes[id(primitive)]
+        self._document.spend(100 * (len(vertices) + len(primitive.triangles)), primitive.item)
+        try:
+            mesh = _core.Mesh(vertices, primitive.triangles)
+        except ValueError as error:
+            if "no triangle" not in str(error) and "area" not in str(error):
+                raise
+            self._document.note(f"{primitive.item.place} has no area and is left out")
+            mesh = None
+        if not is_own:
+            self._meshes[id(primitive)] = mesh
+        return mesh
+
+    # --- morph targets ---
+
+    def _shape(self, node: int, primitive: Primitive) -> tuple:
+        """(vertices [V, 3] with the shares at rest, MorphTargets or None)."""
+        if not primitive.targets:
+            return primitive.vertices, None
+        curve = self._animation.curves.get((node, "weights"))
+        if curve is None:
+            shares = self._shares_at_rest(node, max(primitive.targets) + 1)
+            moves = [shares[k] * target for k, target in primitive.targets.items() if shares[k]]
+            return (primitive.vertices + sum(moves) if moves else primitive.vertices), None
+        width = curve.values.shape[1]
+        beyond = [k for k in primitive.targets if k >= width]
+        if beyond:
+            primitive.item["targets"].fail(f"has {beyond[-1] + 1} targets, of which the animation moves {width}")
+        kept = [k for k in primitive.targets if self._is_used(curve, k)]
+        if not kept:
+            return primitive.vertices, None
+        self._document.spend(48 * len(kept) * len(primitive.vertices), primitive.item)
+        targets = np.stack([primitive.targets[k] for k in kept])
+        shape = _core.MorphTargets(primitive.vertices, targets, _columns(curve, kept), period=self._animation.period,
+                                   offset=self._animation.offset)
+        return primitive.vertices, shape
+
+    def _shares_at_rest(self, node: int, count: int) -> np.ndarray:
+        item = self._nodes.item(node)
+        own = item["weights"].numbers(None, None)
+        if own is None:
+            own = self._primitives.mesh(item["mesh"].value)["weights"].numbers(None, np.zeros(0))
+        return np.concatenate([own, np.zeros(max(0, count - len(own)))])
+
+    @staticmethod
+    def _is_used(curve, column: int) -> bool:
+        rows = (curve.values, curve.in_tangents, curve.out_tangents)
+        return any(row is not None and row[:, column].any() for row in rows)
+
+    # --- joints ---
+
+    def _skinned(self, node: int, primitive: Primitive, vertices: np.ndarray, shape) -> Surface | None:
+        """All joints of the skin and what is above them, from the root of the scene on."""
+        skin = self._skins[self._nodes.item(node)["skin"].index(len(self._skins))]
+        members = self._members(skin)
+        inverse_binds = self._inverse_binds(skin, len(members))
+        used = primitive.joints[primitive.weights > 0.0]
+        if len(used) and used.max() >= len(members):
+            primitive.item["attributes"].fail(f"must name joints 0 to {len(members) - 1} of {skin.place}, names {used.max()}")
+        chain = self._all_above(members)
+        place = {member: index for index, member in enumerate(chain)}
+        bound = {member: inverse_binds[index] for index, member in enumerate(members)}
+        table = np.array([place[member] for member in members])
+        joints = table[np.minimum(primitive.joints, len(members) - 1)]
+        return self._made(primitive, vertices, shape, chain, bound, joints, primitive.weights)
+
+    def _jointed(self, primitive: Primitive, vertices: np.ndarray, shape, chain: list[int]) -> Surface | None:
+        joints = np.full((len(vertices), 1), len(chain) - 1)
+        made = self._made(primitive, vertices, shape, chain, {}, joints, np.ones((len(vertices), 1)))
+        if made is None or made.regions:
+            return made
+        everything = np.arange(len(made.mesh.triangles))
+        return Surface(made.mesh.part(everything), made.deformation, primitive)
+
+    def _made(self, primitive, vertices, shape, chain, bound, joints, weights) -> Surface | None:
+        self._document.spend(JOINT_BYTES * len(chain) + 100 * weights.size, primitive.item)
+        skin = _core.Skin(vertices, self._joints(self._motions, chain, bound), weights, joints, shape)
+        if shape is None and not any(self._motions.moves(member) for member in chain):
+            mesh = self._mesh(primitive, skin.at(0.0))
+            return None if mesh is None else Surface(mesh, None, primitive, tuple(skin.parts(mesh)))
+        at_rest = _core.Skin(vertices, self._joints(self._resting, chain, bound), weights, joints)
+        mesh = self._mesh(primitive, at_rest.at(0.0))
+        return None if mesh is None else Surface(mesh, skin, primitive)
+
+    def _joints(self, motions: Motions, chain: list[int], bound: dict) -> list:
+        taken: dict[str, int] = {}
+        names = {member: unique(self._nodes.name[member], taken) for member in chain}
+        made = []
+        for member in chain:
+            placement, motion = motions.of(member)
+            above = self._nodes.parent[member]
+            made.append(_core.Joint(names[member], names[above] if above >= 0 else None, transform=placement, motion=motion,
+                                    inverse_bind=bound.get(member, np.eye(4))))
+        return made
+
+    def _members(self, skin: Item) -> list[int]:
+        members = []
+        for reference in skin["joints"].entries():
+            node = reference.index(len(self._nodes))
+            if node not in self._nodes.parent:
+                reference.fail(f"nodes[{node}] is not in the scene")
+            if node in members:
+                reference.fail(f"nodes[{node}] is a joint twice")
+            members.append(node)
+        if not members:
+            skin["joints"].fail("must hold at least one joint")
+        return members
+
+    def _all_above(self, members: list[int]) -> list[int]:
+        wanted = {above for member in members for above in self._nodes.chain(member)}
+        return [node for node in self._nodes.order if node in wanted]
+
+    def _inverse_binds(self, skin: Item, count: int) -> np.ndarray:
+        reference = skin["inverseBindMatrices"]
+        if not reference.is_given:
+            return np.tile(np.eye(4), (count, 1, 1))
+        matrices = self._accessors.numbers(reference, "MAT4", FLOAT)
+        if len(matrices) < count:
+            reference.fail(f"must have a matrix for each of {count} joints, has {len(matrices)}")
+        return self._nodes.inverse_bind(matrices[:count], reference)
+
+
+def _columns(curve, columns: list[int]):
+    changed = {"values": curve.values[:, columns]}
+    if curve.interpolation == "hermite":
+        changed |= {"in_tangents": curve.in_tangents[:, columns], "out_tangents": curve.out_tangents[:, columns]}
+    return curve.replace(**changed)

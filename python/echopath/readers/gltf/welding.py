@@ -1,0 +1,65 @@
+"""Vertices that files keep twice, for textures and for edges, made one again."""
+from __future__ import annotations
+
+import numpy as np
+
+FLAT_COSINE = np.cos(np.radians(1.0))     # normals of a facet that differ by less stand for a plane
+EDGE_COSINE = np.cos(np.radians(20.0))    # normals at a place that differ by more stand for an edge
+CURVED_SHARE = 0.5                        # of the area, from which on a mesh stands for a curved surface
+MOST_NORMALS = 16                         # at one place; beyond, each vertex is by itself
+
+
+def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) -> bool:
+    """Whether most of the area has normals that turn from corner to corner: then the facets stand for a curved surface."""
+    lengths = np.linalg.norm(normals, axis=1)
+    units = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    a, b, c = (units[triangles[:, corner]] for corner in range(3))
+    turns = np.minimum(np.minimum((a * b).sum(1), (b * c).sum(1)), (c * a).sum(1)) < FLAT_COSINE
+    p, q, r = (vertices[triangles[:, corner]] for corner in range(3))
+    with np.errstate(all="ignore"):
+        areas = np.linalg.norm(np.cross(q - p, r - p), axis=1)
+    areas = np.where(np.isfinite(areas), areas, 0.0)
+    return bool(areas[turns].sum() > CURVED_SHARE * areas.sum())
+
+
+def welded(vertices: np.ndarray, triangles: np.ndarray, moved_by: list, normals: np.ndarray | None) -> tuple:
+    """(vertices that are kept [W], triangles [F, 3] of these) with vertices of one place and one movement made one.
+
+    moved_by: arrays [V, ...] that must be equal, too; normals: where they are given, those of one place must also be alike,
+    so that the surface stays cut where the file has an edge
+    """
+    _, place = _equal_rows(np.concatenate([vertices, *(rows.reshape(len(vertices), -1) for rows in moved_by)], axis=1))
+    if normals is not None:
+        place = _split_by_normals(place, normals)
+    first, number = np.unique(place, return_index=True, return_inverse=True)[1:]
+    order = np.argsort(first, kind="stable")       # vertices stay in the order of the file
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[number.reshape(-1)][triangles]
+
+
+def _equal_rows(rows: np.ndarray) -> tuple:
+    """(first [G], group [V]) of rows that are equal."""
+    rows = np.ascontiguousarray(rows + 0.0)        # -0 is 0
+    _, first, group = np.unique(rows.view(np.dtype((np.void, rows.dtype.itemsize * rows.shape[1]))).ravel(),
+                                return_index=True, return_inverse=True)
+    return first, group.reshape(-1)
+
+
+def _split_by_normals(place: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Groups of a place, each of normals that differ little from the first of the group."""
+    lengths = np.linalg.norm(normals, axis=1)
+    units = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    group = np.full(len(place), -1)
+    left = np.arange(len(place))
+    for _ in range(MOST_NORMALS):
+        if not len(left):
+            break
+        _, first, inverse = np.unique(place[left], return_index=True, return_inverse=True)
+        leader = left[first][inverse.reshape(-1)]
+        alike = (units[left] * units[leader]).sum(axis=1) >= EDGE_COSINE
+        alike |= left == leader
+        group[left[alike]] = leader[alike]
+        left = left[~alike]
+    group[left] = left
+    return group

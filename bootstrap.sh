@@ -212,7 +212,7 @@ run_fuzzers() {
   cmake --preset fuzz >/dev/null
   cmake --build "$fuzz_dir" --parallel "$(nproc)"
   say "fuzzers, $seconds s each"
-  for target in obj ply expression; do run_fuzzer "$target" "$seconds" || status=1; done
+  for target in obj ply stl off expression; do run_fuzzer "$target" "$seconds" || status=1; done
   (cd tests && "../$python" -m fuzz "$seconds") || status=1
   [ "$status" -eq 0 ] || fail "the fuzzers found something"
 }

@@ -208,6 +208,19 @@ py::list meshes_of_file(const std::filesystem::path& path, double unit) {
   return result;
 }
 
+py::tuple surfaces_of_file(const std::filesystem::path& path, double unit) {
+  Surfaces found;
+  {
+    const WithoutGil released;
+    found = load_surfaces(path.string(), unit);
+  }
+  py::list surfaces;
+  for (const Surfaces::Surface& one : found.surfaces) {
+    surfaces.append(py::make_tuple(one.name, one.material, shared(one.mesh)));
+  }
+  return py::make_tuple(surfaces, found.material_files);
+}
+
 std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double unit) {
   const WithoutGil released;
   return shared(load_mesh(path.string(), unit));
@@ -216,6 +229,8 @@ std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double uni
 void bind_readers(py::module_& m) {
   m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_mesh calls.");
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
+  m.def("load_surfaces", &surfaces_of_file, py::arg("path"), py::arg("unit") = 1.0,
+        "([(name, name of the material, Mesh)], [what lines `mtllib` name]): groups of a mesh file by material.");
 }
 
 }  // namespace

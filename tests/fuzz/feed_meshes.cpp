@@ -8,9 +8,8 @@
 namespace echopath::fuzz {
 namespace {
 
-void check(const NamedMesh& named) {
-  const Mesh& mesh = *named.mesh;
-  demand(!named.name.empty() && named.name.find('\0') == std::string::npos, "a mesh has a name without NUL");
+void check(const std::string& name, const Mesh& mesh) {
+  demand(!name.empty() && name.find('\0') == std::string::npos, "a mesh has a name without NUL");
   demand(!mesh.triangles().empty(), "a mesh has triangles");
   for (const Vec3& vertex : mesh.vertices()) demand(vertex.allFinite(), "vertices are finite");
   for (const Triangle& triangle : mesh.triangles()) {
@@ -23,7 +22,10 @@ void check(const NamedMesh& named) {
 void feed(std::string_view bytes, const std::string& name) {
   std::istringstream stream{std::string(bytes)};
   try {
-    for (const NamedMesh& mesh : read_meshes(stream, name)) check(mesh);
+    for (const Surfaces::Surface& one : read_surfaces(stream, name).surfaces) {
+      check(one.name, *one.mesh);
+      demand(one.material.find('\0') == std::string::npos, "the name of a material has no NUL");
+    }
   } catch (const FileError& error) {
     demand(std::string_view(error.what()).starts_with(name), "an error names its file");
   }
@@ -33,5 +35,7 @@ void feed(std::string_view bytes, const std::string& name) {
 
 void feed_obj(std::string_view bytes) { feed(bytes, "mesh.obj"); }
 void feed_ply(std::string_view bytes) { feed(bytes, "mesh.ply"); }
+void feed_stl(std::string_view bytes) { feed(bytes, "mesh.stl"); }
+void feed_off(std::string_view bytes) { feed(bytes, "mesh.off"); }
 
 }  // namespace echopath::fuzz

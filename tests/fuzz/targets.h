@@ -11,6 +11,8 @@ namespace echopath::fuzz {
 // Reads mesh files. Each refuses by FileError, or gives meshes of finite vertices and indices that lead somewhere.
 void feed_obj(std::string_view bytes);
 void feed_ply(std::string_view bytes);
+void feed_stl(std::string_view bytes);
+void feed_off(std::string_view bytes);
 // Reads a selection of paths. It is refused by invalid_argument, or its text reads back as the same text, and it compiles to
 // an automaton that takes any path or refuses it.
 void feed_expression(std::string_view bytes);
@@ -19,7 +21,11 @@ struct Target {
   std::string_view name;  // of its folder under tests/fuzz/corpus
   void (*feed)(std::string_view bytes);
 };
-constexpr std::array<Target, 3> kTargets = {{{"obj", feed_obj}, {"ply", feed_ply}, {"expression", feed_expression}}};
+constexpr std::array<Target, 5> kTargets = {{{"obj", feed_obj},
+                                             {"ply", feed_ply},
+                                             {"stl", feed_stl},
+                                             {"off", feed_off},
+                                             {"expression", feed_expression}}};
 
 // Ends the process with a message unless `holds`.
 void demand(bool holds, const std::string& what);

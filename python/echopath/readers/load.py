@@ -7,41 +7,61 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .. import _core
-from ..checks import anything, checked, choice, flag, optional, real, refused, text
+from ..checks import checked, choice, flag, optional, real, refused, text
 from ..meshes import UNIT
+from .material_names import Meaning, checked_materials
 from .model import Model
 from .options import ReadOptions
 
 # suffix -> module of this package with `read(path, options) -> Model`; imported when the first such file is read
-READERS: dict[str, str] = {".glb": "gltf", ".gltf": "gltf"}
+READERS: dict[str, str] = {
+    ".glb": "gltf", ".gltf": "gltf", ".obj": "obj", ".ply": "obj", ".stl": "obj", ".off": "obj", ".xml": "mitsuba",
+    ".usd": "usd", ".usda": "usd", ".usdc": "usd", ".usdz": "usd", ".npz": "frames", ".bvh": "bvh",
+}
 
 
-@checked(unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=anything, animation=optional(text), loop=flag,
-         offset=real(unit="s"))
+@checked(unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=checked_materials, animation=optional(text),
+         loop=flag, offset=real(unit="s"))
 def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: str | None = None,
-               materials: Mapping[str, object] | None = None, animation: str | None = None, loop: bool = False,
+               materials: Mapping[str, Meaning] | None = None, animation: str | None = None, loop: bool = False,
                offset: float = 0.0) -> Model:
     """The objects of a foreign file as a tree of nodes, for Scene.add.
 
-    path: its suffix tells the format: .glb or .gltf (glTF 2.0)
-    unit: m per unit of the file, 1e-12 to 1e9; None: as the file says (glTF: 1)
-    up: the file's vertical axis, "x", "y" or "z"; None: as the file says (glTF: "y"). The model stands with z up and looks
-        along +x where the file follows its format
-    materials: {name in the file: Material or a name in `materials`}; other names go by `foreign_materials`, and what is
-        not known there gets a default, which the notes tell
+    path: its suffix tells the format: glTF 2.0 (.glb, .gltf), OBJ, PLY, STL, OFF, USD, Mitsuba XML, NPZ, BVH; or a folder of
+        OBJ files, one for each frame
+    unit: m per unit of the file, 1e-12 to 1e9; None: as the file says, or its format (glTF: 1)
+    up: the file's vertical axis, "x", "y" or "z"; None: as the file says, or its format (glTF: "y"). The model stands with z
+        up and looks along +x where the file follows its format
+    materials: {pattern of names in the file: Material or a name in ep.materials}, before `ep.foreign_materials`; what is not
+        known there either gets a default, which the notes tell
     animation: name of one of the file's; None: its first one, if there is any; "": at rest
     loop: True: the animation begins anew at its end; False: its last pose is held
     offset: s, the time of the animation at time 0 of the scene
-    Returns a Model, whose `notes` say what was left out, guessed or mended. Raises FileError naming the file and the place
-    in it; ValueError or TypeError naming the argument.
+    Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
+    place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install.
     """
-    path = Path(path)
+    file = Path(path)
+    options = ReadOptions(unit, up, materials or {}, animation, loop, offset)
+    try:
+        return importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
+    except RecursionError:
+        raise _core.FileError(f"{file}: is nested too deeply") from None
+
+
+def is_foreign(path: Path) -> bool:
+    """Whether a path is one of those that load_model reads."""
+    return path.suffix.lower() in READERS or path.is_dir()
+
+
+def reader_of(path: Path) -> str:
+    """The module that reads a file; raises ValueError for another kind and ep.FileError where there is nothing to read."""
     module = READERS.get(path.suffix.lower())
+    if module is None and path.is_dir():
+        return "frames"
     if module is None:
-        raise refused(ValueError, "path", f"a file of the kinds {', '.join(READERS)}", str(path))
-    if not (materials is None or isinstance(materials, Mapping)):
-        raise refused(TypeError, "materials", "a mapping of names to materials or None", materials)
-    if not path.is_file():
-        raise _core.FileError(f"{path}: cannot be read (no such file)")
-    options = ReadOptions(unit, up, dict(materials or {}), animation, loop, offset)
-    return importlib.import_module(f".{module}", __package__).read(path, options)
+        raise refused(ValueError, "path", f"a file of the kinds {', '.join(READERS)}, or a folder of OBJ files", str(path))
+    if path.is_dir():
+        raise _core.FileError(f"{path}: is a directory")
+    if not path.is_file():  # devices and pipes have no end
+        raise _core.FileError(f"{path}: {'is no regular file' if path.exists() else 'cannot be opened'}")
+    return module

@@ -171,5 +171,24 @@ TEST(Readers, RefuseWhatIsNoMeshFile) {
   expect_error<std::invalid_argument>([] { load_mesh("mesh.obj", std::nan("")); }, {"unit"});
 }
 
+TEST(Obj, SurfacesAreGroupsByMaterialAndMeshesAreGroups) {
+  const TemporaryFile file("house.obj", "mtllib house.mtl more.mtl\n" + kSquare +
+                                            "f 1 2 3\ng wall\nusemtl brick\nf 1 2 3\nusemtl  glass pane \nf 1 3 4\ng door\n"
+                                            "f 1 2 4\ng wall\nusemtl brick\nf 2 3 4\n");
+  const Surfaces found = load_surfaces(file.path());
+  std::vector<std::array<std::string, 2>> names;
+  for (const Surfaces::Surface& one : found.surfaces) names.push_back({one.name, one.material});
+  EXPECT_EQ(names, (std::vector<std::array<std::string, 2>>{
+                       {"echopath_house", ""}, {"wall", "brick"}, {"wall", "glass pane"}, {"door", "glass pane"}}));
+  EXPECT_EQ(found.surfaces[1].mesh->original_triangle(), (std::vector<uint32_t>{1, 4}));
+  EXPECT_EQ(found.material_files, (std::vector<std::string>{"house.mtl more.mtl"}));
+  ASSERT_EQ(load_meshes(file.path()).size(), 3u);
+  EXPECT_EQ(load_meshes(file.path())[1].mesh->triangles().size(), 3u);
+}
+
+TEST(Obj, NamesOfMaterialsAreText) {
+  expect_refused(kSquare + "usemtl \xFF\nf 1 2 3\n", {"line 5", "UTF-8"});
+}
+
 }  // namespace
 }  // namespace echopath::test_obj

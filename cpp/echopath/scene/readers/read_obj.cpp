@@ -13,6 +13,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/scene/readers/obj_words.h"
 #include "echopath/scene/readers/soup.h"
+#include "echopath/scene/readers/text_lines.h"
 
 namespace echopath {
 namespace {
@@ -35,6 +36,7 @@ class ObjLines : public std::streambuf {
   ObjLines(std::istream& file, const std::string& path) : path_(path), file_(file) {}
   int64_t line() const { return line_; }
   const Vec3& vertex() const { return vertex_; }  // of the latest such line, to the nearest double
+  const std::vector<std::string>& material_files() const { return material_files_; }
 
  protected:
   int_type underflow() override {
@@ -78,7 +80,8 @@ class ObjLines : public std::streambuf {
     const size_t begin = std::min(text_.find_first_not_of(" \t"), text_.size());
     const std::string_view statement = std::string_view(text_).substr(begin);
     const std::string_view keyword = statement.substr(0, statement.find_first_of(" \t"));
-    if (keyword == "g" || keyword == "o") check_name(statement);
+    if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib") check_name(statement);
+    if (keyword == "mtllib") material_files_.emplace_back(trimmed(statement.substr(keyword.size())));
     if (statement == "g") text_ += ' ';
     const bool is_vertex = keyword == "v";
     if (!is_vertex && keyword != "f") return;
@@ -120,6 +123,7 @@ class ObjLines : public std::streambuf {
   std::istream& file_;
   std::string text_;
   Vec3 vertex_ = Vec3::Zero();
+  std::vector<std::string> material_files_;  // as `mtllib` lines give them, which may be several names
   int64_t line_ = 0;
 };
 
@@ -143,6 +147,11 @@ class ObjBuilder {
     builder.corners_.clear();
     for (int i = 0; i < count; ++i) builder.corners_.push_back(builder.vertex_index(corners[i].vertex_index));
     builder.soup.add_polygon(builder.corners_, builder.group_index());
+    builder.soup.material.resize(builder.soup.triangles.size(), builder.material_index());
+  }
+
+  static void material(void* self, const char* name, int) {
+    static_cast<ObjBuilder*>(self)->material_ = trimmed(name);
   }
 
   static void group(void* self, const char** names, int count) {
@@ -179,11 +188,18 @@ class ObjBuilder {
     return static_cast<uint32_t>(entry->second);
   }
 
+  uint32_t material_index() {
+    const auto [entry, added] = index_of_material_.try_emplace(material_, soup.material_names.size());
+    if (added) soup.material_names.push_back(material_);
+    return static_cast<uint32_t>(entry->second);
+  }
+
   const std::string& path_;
   const ObjLines& lines_;
-  std::string group_, object_;
+  std::string group_, object_, material_;
   std::vector<uint32_t> corners_;
-  std::unordered_map<std::string, size_t> index_of_;  // of the groups' names
+  std::unordered_map<std::string, size_t> index_of_;           // of the groups' names
+  std::unordered_map<std::string, size_t> index_of_material_;  // of the materials' names
 };
 
 }  // namespace
@@ -198,7 +214,9 @@ Soup read_obj(std::istream& file, const std::string& name) {
   callbacks.index_cb = ObjBuilder::face;
   callbacks.group_cb = ObjBuilder::group;
   callbacks.object_cb = ObjBuilder::object;
+  callbacks.usemtl_cb = ObjBuilder::material;
   tinyobj::LoadObjWithCallback(stream, callbacks, &builder);
+  builder.soup.material_files = lines.material_files();
   return std::move(builder.soup);
 }
 

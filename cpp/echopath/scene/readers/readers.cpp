@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -20,7 +21,7 @@ struct Reader {
   Soup (*read)(std::istream& stream, const std::string& name);
 };
 
-constexpr Reader kReaders[] = {{".obj", read_obj}, {".ply", read_ply}};
+constexpr Reader kReaders[] = {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}};
 
 const Reader& reader_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string(), known;
@@ -90,22 +91,61 @@ MeshPtr mesh_of(Part part) {
   }
 }
 
+// Holds the triangles of one group and material.
+struct SurfaceFaces {
+  uint32_t group = 0, material = 0;
+  std::vector<uint32_t> triangles;
+};
+
+// Returns the groups in their order, taken apart by material in the order in which materials appear in them.
+std::vector<SurfaceFaces> faces_by_surface(const Soup& soup) {
+  std::map<std::pair<uint32_t, uint32_t>, size_t> index;
+  std::vector<SurfaceFaces> found;
+  for (uint32_t t = 0; t < soup.triangles.size(); ++t) {
+    const uint32_t material = soup.material.empty() ? 0 : soup.material[t];
+    const auto [entry, added] = index.try_emplace({soup.group[t], material}, found.size());
+    if (added) found.push_back({soup.group[t], material, {}});
+    found[entry->second].triangles.push_back(t);
+  }
+  const auto is_before = [](const SurfaceFaces& a, const SurfaceFaces& b) { return a.group < b.group; };
+  std::stable_sort(found.begin(), found.end(), is_before);
+  return found;
+}
+
+std::vector<Surfaces::Surface> surfaces_of(const Soup& soup, const std::string& name) {
+  std::vector<uint32_t> number(soup.vertices.size());
+  std::vector<Surfaces::Surface> surfaces;
+  const std::string stem = std::filesystem::path(name).stem().string();
+  for (const SurfaceFaces& faces : faces_by_surface(soup)) {
+    const std::string& group = soup.group_names[faces.group].empty() ? stem : soup.group_names[faces.group];
+    const std::string material = soup.material.empty() ? "" : soup.material_names[faces.material];
+    MeshPtr mesh = mesh_of(part_of(soup, faces.triangles, number));
+    if (mesh) surfaces.push_back({group, material, std::move(mesh)});
+  }
+  if (surfaces.empty()) throw FileError(name + ": has no face with an area");
+  return surfaces;
+}
+
 }  // namespace
 
 std::vector<NamedMesh> read_meshes(std::istream& stream, const std::string& name, double unit) {
   check_unit(unit);
-  const Soup soup = read(stream, name, unit);
-  std::vector<std::vector<uint32_t>> members(soup.group_names.size());
-  for (uint32_t t = 0; t < soup.triangles.size(); ++t) members[soup.group[t]].push_back(t);
-  std::vector<uint32_t> number(soup.vertices.size());
+  Soup soup = read(stream, name, unit);
+  soup.material.clear();  // groups are not taken apart
   std::vector<NamedMesh> meshes;
-  for (size_t g = 0; g < members.size(); ++g) {
-    const std::string stem = std::filesystem::path(name).stem().string();
-    const std::string& group = soup.group_names[g].empty() ? stem : soup.group_names[g];
-    if (MeshPtr mesh = mesh_of(part_of(soup, members[g], number))) meshes.push_back({group, std::move(mesh)});
-  }
-  if (meshes.empty()) throw FileError(name + ": has no face with an area");
+  for (Surfaces::Surface& one : surfaces_of(soup, name)) meshes.push_back({std::move(one.name), std::move(one.mesh)});
   return meshes;
+}
+
+Surfaces read_surfaces(std::istream& stream, const std::string& name, double unit) {
+  check_unit(unit);
+  const Soup soup = read(stream, name, unit);
+  return {surfaces_of(soup, name), soup.material_files};
+}
+
+Surfaces load_surfaces(const std::string& path, double unit) {
+  std::ifstream file = opened(path, unit);
+  return read_surfaces(file, path, unit);
 }
 
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {

@@ -1,0 +1,176 @@
+"""The elements of a Mitsuba file: XML without entities, parameters filled in, included files in their places."""
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn
+from xml.parsers import expat
+
+from ... import _core
+
+MAX_DEPTH = 64       # of nested elements
+MAX_INCLUDES = 15    # files within files
+MAX_ELEMENTS = 10_000_000
+MAX_BYTES = 2**30
+
+
+@dataclass(eq=False)
+class Element:
+    """One element: tag, attributes, children, and where it stands."""
+
+    tag: str
+    attributes: dict[str, str]
+    file: Path
+    line: int
+    children: list[Element] = field(default_factory=list)
+
+    def get(self, name: str, default: str = "") -> str:
+        """An attribute, `default` where there is none."""
+        return self.attributes.get(name, default)
+
+    def named(self, name: str, *tags: str) -> Element | None:
+        """The child of one of some tags whose attribute `name` is that."""
+        return next((child for child in self.children if child.tag in tags and child.get("name") == name), None)
+
+    def value(self, name: str, *tags: str) -> str | None:
+        """The attribute `value` of such a child."""
+        child = self.named(name, *tags)
+        return None if child is None else child.get("value")
+
+    def number(self, name: str, default: float) -> float:
+        """The number of a child `<float name=... value=...>`."""
+        child = self.named(name, "float", "integer")
+        return default if child is None else child.numbers("value", 1)[0]
+
+    def point(self, name: str, default: tuple) -> list[float]:
+        """The three numbers of a child `<point>` or `<vector>`, as x, y, z or as value."""
+        child = self.named(name, "point", "vector")
+        return list(default) if child is None else child.vector()
+
+    def numbers(self, name: str, *counts: int) -> list[float]:
+        """The numbers of an attribute, of one of some counts."""
+        words = re.split(r"[\s,]+", self.get(name).strip())
+        try:
+            values = [float(word) for word in words]
+        except ValueError:
+            self.refuse(f"{name} must be numbers, got '{self.get(name)[:60]}'")
+        if len(values) not in counts or not all(abs(value) < 1e70 for value in values):
+            self.refuse(f"{name} must be {' or '.join(map(str, counts))} finite numbers, got '{self.get(name)[:60]}'")
+        return values
+
+    def vector(self, default: float = 0.0) -> list[float]:
+        """Attributes x, y and z (`default` where one is missing), or the three numbers of value."""
+        if "value" in self.attributes:
+            values = self.numbers("value", 1, 3)
+            return values * 3 if len(values) == 1 else values
+        return [self.numbers(axis, 1)[0] if axis in self.attributes else default for axis in "xyz"]
+
+    def refuse(self, what: str) -> NoReturn:
+        """Raises FileError naming the file, the line and the element."""
+        raise _core.FileError(f"{self.file}, line {self.line}: <{self.tag}>: {what}")
+
+
+def read_elements(path: Path) -> Element:
+    """The element <scene> of a file with those of the files that it includes, parameters `$name` filled in."""
+    return _Reader().read(path)
+
+
+class _Reader:
+    def __init__(self):
+        self._parameters: dict[str, str] = {}
+        self._including: list[Path] = []
+        self._count = 0
+
+    def read(self, path: Path) -> Element:
+        root = self._parse(path)
+        if root.tag != "scene":
+            root.refuse("the file must be a scene of Mitsuba, whose first element is <scene>")
+        self._including.append(path)
+        root.children = list(self._filled(root))
+        self._including.pop()
+        return root
+
+    def _filled(self, element: Element) -> Iterator[Element]:
+        """The children of an element, with parameters, and included files instead of what includes them."""
+        for child in element.children:
+            child.attributes = {name: self._text(child, value) for name, value in child.attributes.items()}
+            if child.tag == "default":
+                self._parameters.setdefault(child.get("name"), child.get("value"))
+            elif child.tag == "include":
+                yield from self._included(child)
+            else:
+                child.children = list(self._filled(child))
+                yield child
+
+    def _text(self, element: Element, text: str) -> str:
+        if "$" not in text:
+            return text
+
+        def value(match) -> str:
+            if match[1] not in self._parameters:
+                element.refuse(f"the parameter '${match[1]}' has no default")
+            return self._parameters[match[1]]
+
+        filled = re.sub(r"\$(\w+)", value, text)
+        if len(filled) > 100_000:
+            element.refuse("parameters make it longer than 100000 letters")
+        return filled
+
+    def _included(self, element: Element) -> list[Element]:
+        path = file_of(element, element.get("filename"))
+        if path in self._including or len(self._including) >= MAX_INCLUDES:
+            element.refuse(f"'{path}' includes itself, or files are included more than {MAX_INCLUDES} deep")
+        return self.read(path).children
+
+    def _parse(self, path: Path) -> Element:
+        parser = expat.ParserCreate()
+        stack: list[Element] = []
+        roots: list[Element] = []
+
+        def begin(tag, attributes):
+            self._count += 1
+            element = Element(tag, attributes, path, parser.CurrentLineNumber)
+            if len(stack) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
+                element.refuse(f"more than {MAX_DEPTH} elements within each other, or {MAX_ELEMENTS} in all")
+            (stack[-1].children if stack else roots).append(element)
+            stack.append(element)
+
+        def refuse_types(*_):
+            raise _core.FileError(f"{path}, line {parser.CurrentLineNumber}: a document type, which may expand without end, "
+                                  "is refused")
+
+        parser.StartElementHandler, parser.EndElementHandler = begin, lambda tag: stack.pop()
+        parser.StartDoctypeDeclHandler = refuse_types
+        try:
+            parser.Parse(_bytes(path), True)
+        except expat.ExpatError as error:
+            reason = expat.errors.messages[error.code] if error.code in expat.errors.messages else str(error)
+            raise _core.FileError(f"{path}, line {error.lineno}: is no XML ({reason})") from None
+        except (LookupError, ValueError) as error:  # an encoding that is not known
+            raise _core.FileError(f"{path}: is no XML ({error})") from None
+        return roots[0]
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise _core.FileError(f"{path}: is larger than {MAX_BYTES} bytes")
+        return path.read_bytes()
+    except (OSError, ValueError) as error:
+        raise _core.FileError(f"{path}: cannot be opened ({getattr(error, 'strerror', None) or error})") from None
+
+
+def file_of(element: Element, name: str) -> Path:
+    """The regular file that an element names, relative to the file that it stands in."""
+    if not name:
+        element.refuse("names no file")
+    path = element.file.parent / name
+    try:
+        found = path.is_file()
+    except (OSError, ValueError):
+        found = False
+    if not found:
+        element.refuse(f"the file '{name}' is not there")
+    return path

@@ -1,0 +1,72 @@
+"""Builds the tree of a Model: names that a scene takes, materials by their foreign names, notes that count."""
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import numpy as np
+
+from .material_names import material_of, note_of_unknown
+from .model import Model, ModelNode
+from .options import ReadOptions
+
+MAX_NAME = 120  # letters of a node's name
+
+
+def fit_name(text: str, instead: str = "node") -> str:
+    """A name that a scene takes: without '/', '*', '?', quotes, signs that cannot be seen and spaces at its ends."""
+    text = re.sub(r"[/*?'\"\x00-\x1f\x7f\ud800-\udfff]+", "_", str(text))[:MAX_NAME].strip()
+    return text or instead
+
+
+class Tree:
+    """Nodes of a model in the order in which they are added, parents first."""
+
+    def __init__(self, options: ReadOptions):
+        self.options = options
+        self.nodes: list[ModelNode] = []
+        self._taken: set[tuple[int, str]] = set()
+        self._next: Counter[tuple[int, str]] = Counter()
+        self._meaning: dict[str, tuple] = {}
+        self._unknown: list[str] = []
+        self._notes: dict[str, None] = {}
+        self._counted: Counter[str] = Counter()
+
+    def add(self, name: str, parent: int = -1, **fields) -> int:
+        """A node with a free name of its own; `fields` as of ModelNode, material None: by foreign_material. Returns its index."""
+        if fields.get("mesh") is not None and fields.get("material") is None:
+            fields["material"] = self._material(fields.get("foreign_material", ""))
+        if fields.get("placement") is not None and np.array_equal(fields["placement"], np.eye(4)):
+            fields["placement"] = None
+        self.nodes.append(ModelNode(self._free(fit_name(name), parent), parent, **fields))
+        return len(self.nodes) - 1
+
+    def note(self, sentence: str) -> None:
+        """Adds a sentence, once."""
+        self._notes[sentence] = None
+
+    def count(self, what: str) -> None:
+        """Counts something that was left out or mended, told as "3 x what"."""
+        self._counted[what] += 1
+
+    def model(self, **fields) -> Model:
+        """The Model; its notes are those of this tree."""
+        counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
+        notes = (*self._notes, *counted, *note_of_unknown(self._unknown))
+        return Model(tuple(self.nodes), notes=notes, **fields)
+
+    def _free(self, name: str, parent: int) -> str:
+        free = name
+        while (parent, free) in self._taken:
+            self._next[parent, name] += 1
+            free = f"{name}_{self._next[parent, name] + 1}"
+        self._taken.add((parent, free))
+        return free
+
+    def _material(self, name: str):
+        if name not in self._meaning:
+            self._meaning[name] = material_of(name, self.options.materials)
+        material, note = self._meaning[name]
+        if note is not None:
+            self._unknown.append(name)
+        return material

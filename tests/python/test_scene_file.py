@@ -232,7 +232,7 @@ FAULTS = [
     (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linear', speed = 3}"),
      "objects[0].motion.speed: unknown key"),
     (RADAR + mesh_object("material = 'metal'\nactor = 'plate'"),
-     "objects[0].mesh: exactly one of mesh and actor must be given"),
+     "objects[0].mesh: exactly one of mesh, model and actor must be given"),
     (RADAR + mesh_object("material = 'metal'\nparent = 'nobody'"),
      "objects[0]: parent: must be the full name of a node"),
     (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrain'",

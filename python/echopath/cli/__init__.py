@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | view | info | labels | bench."""
+"""The command line: echopath demo | run | view | info | scene | labels | bench."""
 from __future__ import annotations
 
 import argparse
@@ -80,12 +80,19 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
     view.set_defaults(command=_view)
 
-    info = commands.add_parser("info", help="say what is in a scene, frame or mesh file")
-    info.add_argument("file", metavar="FILE", help=".toml, .h5, .obj or .ply")
+    info = commands.add_parser("info", help="say what is in a scene, frame, mesh or foreign file")
+    info.add_argument("file", metavar="FILE", help=".toml, .h5, or a file or folder that load_model reads (.usd, .xml, .obj ...)")
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
                       help="also say which paths of a frame it takes, as in \"T .* 'wall*' .* R & power > 1e-17\"; may be "
                            "repeated")
     info.set_defaults(command=_info)
+
+    scene = commands.add_parser("scene", help="write a scene file for a foreign scene, ready to run and to be edited")
+    scene.add_argument("file", metavar="FILE", help="what load_model reads (.usd, .xml, .obj ...)")
+    scene.add_argument("--out", required=True, metavar="SCENE.toml", help="scene file to be written")
+    scene.add_argument("--unit", type=float, metavar="M", help="m per unit of the file (default: as the file says)")
+    scene.add_argument("--up", choices=["x", "y", "z"], help="its vertical axis (default: as the file says)")
+    scene.set_defaults(command=_scene)
 
     _add_labels(commands)
 
@@ -196,6 +203,9 @@ def _run(options) -> None:
 
     require_writable(options.out, "--out")
     scene_file = load_scene(options.scene)
+    if scene_file.radar is None:
+        raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "
+                         "with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
@@ -215,6 +225,17 @@ def _info(options) -> None:
     from .info import describe_file
 
     print("\n".join(describe_file(options.file, options.select)))
+
+
+def _scene(options) -> None:
+    from .model_info import describe_model
+    from ..scene_file.write import write_scene_file
+
+    out = Path(options.out)
+    if out.suffix.lower() != ".toml":
+        raise ValueError(f"--out: must be a file .toml, got '{options.out}'")
+    model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
+    print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {out} --out DIR"]))
 
 
 def _labels(options) -> None:

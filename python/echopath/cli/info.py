@@ -8,16 +8,18 @@ import numpy as np
 import echopath as ep
 
 from ..frame_file import left_out, load_frame
+from ..readers.load import READERS, is_foreign
 from ..scene_file import load_scene
 from ..measures import in_dbm, with_error
 from . import report
+from .model_info import describe_model
 
 FRAME_SUFFIXES = (".h5", ".hdf5")
-MESH_SUFFIXES = (".obj", ".ply")
+MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
 
 
 def describe_file(path, selections=()) -> list[str]:
-    """Lines that say what is in a scene file (TOML), a frame file (HDF5) or a mesh file (OBJ, PLY).
+    """Lines that say what is in a scene file (TOML), a frame file (HDF5), a mesh file or a foreign scene (load_model).
 
     selections: of paths, also to be told of; of frame files
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
@@ -32,8 +34,10 @@ def describe_file(path, selections=()) -> list[str]:
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in MESH_SUFFIXES:
-        return _describe_meshes(ep.load_meshes(str(path)))
-    raise ValueError(f"{path}: must be a .toml, .h5, .obj or .ply file")
+        return [*_describe_meshes(ep.load_meshes(str(path))), *describe_model(path, ep.load_model(path))]
+    if is_foreign(path):
+        return describe_model(path, ep.load_model(path))
+    raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}")
 
 
 def _rays_of(trace) -> str:

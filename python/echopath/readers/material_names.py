@@ -17,7 +17,8 @@ DEFAULT = "concrete"  # of names that nothing takes
 # Patterns of names, the first that takes a name decides. A material of several words stands before those of one.
 _NAMES: dict[str, str] = {
     # Recommendation ITU-R P.2040, as Sionna RT and others spell it
-    "*ceiling*board*": "ceiling_board", "*very*dry*ground*": "dry_soil", "*medium*dry*ground*": "soil", "*wet*ground*": "wet_soil",
+    "*ceiling*board*": "ceiling_board", "*very*dry*ground*": "dry_soil", "*medium*dry*ground*": "soil",
+    "*wet*ground*": "wet_soil",
     "*chip*board*": "chipboard", "*ply*wood*": "plywood", "*floor*board*": "floorboard", "*plaster*board*": "plasterboard",
     # what would be taken for something else by a part of its name
     "*fib*glass*": "plastic", "*carbon*fib*": "plastic", "*road*line*": "asphalt", "*lane*mark*": "asphalt",

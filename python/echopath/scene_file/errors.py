@@ -1,6 +1,8 @@
 """Faults of a scene file in the words of the file: dotted path, rule, value."""
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from pydantic import BaseModel, ValidationError
 
 MAX_VALUE_LENGTH = 60  # characters of a value that a message repeats
@@ -74,3 +76,13 @@ def validated(model: type[BaseModel], data: dict, prefix: tuple = ()) -> BaseMod
         return model.model_validate(data)
     except ValidationError as error:
         raise ValueError(describe(error, prefix)) from None
+
+
+@contextmanager
+def blamed(key: str):
+    """Prefixes what the core refuses with the dotted path of the key it came from."""
+    try:
+        yield
+    except (ValueError, TypeError, KeyError) as error:
+        text = str(error.args[0]) if error.args else str(error)
+        raise ValueError(f"{key}: {text}") from None

@@ -206,10 +206,19 @@ MaterialValue = Annotated[
     Discriminator(lambda value: "<name>" if isinstance(value, str) else "<table>")]
 
 
+MODEL_KEYS = ("unit", "up", "animation", "loop", "offset")  # arguments of load_model that are keys of an object
+
+
 class ObjectTable(Table):
     name: Name = Field(description="its name in path expressions")
-    mesh: str | None = Field(None, description="OBJ or PLY file, relative to the scene file")
-    unit: Positive | None = Field(None, description="m, length of one unit of the mesh file; none: 1")
+    mesh: str | None = Field(None, description="OBJ, PLY, STL or OFF file, relative to the scene file")
+    model: str | None = Field(None, description="foreign scene or object, a file that load_model reads, likewise")
+    unit: Positive | None = Field(None, description="m, length of one unit of mesh or model; none: 1, or as the model says")
+    up: Literal["x", "y", "z"] | None = Field(None, description="vertical axis of the model; none: as it says")
+    materials: dict[str, MaterialValue] = Field({}, description="names in the model, or patterns of them = material")
+    animation: str | None = Field(None, description="of the model, by its name; none: the first, \"\": at rest")
+    loop: bool | None = Field(None, description="whether the animation begins anew at its end; none: it does not")
+    offset: Number | None = Field(None, description="s, time of the animation at time 0 of the scene; none: 0")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
     parameters: dict = Field({}, description="keywords of the actor")
     material: MaterialValue | None = Field(None, description="a known name or a table")
@@ -224,10 +233,13 @@ class ObjectTable(Table):
 
     @model_validator(mode="after")
     def _one_shape(self):
-        if (self.mesh is None) == (self.actor is None):
-            raise broken_rule("mesh", "exactly one of mesh and actor must be given", self.mesh)
-        if self.unit is not None and self.mesh is None:
-            raise broken_rule("unit", "needs a mesh", self.unit)
+        if [self.mesh, self.model, self.actor].count(None) != 2:
+            raise broken_rule("mesh", "exactly one of mesh, model and actor must be given", self.mesh)
+        if self.unit is not None and self.mesh is None and self.model is None:
+            raise broken_rule("unit", "needs a mesh or a model", self.unit)
+        for key in ("up", "materials", "animation", "loop", "offset"):
+            if self.model is None and getattr(self, key) not in (None, {}):
+                raise broken_rule(key, "needs a model", getattr(self, key))
         if self.parameters and self.actor is None:
             raise broken_rule("parameters", "needs an actor", self.parameters)
         return self

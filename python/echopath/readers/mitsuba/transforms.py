@@ -31,7 +31,7 @@ def _scale(step: Element) -> np.ndarray:
 
 def _rotate(step: Element) -> np.ndarray:
     """About an axis by an angle in degrees (Rodrigues)."""
-    axis, length = _unit(step, step.vector())
+    axis = _unit(step, step.vector())
     angle = np.radians(step.numbers("angle", 1)[0])
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -57,18 +57,18 @@ def _look_at(step: Element) -> np.ndarray:
     """From `origin` to `target`: +z looks there, +y is up, +x to the left."""
     origin, target = (np.array(step.numbers(name, 3)) for name in ("origin", "target"))
     up = step.numbers("up", 3) if "up" in step.attributes else [0.0, 1.0, 0.0]
-    ahead, _ = _unit(step, target - origin)
-    left, _ = _unit(step, np.cross(up, ahead))
+    ahead = _unit(step, target - origin)
+    left = _unit(step, np.cross(up, ahead))
     matrix = np.eye(4)
     matrix[:3] = np.column_stack([left, np.cross(ahead, left), ahead, origin])
     return matrix
 
 
-def _unit(step: Element, vector) -> tuple[np.ndarray, float]:
+def _unit(step: Element, vector) -> np.ndarray:
     length = float(np.linalg.norm(vector))
     if not 1e-30 < length < 1e60:
         step.refuse("its direction must not vanish")
-    return np.asarray(vector) / length, length
+    return np.asarray(vector) / length
 
 
 _STEPS = {"translate": _translate, "scale": _scale, "rotate": _rotate, "matrix": _matrix, "lookat": _look_at, "look_at": _look_at}

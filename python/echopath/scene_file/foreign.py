@@ -1,0 +1,15 @@
+"""Foreign scenes as the content of a Scene."""
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..readers import load_model
+from ..readers.tree import fit_name
+from ..scene import Scene
+
+
+def foreign_scene(path: Path) -> Scene:
+    """A Scene with the content of a foreign file below one object, named after the file."""
+    scene = Scene()
+    scene.add(load_model(path), name=fit_name(path.stem, "model"))
+    return scene

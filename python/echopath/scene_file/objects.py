@@ -1,0 +1,113 @@
+"""The objects of a scene file: meshes, models, actors, their materials and motions."""
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+import typing
+from pathlib import Path
+
+from pydantic import create_model
+
+from .. import _core, actors
+from ..materials import materials
+from ..readers import load_model
+from ..scene import Scene
+from .errors import blamed, validated
+from .schema import MODEL_KEYS, ObjectTable, SceneTable, Table, nearest_key
+
+
+def motion_of(table, key: str):
+    if table is None:
+        return None
+    with blamed(key):
+        if table.kind == "linear":
+            return _core.LinearMotion(velocity=tuple(table.velocity), angular_velocity=tuple(table.angular_velocity))
+        return _core.KeyframeMotion(times=table.times, translations=table.translations, rotations=table.rotations,
+                                    interpolation=table.interpolation)
+
+
+def _material(value, key: str):
+    """The material of an object: None, an ep.Material, or a known name (which must be known)."""
+    if value is None:
+        return None
+    with blamed(key):
+        if isinstance(value, str):
+            return materials[value]
+        given = value.model_dump(exclude_unset=True)
+        base = given.pop("base", None)
+        if isinstance(given.get("permittivity"), list):
+            real, loss = given["permittivity"]
+            given["permittivity"] = complex(real, -loss)
+        return materials[base].replace(**given) if base is not None else _core.Material(**given)
+
+
+def build_scene(settings: SceneTable, folder: Path):
+    scene = Scene()
+    meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
+    for index, table in enumerate(settings.objects):
+        key = f"objects[{index}]"
+        placement = {"transform": table.transform} if table.transform is not None else {
+            "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
+        material = _material(table.material, f"{key}.material")
+        shape, material = _shape(table, folder, key, material, meshes_of_file)
+        motion = motion_of(table.motion, f"{key}.motion")
+        with blamed(key):
+            scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
+                      smooth=table.smooth, visible=table.visible, **placement)
+    return scene
+
+
+def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file):
+    """The object's mesh, group of meshes, model or actor, and the material still to be given to it."""
+    if table.mesh is not None:
+        with blamed(f"{key}.mesh"):
+            meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)
+        return (meshes[0][1] if len(meshes) == 1 else meshes), material
+    if table.model is not None:
+        return _model(table, folder, key), material
+    factory = _actor_factory(table.actor, f"{key}.actor")
+    model = _parameter_table(table.actor, factory)
+    parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
+    if material is not None and "material" in _parameters(factory):
+        parameters["material"], material = material, None
+    with blamed(f"{key}.parameters"):
+        return factory(**parameters), material
+
+
+def _model(table: ObjectTable, folder: Path, key: str):
+    """The content of a foreign file."""
+    settings = {name: getattr(table, name) for name in MODEL_KEYS if getattr(table, name) is not None}
+    settings["materials"] = {name: _material(value, f"{key}.materials.{name}") for name, value in table.materials.items()}
+    with blamed(f"{key}.model"):
+        return load_model(folder / table.model, **settings)
+
+
+def _as_location(key: str) -> tuple:
+    """'objects[3]' -> ('objects', 3)."""
+    name, _, index = key.rstrip("]").partition("[")
+    return (name, int(index))
+
+
+def actor_names() -> list[str]:
+    """Names of the ready-made objects: the public functions of echopath.actors."""
+    return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]
+
+
+def _actor_factory(name: str, key: str):
+    if name not in actor_names():
+        raise ValueError(f"{key}: unknown actor '{name}'; {nearest_key(name, actor_names()).replace('keys', 'actors')}")
+    return getattr(actors, name)
+
+
+@functools.cache
+def _parameters(factory) -> dict:
+    return dict(inspect.signature(factory).parameters)
+
+
+@functools.cache
+def _parameter_table(name: str, factory) -> type[Table]:
+    """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
+    fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
+              for parameter in _parameters(factory).values() if parameter.name != "material"}
+    return create_model(f"{name}_parameters", __base__=Table, **fields)

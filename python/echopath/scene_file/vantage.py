@@ -1,0 +1,84 @@
+"""Where a radar stands well in a scene that has none: before an object, or in the open middle of a town."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..readers.sizes import box_of
+from ..scene import Scene
+
+TOWN = 30.0          # m, extent from which on the radar stands within the scene
+HEIGHT = 1.5         # m above the ground
+HEADROOM = 0.8       # m above the ground, up to which a surface is no obstacle
+CELLS = 200          # along each side of the map of obstacles
+DIRECTIONS = 32      # that are tried
+CLEARANCE = 12.0     # m to the next obstacle that is enough
+
+
+def vantage(scene: Scene) -> tuple[list[float], float, float]:
+    """(position [3] in m, yaw in degrees, distance in m up to which there is something to see) for a radar.
+
+    Objects of less than 30 m are seen from behind, along +x. In larger scenes it is the place nearest to the middle where
+    nothing higher than a kerb is near, and the direction of the longest open way.
+    """
+    low, high = box_of(scene)
+    middle, size = 0.5 * (low + high), float((high - low).max())
+    if (high - low)[:2].max() < TOWN:
+        distance = max(3.0, 2.0 * size)
+        height = min(middle[2], low[2] + HEIGHT)
+        return _rounded([low[0] - distance, middle[1], height]), 0.0, 2.0 * distance + size
+    blocked, step, ground = _obstacles(scene, low, high)
+    if blocked.all():
+        return _rounded([low[0] - 10.0, middle[1], low[2] + HEIGHT]), 0.0, size + 20.0
+    row, column = _open_place(blocked, step)
+    yaw, reach = _open_way(blocked, row, column)
+    place = [low[0] + step * (row + 0.5), low[1] + step * (column + 0.5), ground[row, column] + HEIGHT]
+    return _rounded(place), yaw, float(np.clip(1.5 * reach * step, 50.0, 300.0))
+
+
+def _rounded(place) -> list[float]:
+    return [round(float(value), 3) for value in place]
+
+
+def _obstacles(scene: Scene, low, high):
+    """Cells [n, m] with something higher than HEADROOM above their ground, their size in m, and the ground's height."""
+    step = float((high - low)[:2].max()) / CELLS
+    shape = tuple(int((high - low)[axis] / step) + 1 for axis in (0, 1))
+    bottom, top = np.full(shape, np.inf), np.full(shape, -np.inf)
+    for mesh in scene.meshes:
+        corners = scene.world_vertices(mesh.id, 0.0)[mesh.triangles]
+        least, most = corners.min(axis=1), corners.max(axis=1)
+        first = np.clip(((least - low)[:, :2] / step).astype(int), 0, np.array(shape) - 1)
+        last = np.clip(((most - low)[:, :2] / step).astype(int), 0, np.array(shape) - 1) + 1
+        for (i, j), (k, m), z0, z1 in zip(first, last, least[:, 2], most[:, 2]):
+            bottom[i:k, j:m] = np.minimum(bottom[i:k, j:m], z0)
+            top[i:k, j:m] = np.maximum(top[i:k, j:m], z1)
+    return ~(top < bottom + HEADROOM), step, np.where(np.isfinite(bottom), bottom, low[2])
+
+
+def _open_place(blocked, step: float) -> tuple[int, int]:
+    """The cell that is CLEARANCE away from obstacles, or as far as can be, and then nearest to the middle."""
+    clear = np.zeros(blocked.shape, int)
+    free = ~blocked
+    for _ in range(max(1, int(CLEARANCE / step))):
+        clear += free
+        grown = np.pad(free, 1, constant_values=False)
+        free = free & grown[:-2, 1:-1] & grown[2:, 1:-1] & grown[1:-1, :-2] & grown[1:-1, 2:]
+    rows, columns = np.nonzero(clear == clear.max())
+    middle = 0.5 * np.array(blocked.shape)
+    best = int(((rows - middle[0]) ** 2 + (columns - middle[1]) ** 2).argmin())
+    return int(rows[best]), int(columns[best])
+
+
+def _open_way(blocked, row: int, column: int) -> tuple[float, int]:
+    """The direction in degrees of the longest way without obstacles that ends at one, and its length in cells."""
+    best = (0.0, 0)
+    for yaw in np.arange(DIRECTIONS) * 360.0 / DIRECTIONS - 180.0:
+        ahead = np.array([np.cos(np.radians(yaw)), np.sin(np.radians(yaw))])
+        for distance in range(1, 2 * CELLS):
+            cell = np.floor(np.array([row, column]) + 0.5 + distance * ahead).astype(int)
+            if (cell < 0).any() or (cell >= blocked.shape).any():
+                break
+            if blocked[tuple(cell)]:
+                best = max(best, (float(yaw), distance), key=lambda one: one[1])
+                break
+    return best

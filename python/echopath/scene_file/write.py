@@ -1,0 +1,89 @@
+"""A scene file for a foreign scene, ready to run and to be edited."""
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from .. import _core
+from ..files import written_whole
+from ..readers import Model, load_model
+from ..readers.tree import fit_name
+from ..scene import Scene
+from .vantage import vantage
+
+CELLS = 256  # range cells up to the greatest distance
+TEXT = """title = {title}
+
+[radar]  # 77 GHz, one transmitter and four receivers half a wavelength apart, in the open and looking along the longest way
+transmit_power = 0.01
+noise_figure_db = 12.0
+position = {position}
+yaw_deg = {yaw:g}
+pattern = {{kind = "cosine_power", exponent = 2.0}}
+
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = {bandwidth:.4g}  # Hz: cells of {cell:.3g} m, {reach:.4g} m in all
+num_samples = {samples}
+sampling_rate = 10e6
+num_chirps = 64
+chirp_interval = 60e-6
+
+[[radar.transmitters]]
+position = [0.0, 0.0, 0.0]
+{receivers}
+[[objects]]
+name = {name}
+model = {model}
+{settings}{notes}
+[trace]
+num_rays = 200000
+max_bounces = 3
+"""
+
+
+def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], *, unit: float | None = None,
+                     up: str | None = None) -> Model:
+    """Writes a scene file `out` whose one object is the foreign file `path`, and returns its Model.
+
+    unit, up: as of load_model. The radar stands where `vantage` says. Raises as load_model does, and ep.FileError when the
+    file cannot be written.
+    """
+    path, out = Path(path), Path(out)
+    model = load_model(path, unit=unit, up=up)
+    scene = Scene()
+    scene.add(model, name="model")
+    position, yaw, reach = vantage(scene)
+    text = TEXT.format(title=_quoted(path.stem), position=position, yaw=yaw, cell=reach / CELLS, reach=reach, samples=CELLS,
+                       bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
+                       name=_quoted(fit_name(path.stem, "model")), model=_quoted(_relative(path, out.parent)),
+                       settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes))
+    with written_whole(out) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return model
+
+
+def _receivers() -> str:
+    spacing = _core.speed_of_light / 77e9 / 2.0
+    return "".join(f"\n[[radar.receivers]]\nposition = [0.0, {index * spacing:.6f}, 0.0]\n" for index in range(4))
+
+
+def _settings(unit: float | None, up: str | None) -> str:
+    return (f"unit = {unit:.15g}\n" if unit is not None else "") + (f'up = "{up}"\n' if up is not None else "")
+
+
+def _relative(path: Path, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:  # on another drive
+        return path.absolute().as_posix()
+
+
+def _quoted(text: str) -> str:
+    """Text as TOML writes it."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _plain(text: str) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in text)

@@ -38,7 +38,8 @@ def drone(*, size: float = 0.35, rotor_rpm: float = 5500.0, num_blades: int = 2,
         motion = _core.LinearMotion(velocity=(speed, 0.0, 0.0), angular_velocity=(0.0, 0.0, turn))
         mesh = _core.Mesh(_turned(blades.vertices, 0.7 * n) * [1.0, sense, 1.0],
                           blades.triangles if sense > 0 else np.asarray(blades.triangles)[:, ::-1])
-        parts.append(Part(f"rotor_{name}", mesh, "plastic", motion, tuple(places[name] + [0.0, 0.0, 0.20 * arm])))
+        parts.append(Part(f"rotor_{name}", mesh, "plastic", motion, tuple(places[name] + [0.0, 0.0, 0.20 * arm]),
+                          smooth=True))
     return Actor(parts)
 
 
@@ -64,7 +65,7 @@ def _legs(arm):
 
 def _blade(radius, angle):
     """A blade along x from the hub, twisted and tapered; it turns left-hand edge first."""
-    stations = [(0.0, 0.10, 26.0), (0.3, 0.17, 20.0), (0.65, 0.13, 13.0), (1.0, 0.06, 8.0)]   # radius, chord, pitch in deg
+    stations = [(0.06, 0.10, 26.0), (0.3, 0.17, 20.0), (0.65, 0.13, 13.0), (1.0, 0.06, 8.0)]   # radius, chord, pitch in deg
     rings = []
     for share, chord, pitch in stations:
         c, s = np.cos(np.radians(pitch)), np.sin(np.radians(pitch))

@@ -99,7 +99,7 @@ def _leg(name, kind, side, height, body, way, paw, times):
 
 def _bar(name, start, end, radius, length, times):
     """A capsule whose half spheres are about `start` and `end` [T, 3], which lie in a plane of constant y."""
-    mesh = capsule(radius, length + 2.0 * radius, edge=0.6 * radius)
+    mesh = capsule(radius, length + 2.0 * radius, edge=0.5 * radius)
     up = start - end
     angle = np.arctan2(up[:, 0], up[:, 2])
     return PartArrays(name, mesh.vertices, mesh.triangles, FUR, times, 0.5 * (start + end), _about_y(angle), smooth=True)

@@ -8,7 +8,7 @@ import numpy as np
 from ... import _core
 from ...checks import checked, one_of, positive, real
 from ..actor import Actor, Part
-from ..solids import block, extruded, outward, round_segments, tube
+from ..solids import extruded, outward, round_segments, tube
 from ..surfaces import joined
 
 SignShape = Literal["round", "triangle", "rectangle", "octagon"]
@@ -21,7 +21,8 @@ SIGN_CORNERS = {"round": (32, 0.0), "triangle": (3, 0.0), "octagon": (8, np.pi /
 
 RAIL_HEIGHT, RAIL_DEPTH, RAIL_THICKNESS = 0.311, 0.081, 0.003   # m: the W profile of steel guard rails (EN 1317 systems)
 RAIL_TOP = 0.75            # m above the ground
-POST = (0.10, 0.055)       # m, along and across
+POST = (0.055, 0.10)       # m, along and across: beams IPE 100, whose flanges lie along the road
+FLANGE, WEB = 0.0057, 0.0041   # m, thicknesses
 # The W profile from its lower to its upper edge: height over that of the rail, depth behind the front over the whole depth.
 RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0), (0.31, 0.06), (0.40, 0.78), (0.45, 0.97),
              (0.50, 1.0), (0.55, 0.97), (0.60, 0.78), (0.69, 0.06), (0.75, 0.0), (0.81, 0.02), (0.88, 0.30), (0.95, 0.80),
@@ -59,7 +60,7 @@ def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float
 
 @checked(length=positive("m"), spacing=positive("m"), edge=real(0.02, unit="m"))
 def guard_rail(*, length: float = 20.0, spacing: float = 2.0, edge: float = 1.0) -> Actor:
-    """A steel guard rail along x about the origin, its front towards -y, 0.75 m high, on posts.
+    """A steel guard rail along x about the origin, its front towards -y, 0.75 m high, on posts of H section.
 
     Parts: rail (the W profile of 311 mm x 81 mm, 3 mm thick), posts.
     length, spacing: m, of the rail and of its posts. edge: m, longest side of the rail's triangles along it.
@@ -68,9 +69,24 @@ def guard_rail(*, length: float = 20.0, spacing: float = 2.0, edge: float = 1.0)
     count = max(2, int(round(length / spacing)) + 1)
     places = np.linspace(-length / 2 + POST[0], length / 2 - POST[0], count)
     back = RAIL_DEPTH + RAIL_THICKNESS + 0.002
-    posts = [block((x - POST[0] / 2, back, 0.0), (x + POST[0] / 2, back + POST[1], RAIL_TOP - 0.03)) for x in places]
+    posts = [_post(x, back, RAIL_TOP - 0.03) for x in places]
     return Actor([Part("rail", _core.Mesh(*_rail(length, edge)), "metal", smooth=True),
                   Part("posts", _core.Mesh(*joined(*posts)), "metal")])
+
+
+def _post(x, y, height):
+    """A beam of H section from the ground to `height`, its nearer flange at y."""
+    half, web = POST[0] / 2, WEB / 2
+    low, high = FLANGE, POST[1] - FLANGE
+    outline = np.array([(-half, 0), (half, 0), (half, low), (web, low), (web, high), (half, high), (half, POST[1]),
+                        (-half, POST[1]), (-half, high), (-web, high), (-web, low), (-half, low)])
+    vertices = np.concatenate([np.column_stack([outline + [x, y], np.full(12, z)]) for z in (0.0, height)])
+    k = np.arange(12)
+    n = (k + 1) % 12
+    cap = np.array([(0, 1, 3), (1, 2, 3), (0, 3, 10), (0, 10, 11), (10, 3, 4), (10, 4, 9), (9, 4, 7), (4, 6, 7), (4, 5, 6),
+                    (9, 7, 8)])
+    sides = np.concatenate([np.stack([k, n, n + 12], -1), np.stack([k, n + 12, k + 12], -1)])
+    return outward((vertices, np.concatenate([sides, cap[:, ::-1], cap + 12])))
 
 
 def _rail(length, edge):

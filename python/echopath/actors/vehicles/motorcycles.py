@@ -15,8 +15,9 @@ from ..human.posture import leg, reaching_arm, trunk
 from ..human.rotations import about_y
 from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
-from ..solids import block, tube
+from ..solids import tube
 from ..surfaces import joined
+from .fittings import leaning_plate
 from .materials import LAMP, UNDERSIDE
 from .road_vehicle import carried
 from .wheel import Wheel, wheel_parts
@@ -58,12 +59,11 @@ def _body():
                          {"body": "plastic"})
     engine = rounded_parts(rounded_box((-0.22, -0.22, 0.26), (0.28, 0.22, 0.62), 0.05, (3, 3, 3)), lambda face: "body/engine",
                            {"body": UNDERSIDE})
-    plate = block((-0.994, -0.09, 0.52), (-0.990, 0.09, 0.72))
-    return [replace(seat[0], smooth=False), replace(engine[0], smooth=False),
+    return [*seat, replace(engine[0], smooth=False),
             Part("body/tank", tank, "metal", None, (0.16, 0.0, 0.86), smooth=True),
             Part("lamp/head", ellipsoid((0.09, 0.10, 0.10), edge=0.02), LAMP, None, (0.52, 0.0, 0.88)),
             Part("lamp/tail", ellipsoid((0.05, 0.06, 0.03), edge=0.02), LAMP, None, (-0.78, 0.0, 0.83)),
-            Part("plate/rear", _core.Mesh(*plate), "metal")]
+            leaning_plate("plate/rear", -0.90, 0.73, -1.0, (0.18, 0.18))]
 
 
 def _tubes():
@@ -78,6 +78,7 @@ def _tubes():
                   tube(pivot + [0, 0, 0.12] + 0.10 * side, np.array([-0.75, 0, 0.78]) + 0.08 * side, 0.016, segments=12),
                   tube(pivot + 0.1 * side, (FOOT_REST - [0, 0, 0.015]) * [1, sign, 1] + 0.06 * side, 0.012, segments=8)]
         bars.append(tube(HEAD + [-0.02, 0.05 * sign, 0.14], GRIP * [1, sign, 1] + 0.06 * side, 0.014, segments=10))
+    frame.append(tube((-0.74, 0.0, 0.79), (-0.895, 0.0, 0.74), 0.012, segments=8))
     exhaust = [tube((0.22, -0.12, 0.25), (-0.30, -0.16, 0.22), 0.03, segments=14),
                tube((-0.30, -0.16, 0.22), (-0.62, -0.18, 0.33), 0.055, segments=16)]
     guard = ellipsoid((0.20, 0.07, 0.05), edge=0.03)

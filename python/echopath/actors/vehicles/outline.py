@@ -8,7 +8,8 @@ import numpy as np
 
 ARCH_CLEARANCE = 0.055     # m between tyre and wheel arch
 ARCH_INSIDE = 0.10         # m by which an arch is deeper than the tyre is wide
-WHEEL_INSET = 0.035        # m from the widest place of the body to the outer side of the tyre
+WHEEL_INSET = 0.065        # m from the widest place of the body to the outer side of the tyre
+SIDE_BOW = 0.040           # by which the sides draw in from the middle to the axles, as seen from above, of the half width
 CORNER = 0.20              # m, least way along x from a wheel arch to the end of the body
 COLUMNS = np.array([-1.0, -0.82, -0.58, -0.30, 0.0, 0.30, 0.58, 0.82, 1.0])    # lines across, as shares of the half width
 SILL, LOW, ARCH, SHOULDER, BELT, WINDOW, RAIL = range(7)   # lines of the side, from below; RAIL is under the roof
@@ -132,7 +133,9 @@ def _taper(o, x):
     """Half width over that of the middle: the plan narrows towards nose and tail."""
     ahead = np.clip((x - o.front_axle) / (o.length / 2 - o.front_axle), 0.0, 1.0)
     behind = np.clip((o.rear_axle - x) / (o.rear_axle + o.length / 2), 0.0, 1.0)
-    return 1.0 - 0.13 * ahead**2.5 - 0.09 * behind**2.5
+    middle = 0.5 * (o.front_axle + o.rear_axle)
+    bow = np.minimum(np.abs(x - middle) / (0.5 * o.wheelbase), 1.2) ** 2
+    return 1.0 - SIDE_BOW * bow - 0.12 * ahead**2.5 - 0.08 * behind**2.5
 
 
 def _roof_line(o, x):

@@ -46,9 +46,10 @@ def _placed(parts, group, place, rotation):
     wholes, moved = {}, []
     for part in parts:
         whole = part.mesh.whole or part.mesh
-        if id(whole) not in wholes:
+        key = id(whole), tuple(part.position)
+        if key not in wholes:
             vertices = (np.asarray(whole.vertices) + part.position) @ rotation.T + place
-            wholes[id(whole)] = _core.Mesh(vertices, whole.triangles)
-        mesh = wholes[id(whole)] if part.mesh.whole is None else wholes[id(whole)].part(part.mesh.whole_triangle)
+            wholes[key] = _core.Mesh(vertices, whole.triangles)
+        mesh = wholes[key] if part.mesh.whole is None else wholes[key].part(part.mesh.whole_triangle)
         moved.append(replace(part, name=f"{group}/{part.name}", mesh=mesh, position=(0.0, 0.0, 0.0)))
     return moved

@@ -12,7 +12,7 @@ from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import block, tube
 from ..surfaces import joined
-from .fittings import PLATE, PLATE_THICKNESS
+from .fittings import PLATE, leaning_plate
 from .materials import BUMPER, GRILLE, LAMP, UNDERSIDE
 from .road_vehicle import carried
 from .wheel import Wheel, wheel_parts
@@ -74,11 +74,9 @@ def _fittings():
     for side, sign in (("left", 1.0), ("right", -1.0)):
         parts.append(Part(f"lamp/head_{side}", ellipsoid((0.05, 0.22, 0.10), edge=0.03), LAMP, None,
                           (FRONT - 0.10, 0.92 * sign, 0.72), smooth=True))
-        parts.append(Part(f"mirror_{side}", ellipsoid((0.12, 0.07, 0.32), edge=0.05), "plastic", None,
-                          (FRONT - 0.42, 1.37 * sign, 2.05)))
-    rear = -LENGTH / 2 - 0.010
-    plate = block((rear - PLATE_THICKNESS, -PLATE[0] / 2, 0.55), (rear, PLATE[0] / 2, 0.55 + PLATE[1]))
-    return parts + [Part("plate/rear", _core.Mesh(*plate), "metal")]
+        parts.append(Part(f"mirror_{side}", ellipsoid((0.12, 0.07, 0.32), edge=0.03), "plastic", None,
+                          (FRONT - 0.42, 1.37 * sign, 2.05), smooth=True))
+    return parts + [leaning_plate("plate/rear", 0.04 - LENGTH / 2, 0.70, -1.0, PLATE)]
 
 
 def _trailer():
@@ -98,9 +96,11 @@ def _frames():
             for sign in (1, -1)]
     legs = [block((1.35, 0.85 * sign - 0.06, 0.45), (1.47, 0.85 * sign + 0.06, 1.14)) for sign in (1, -1)]
     axles = [tube((x, -0.75, TYRE.radius), (x, 0.75, TYRE.radius), 0.07, segments=10) for x in TRAILER_AXLES]
+    struts = [block((-LENGTH / 2 + 0.16, 0.50 * sign - 0.04, 0.50), (-LENGTH / 2 + 0.24, 0.50 * sign + 0.04, 1.00))
+              for sign in (1, -1)]
     bar = block((-LENGTH / 2 + 0.05, -1.15, 0.45), (-LENGTH / 2 + 0.15, 1.15, 0.57))
     return [Part("tractor/chassis", _core.Mesh(*joined(*beams, axle)), UNDERSIDE),
-            Part("trailer/chassis", _core.Mesh(*joined(*long, *legs, *axles)), UNDERSIDE),
+            Part("trailer/chassis", _core.Mesh(*joined(*long, *legs, *axles, *struts)), UNDERSIDE),
             Part("trailer/underrun", _core.Mesh(*bar), "metal")]
 
 

@@ -1,0 +1,81 @@
+"""Poles, signs, guard rails, trees and drones."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.tessellation import coarse_meshes
+from support.closed import boundary_edges, extent, joined_parts, scene_of, volume_of
+
+MAKERS = {"pole": ep.actors.pole, "guard_rail": lambda: ep.actors.guard_rail(length=6.0), "tree": ep.actors.tree,
+          "round": lambda: ep.actors.traffic_sign(shape="round"), "triangle": lambda: ep.actors.traffic_sign(shape="triangle"),
+          "rectangle": lambda: ep.actors.traffic_sign(shape="rectangle"),
+          "octagon": lambda: ep.actors.traffic_sign(shape="octagon"), "drone": ep.actors.drone}
+OPEN = ("crown",)   # leaves are single facets
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_each_part_is_closed_with_its_front_outside(name):
+    for part in MAKERS[name]().parts:
+        if part.name not in OPEN:
+            assert boundary_edges(part.mesh.vertices, part.mesh.triangles) == [], part.name
+            assert volume_of(part.mesh.vertices, part.mesh.triangles) > 0.0, part.name
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_no_faces_lie_on_each_other_and_curved_parts_are_fine_enough(name):
+    scene = scene_of(MAKERS[name]())
+    if name != "tree":                # leaves that cross are meant
+        assert scene.coplanar_overlaps() == []
+    assert coarse_meshes(scene, 77e9) == []
+
+
+@pytest.mark.parametrize("shape, area", [("round", np.pi * 0.3**2), ("triangle", np.sqrt(3) / 4 * 0.6**2),
+                                         ("rectangle", 0.4 * 0.6), ("octagon", 2 * (np.sqrt(2) - 1) * 0.6**2)])
+def test_signs_have_the_area_of_their_shape_and_face_the_radar(shape, area):
+    sign = ep.actors.traffic_sign(shape=shape, size=0.6, height=2.0)
+    part = sign.parts[0]
+    assert volume_of(part.mesh.vertices, part.mesh.triangles) == pytest.approx(0.003 * area, rel=0.01, abs=0)
+    assert part.mesh.vertices[:, 2].min() == pytest.approx(2.0) and part.mesh.vertices[:, 0].min() == 0.0
+
+
+def test_a_sign_flashes_as_a_plate_of_its_area_does():
+    scene = ep.Scene()
+    scene.add(ep.actors.traffic_sign(shape="rectangle", size=0.3).parts[0].mesh, name="sign", material="metal")
+    wavelength = ep.speed_of_light / 77e9
+    found = ep.rcs(scene, frequency=77e9, incidence=(-1.0, 0.0, 0.0), num_rays=65536)
+    assert 10 * np.log10(found) == pytest.approx(10 * np.log10(4 * np.pi * (0.3 * 0.2) ** 2 / wavelength**2), abs=0.3)
+
+
+def test_the_rail_has_the_w_profile():
+    rail = ep.actors.guard_rail(length=6.0)
+    size, _ = extent(rail, lambda name: name == "rail")
+    np.testing.assert_allclose(size, (6.0, 0.081 + 0.003, 0.311), atol=0.004)
+    assert extent(rail, lambda name: name == "posts")[1] == 0.0
+
+
+def test_a_tree_is_the_same_for_its_seed_alone():
+    first, again, other = (np.asarray(ep.actors.tree(seed=s).parts[2].mesh.vertices) for s in (4, 4, 5))
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+def test_rotors_turn_as_fast_as_asked_and_neighbours_against_each_other():
+    scene = scene_of(ep.actors.drone(rotor_rpm=6000.0))
+    turns = {}
+    for mesh in scene.meshes:
+        if "rotor" in mesh.name:
+            quarter = [scene.world_vertices(mesh.id, t) for t in (0.0, 0.0025)]    # a quarter of a turn of 10 ms
+            center = 0.5 * (quarter[0].min(axis=0) + quarter[0].max(axis=0))
+            tip = np.argmax(np.linalg.norm((quarter[0] - center)[:, :2], axis=1))
+            a, b = ((points[tip] - center)[:2] for points in quarter)
+            turns[mesh.name] = np.degrees(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
+    signs = [turns[f"a/rotor_{name}"] for name in ("front_left", "front_right", "rear_left", "rear_right")]
+    np.testing.assert_allclose(np.abs(signs), 90.0, atol=1.5)
+    assert np.sign(signs).tolist() == [1.0, -1.0, -1.0, 1.0]
+
+
+def test_crown_fills_its_ellipsoid():
+    vertices = np.asarray(ep.actors.tree(height=8.0, crown_radius=2.5).parts[2].mesh.vertices)
+    assert vertices[:, 2].min() > 0.3 * 8.0 and vertices[:, 2].max() < 8.3
+    assert np.hypot(vertices[:, 0], vertices[:, 1]).max() < 2.5 + 0.3
+    assert joined_parts(ep.actors.tree(), lambda name: name == "trunk")[0][:, 2].min() == 0.0

@@ -50,7 +50,7 @@ def test_the_rail_has_the_w_profile():
     rail = ep.actors.guard_rail(length=6.0)
     size, _ = extent(rail, lambda name: name == "rail")
     np.testing.assert_allclose(size, (6.0, 0.081 + 0.003, 0.311), atol=0.004)
-    assert extent(rail, lambda name: name == "posts")[1] == 0.0
+    assert extent(rail, lambda name: name == "posts")[1] == -0.05   # below the ground
 
 
 def test_a_tree_is_the_same_for_its_seed_alone():
@@ -78,4 +78,4 @@ def test_crown_fills_its_ellipsoid():
     vertices = np.asarray(ep.actors.tree(height=8.0, crown_radius=2.5).parts[2].mesh.vertices)
     assert vertices[:, 2].min() > 0.3 * 8.0 and vertices[:, 2].max() < 8.3
     assert np.hypot(vertices[:, 0], vertices[:, 1]).max() < 2.5 + 0.3
-    assert joined_parts(ep.actors.tree(), lambda name: name == "trunk")[0][:, 2].min() == 0.0
+    assert joined_parts(ep.actors.tree(), lambda name: name == "trunk")[0][:, 2].min() == -0.05

@@ -12,6 +12,9 @@ from .surfaces import joined
 
 # A plastic shell around battery, circuit boards and motor wires, effective.
 SHELL = _core.Material(reflectivity=0.3, scattering=0.5)
+# Thin plastic blades, effective: at level incidence their echo is that of edges, which are not modelled; as rough bodies they
+# send back a share in all directions.
+BLADE = _core.Material(reflectivity=0.3, scattering=0.9)
 ROTORS = (("front_left", 1, 1, 1), ("front_right", 1, -1, -1), ("rear_left", -1, 1, -1), ("rear_right", -1, -1, 1))
 
 
@@ -38,7 +41,7 @@ def drone(*, size: float = 0.35, rotor_rpm: float = 5500.0, num_blades: int = 2,
         motion = _core.LinearMotion(velocity=(speed, 0.0, 0.0), angular_velocity=(0.0, 0.0, turn))
         mesh = _core.Mesh(_turned(blades.vertices, 0.7 * n) * [1.0, sense, 1.0],
                           blades.triangles if sense > 0 else np.asarray(blades.triangles)[:, ::-1])
-        parts.append(Part(f"rotor_{name}", mesh, "plastic", motion, tuple(places[name] + [0.0, 0.0, 0.20 * arm]),
+        parts.append(Part(f"rotor_{name}", mesh, BLADE, motion, tuple(places[name] + [0.0, 0.0, 0.20 * arm]),
                           smooth=True))
     return Actor(parts)
 

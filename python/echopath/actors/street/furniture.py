@@ -19,6 +19,7 @@ SIGN_GAP = 0.03            # m between sign and tube
 # Corners of the shapes and the turn of the first one about the sign's axis, in rad from the top.
 SIGN_CORNERS = {"round": (32, 0.0), "triangle": (3, 0.0), "octagon": (8, np.pi / 8)}
 
+SUNK = 0.05                # m by which feet reach into the ground, so that they lie not on it
 RAIL_HEIGHT, RAIL_DEPTH, RAIL_THICKNESS = 0.311, 0.081, 0.003   # m: the W profile of steel guard rails (EN 1317 systems)
 RAIL_TOP = 0.75            # m above the ground
 POST = (0.055, 0.10)       # m, along and across: beams IPE 100, whose flanges lie along the road
@@ -33,9 +34,9 @@ RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0),
 def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04) -> Actor:
     """A round metal pole that tapers from `radius` at the ground to `end_radius` at `height`, all in m.
 
-    It stands at the origin with its foot at z = 0. One part, "tube". Raises TypeError or ValueError naming the argument.
+    It stands at the origin, its foot 5 cm below the ground z = 0. One part, "tube". Raises TypeError or ValueError naming the argument.
     """
-    surface = tube((0, 0, 0), (0, 0, height), radius, end_radius, segments=round_segments(radius, 14))
+    surface = tube((0, 0, -SUNK), (0, 0, height), radius, end_radius, segments=round_segments(radius, 14))
     return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])
 
 
@@ -53,7 +54,7 @@ def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float
     outline[:, 1] += height - outline[:, 1].min()
     top = outline[:, 1].max() - 0.05 * size
     x = SIGN_THICKNESS + SIGN_GAP + SIGN_POLE_RADIUS
-    mast = tube((x, 0, 0), (x, 0, top), SIGN_POLE_RADIUS, segments=round_segments(SIGN_POLE_RADIUS, 14))
+    mast = tube((x, 0, -SUNK), (x, 0, top), SIGN_POLE_RADIUS, segments=round_segments(SIGN_POLE_RADIUS, 14))
     return Actor([Part("sign", _core.Mesh(*_prism(outline, SIGN_THICKNESS)), "metal"),
                   Part("pole", _core.Mesh(*mast), "metal", smooth=True)])
 
@@ -80,7 +81,7 @@ def _post(x, y, height):
     low, high = FLANGE, POST[1] - FLANGE
     outline = np.array([(-half, 0), (half, 0), (half, low), (web, low), (web, high), (half, high), (half, POST[1]),
                         (-half, POST[1]), (-half, high), (-web, high), (-web, low), (-half, low)])
-    vertices = np.concatenate([np.column_stack([outline + [x, y], np.full(12, z)]) for z in (0.0, height)])
+    vertices = np.concatenate([np.column_stack([outline + [x, y], np.full(12, z)]) for z in (-SUNK, height)])
     k = np.arange(12)
     n = (k + 1) % 12
     cap = np.array([(0, 1, 3), (1, 2, 3), (0, 3, 10), (0, 10, 11), (10, 3, 4), (10, 4, 9), (9, 4, 7), (4, 6, 7), (4, 5, 6),

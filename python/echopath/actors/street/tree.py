@@ -32,7 +32,7 @@ def tree(*, height: float = 7.0, crown_radius: float = 2.0, num_bunches: int = 9
     """
     random = np.random.default_rng(seed)
     middle, semi = np.array([0.0, 0.0, 0.675 * height]), np.array([crown_radius, crown_radius, 0.325 * height])
-    trunk = tube((0, 0, 0), (0, 0, 0.7 * height), TRUNK_SHARE * height, 0.3 * TRUNK_SHARE * height, segments=10)
+    trunk = tube((0, 0, -0.05), (0, 0, 0.7 * height), TRUNK_SHARE * height, 0.3 * TRUNK_SHARE * height, segments=10)
     return Actor([Part("trunk", _core.Mesh(*trunk), BARK),
                   Part("branches", _core.Mesh(*_branches(random, height, middle, semi)), BARK),
                   Part("crown", _core.Mesh(*_bunches(random, middle, semi, num_bunches, bunch_size)), FOLIAGE)])

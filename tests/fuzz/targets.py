@@ -3,7 +3,8 @@ from __future__ import annotations
 
 from fuzz.arrays import feed_arrays
 from fuzz.frames import feed_frame_bytes, feed_frame_structure
+from fuzz.gltf import feed_gltf_bytes, feed_gltf_json
 from fuzz.texts import feed_antenna, feed_scene
 
 TARGETS = {"frame_bytes": feed_frame_bytes, "frame_structure": feed_frame_structure, "arrays": feed_arrays,
-           "scene": feed_scene, "antenna": feed_antenna}
+           "scene": feed_scene, "antenna": feed_antenna, "gltf_bytes": feed_gltf_bytes, "gltf_json": feed_gltf_json}

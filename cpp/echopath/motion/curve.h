@@ -18,7 +18,7 @@ struct Curve {
   std::vector<double> times;   // [T] s, strictly ascending
   std::vector<double> values;  // [T, C]
   CurveInterpolation interpolation = CurveInterpolation::kLinear;
-  std::vector<double> in_tangents, out_tangents;  // [T, C] per s, before and behind each key; kHermite alone
+  std::vector<double> in_tangents = {}, out_tangents = {};  // [T, C] per s, before and behind each key; kHermite alone
 
   size_t num_columns() const { return times.empty() ? 0 : values.size() / times.size(); }
   // Raises invalid_argument naming `argument` unless the sizes fit `num_columns` and all numbers are finite.

@@ -7,6 +7,7 @@ from ... import _core
 from .animations import Animation
 from .nodes import Nodes, matrix_of
 
+SMALLEST_VOLUME = 1e-300  # below, determinants are rounding
 MOVING = ("translation", "rotation", "scale")
 
 
@@ -59,7 +60,7 @@ class Motions:
         if rotation is not None:
             back = turn * (1.0, -1.0, -1.0, -1.0)
             rotation = _mapped(rotation, lambda values: product(values, back), lambda tangents: product(tangents, back))
-        return placement, self._motion(self._from(translation, place), rotation, None)
+        return placement, self._motion(node, self._from(translation, place), rotation, None)
 
     def _scaling(self, node: int, curves: dict) -> tuple:
         """All of it is in the motion but the place: a scale may be 0, which a placement must not be."""
@@ -68,7 +69,7 @@ class Motions:
         placement[:3, 3] = place
         rotation = curves["rotation"] or _core.Curve([0.0], [turn])
         scales = curves["scale"] or _core.Curve([0.0], [scale])
-        return placement, self._motion(self._from(curves["translation"], place), rotation, scales)
+        return placement, self._motion(node, self._from(curves["translation"], place), rotation, scales)
 
     @staticmethod
     def _from(translation, place: np.ndarray):
@@ -77,8 +78,12 @@ class Motions:
             return None
         return _mapped(translation, lambda values: values - place, lambda tangents: tangents)
 
-    def _motion(self, translation, rotation, scale):
-        return _core.CurveMotion(translation, rotation, scale, period=self._animation.period, offset=self._animation.offset)
+    def _motion(self, node: int, translation, rotation, scale):
+        animation = self._animation
+        try:
+            return _core.CurveMotion(translation, rotation, scale, period=animation.period, offset=animation.offset)
+        except ValueError as error:  # keys that are no rotations
+            self._nodes.item(node).fail(f"cannot be animated by '{animation.name}': {error}")
 
     def _curve(self, node: int, path: str):
         """In axes and units of a scene; None where it stays at rest."""
@@ -114,7 +119,7 @@ def _is_flat(transform: np.ndarray) -> bool:
     """Whether it takes space into a plane, which the placement of a node must not."""
     with np.errstate(all="ignore"):
         determinant = np.linalg.det(transform[:3, :3])
-    return determinant == 0.0 or not np.isfinite(determinant)
+    return not SMALLEST_VOLUME < abs(determinant) < np.inf
 
 
 def _changes(motion) -> bool:

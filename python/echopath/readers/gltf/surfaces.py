@@ -40,7 +40,7 @@ class Surfaces:
         self._meshes: dict[int, object] = {}
 
     def is_skinned(self, node: int) -> bool:
-        return self._nodes.item(node)["skin"].is_given
+        return self._nodes.item(node)["skin"].index(len(self._skins), None) is not None
 
     def of(self, node: int, chain: list[int]) -> list[Surface]:
         """Those of the node's primitives. chain: nodes, the lowest last, that move it as joints; without any it is rigid."""

@@ -1,0 +1,332 @@
+"""glTF files: their nodes, meshes and materials as a scene has them, and what is said of bad ones."""
+import json
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.gltf_files import BOX, BOX_SIDES, GltfFile, box_file, tube
+
+TO_SCENE = [2, 0, 1]      # axes of a file, y up, that become x, y and z
+SINGLE = 1e-6             # of numbers in single precision of order 1
+
+
+def loaded(tmp_path, file: GltfFile, **options):
+    path = tmp_path / "model.glb"
+    path.write_bytes(file.glb())
+    return ep.load_model(path, **options)
+
+
+def world(model, time: float = 0.0, **place) -> dict:
+    """{name of a mesh below the model: its vertices [V, 3] at a time}."""
+    scene = ep.Scene()
+    scene.add(model, name="m", **place)
+    return {mesh.name.removeprefix("m/"): scene.world_vertices(mesh.id, time) for mesh in scene.meshes}
+
+
+def same_points(a, b, tolerance: float) -> bool:
+    """Whether two sets of points are the same, in whatever order."""
+    a, b = (np.array(sorted(np.round(np.asarray(points, float), 5).tolist())) for points in (a, b))
+    return a.shape == b.shape and bool(np.abs(a - b).max() <= tolerance + 1e-5)
+
+
+# --- axes, units and nodes ---
+
+def test_what_faces_z_with_y_up_faces_x_with_z_up(tmp_path):
+    model = loaded(tmp_path, box_file())
+    assert np.ptp(world(model)["box"], axis=0) == pytest.approx([4.0, 1.0, 2.0])  # z, x and y of the file
+    assert (model.format, model.unit, model.up, model.num_triangles) == ("glTF 2.0", 1.0, "y", 12)
+
+
+def test_the_caller_knows_axes_and_units_better(tmp_path):
+    model = loaded(tmp_path, box_file(translation=[1, 2, 3]), unit=0.01, up="z")
+    points = world(model)["box"]
+    assert points.mean(axis=0) == pytest.approx([0.01, 0.02, 0.03])
+    assert np.ptp(points, axis=0) == pytest.approx([0.01, 0.02, 0.04])
+
+
+def test_nodes_nest_as_their_transforms_multiply(tmp_path):
+    file = box_file(rotation=[0, 0, np.sqrt(0.5), np.sqrt(0.5)], scale=[2, 3, 1], translation=[1, 0, 0])
+    file.json["nodes"].append({"name": "carrier", "children": [0], "translation": [0, 10, 0], "scale": [1, 1, -1]})
+    file.json["scenes"][0]["nodes"] = [1]
+    turned = np.stack([-BOX[:, 1] * 3, BOX[:, 0] * 2, BOX[:, 2]], axis=1) + [1, 0, 0]  # a quarter turn about z
+    wanted = turned * [1, 1, -1] + [0, 10, 0]
+    assert same_points(world(loaded(tmp_path, file))["carrier/box"], wanted[:, TO_SCENE], SINGLE)
+
+
+def test_a_matrix_stands_for_the_same_as_its_parts(tmp_path):
+    columns = [0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 1, 0, 1, 5, 0, 1]
+    of_matrix = world(loaded(tmp_path, box_file(matrix=columns)))["box"]
+    parts = box_file(rotation=[0, 0, np.sqrt(0.5), np.sqrt(0.5)], scale=[2, 3, 1], translation=[1, 5, 0])
+    assert np.abs(of_matrix - world(loaded(tmp_path, parts))["box"]).max() < SINGLE
+
+
+def test_names_are_made_fit_and_unique_and_that_is_told(tmp_path):
+    file = box_file()
+    file.json["nodes"] = [{"name": name, "mesh": 0} for name in ("a/b*", "a_b_", " ", "'", "x" * 100)]
+    file.json["scenes"] = [{"nodes": [0, 1, 2, 3, 4]}]
+    model = loaded(tmp_path, file)
+    assert list(world(model)) == ["a_b_", "a_b__2", "node_2", "_", "x" * 64]
+    assert any("'a/b*' to 'a_b_'" in note for note in model.notes)
+
+
+def test_each_primitive_is_a_mesh_named_by_its_material(tmp_path):
+    file = box_file()
+    file.json["materials"] = [{"name": "glass"}, {"name": "steel of mine"}]
+    one = file.json["meshes"][0]["primitives"][0]
+    file.json["meshes"][0]["primitives"] = [one | {"material": 0}, one | {"material": 1}, one]
+    scene = ep.Scene()
+    model = loaded(tmp_path, file, materials={"steel of mine": "metal", "glass": ep.materials["glass"]})
+    scene.add(model, name="m")
+    assert [mesh.name for mesh in scene.meshes] == ["m/box/glass", "m/box/steel of mine", "m/box/primitive_2"]
+    assert scene.meshes[1].material == ep.materials["metal"]
+    assert [node.foreign_material for node in model.nodes[1:]] == ["glass", "steel of mine", ""]
+    assert len([note for note in model.notes if "without a material" in note]) == 1
+
+
+def test_what_the_file_hides_or_flattens_is_left_out(tmp_path):
+    file = box_file()
+    file.json["nodes"] += [{"mesh": 0, "scale": [0, 1, 1]}, {"children": [3], "extensions": {"KHR_node_visibility": {
+        "visible": False}}}, {"mesh": 0}, {"camera": 0}]
+    file.json["scenes"] = [{"nodes": [0, 1, 2, 4]}]
+    model = loaded(tmp_path, file)
+    assert list(world(model)) == ["box"]
+    assert len(model.notes) == 3 and any("scaled to nothing" in note for note in model.notes)
+
+
+# --- meshes ---
+
+def test_strips_and_fans_are_triangles_with_one_winding(tmp_path):
+    corners = [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1], [2, 0, 0]]
+    for mode, points in ((5, corners), (6, [[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 0]])):
+        file = GltfFile(nodes=[{"mesh": 0}])
+        file.mesh(points, mode=mode)
+        mesh = loaded(tmp_path, file).nodes[0].mesh
+        assert len(mesh.triangles) == len(points) - 2
+        a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+        assert (np.cross(b - a, c - a)[:, 2] > 0).all()  # all look up
+
+
+def test_points_and_lines_are_left_out_with_a_note(tmp_path):
+    file = box_file()
+    one = file.json["meshes"][0]["primitives"][0]
+    file.json["meshes"][0]["primitives"] += [one | {"mode": mode} for mode in range(4)]
+    model = loaded(tmp_path, file)
+    assert model.num_triangles == 12 and "points and lines are left out" in model.notes
+
+
+def test_strides_sparse_entries_and_small_indices_are_read(tmp_path):
+    file = GltfFile(nodes=[{"mesh": 0}])
+    moved = BOX.copy()
+    moved[[1, 6]] = [[0, 0, 9], [0, 7, 0]]
+    sparse = {"count": 2, "indices": {"bufferView": file.view(np.array([1, 6], "<u2")), "componentType": 5123},
+              "values": {"bufferView": file.view(moved[[1, 6]].astype("<f4"))}}
+    position = file.accessor(BOX, stride=20, sparse=sparse)
+    file.mesh(position, indices=file.accessor(BOX_SIDES.ravel(), "u1"))
+    assert np.abs(loaded(tmp_path, file).nodes[0].mesh.vertices - moved[:, TO_SCENE]).max() < SINGLE
+
+
+@pytest.mark.parametrize("dtype,most", [("i1", 127), ("u1", 255), ("i2", 32767), ("u2", 65535)])
+def test_quantised_positions_are_those_of_the_specification(tmp_path, dtype, most):
+    steps = np.random.default_rng(1).integers(0, most + 1, (8, 3))
+    for normalized in (True, False):
+        file = GltfFile(nodes=[{"mesh": 0, "scale": [2.0, 2.0, 2.0]}], extensionsRequired=["KHR_mesh_quantization"])
+        file.mesh(file.accessor(steps, dtype, normalized=normalized, stride=8), BOX_SIDES)
+        wanted = 2.0 * (steps / most if normalized else steps)
+        found = world(loaded(tmp_path, file))["node_0"]
+        assert len(found) == len(wanted) and np.abs(found - wanted[:, TO_SCENE]).max() <= 1e-12 * (1 if normalized else most)
+
+
+def test_vertices_split_for_textures_are_one_and_flat_shading_stays_flat(tmp_path):
+    corners = BOX[BOX_SIDES].reshape(-1, 3)
+    sides = np.cross(corners[1::3] - corners[0::3], corners[2::3] - corners[0::3])
+    normals = np.repeat(sides / np.linalg.norm(sides, axis=1)[:, None], 3, axis=0)
+    file = GltfFile(nodes=[{"mesh": 0}])
+    file.mesh(corners, NORMAL=file.accessor(normals))
+    node = loaded(tmp_path, file).nodes[0]
+    assert len(node.mesh.vertices) == 8 and node.mesh.is_closed and not node.smooth
+
+
+def test_normals_that_turn_over_a_face_stand_for_a_curved_surface(tmp_path):
+    vertices, triangles = tube()
+    rims = [0, 8 * 12]
+    caps = [[rim + (i if rim else 0), rim + (i + 1 if not rim else 0), rim + (i if not rim else i + 1)]
+            for rim in rims for i in range(1, 11)]
+    normals = vertices * [1, 0, 1] / 0.1
+    file = GltfFile(nodes=[{"mesh": 0}])
+    seam = len(vertices) + np.arange(len(vertices))  # the caps have vertices and normals of their own
+    file.mesh(np.concatenate([vertices, vertices]), np.concatenate([triangles, seam[np.array(caps)]]),
+              NORMAL=file.accessor(np.concatenate([normals, np.tile([0.0, 1.0, 0.0], (len(vertices), 1))])))
+    node = loaded(tmp_path, file).nodes[0]
+    assert node.smooth
+    rim = node.mesh.vertices[:, 2].max()  # the edge of a cap stays an edge: its vertices are there twice
+    assert (np.abs(node.mesh.vertices[:, 2] - rim) < 1e-6).sum() == 24
+
+
+def hits_of(mesh, unit: float = 1.0):
+    scene = ep.Scene()
+    scene.add(mesh, name="box", material="metal", position=(8, 0, 0), yaw=0.4)
+    radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=32, sampling_rate=5e6, num_chirps=4,
+                                      chirp_interval=1e-4), transmitters=[ep.Antenna((0, 0, 0))],
+                     receivers=[ep.Antenna((0, 0.01, 0))])
+    paths = ep.trace(scene, radar, num_rays=2000, seed=3)
+    return paths.triangle_id, paths.points(0.0), paths.amplitude
+
+
+def test_the_same_mesh_gives_the_same_hits_through_every_format(tmp_path):
+    points = BOX[:, TO_SCENE]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in points) + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in BOX_SIDES)
+    (tmp_path / "box.obj").write_text(text)
+    ids, places, amplitudes = hits_of(ep.load_mesh(tmp_path / "box.obj"))
+    assert len(ids) > 100
+    for content, name in ((box_file().glb(), "box.glb"), (box_file().gltf().encode(), "box.gltf")):
+        (tmp_path / name).write_bytes(content)
+        found = hits_of(ep.load_model(tmp_path / name).nodes[0].mesh)
+        assert np.array_equal(found[0], ids) and np.array_equal(found[1], places) and np.array_equal(found[2], amplitudes)
+
+
+def test_a_mirrored_node_has_the_mirrored_echoes(tmp_path):
+    def amplitude(vertices, scale):
+        file = GltfFile(nodes=[{"mesh": 0, "scale": scale}])
+        file.mesh(vertices, [[0, 1, 2], [0, 2, 3]])
+        scene = ep.Scene()
+        scene.add(loaded(tmp_path, file), name="m", position=(9, 0, 0), material="metal")
+        return abs(ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), observation=(-1, 0, 0), num_rays=4000))
+
+    plate = np.array([[0, -0.1, 0.05], [0.3, -0.1, 0], [0.3, 0.2, 0], [0, 0.2, 0.05]])
+    assert amplitude(plate * [-1, 1, 1], [-1, 1, 1]) == pytest.approx(amplitude(plate, [1, 1, 1]), rel=1e-9)
+
+
+# --- files ---
+
+def test_bytes_may_stand_in_the_file_or_beside_it_but_nowhere_else(tmp_path):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    wanted = world(loaded(tmp_path, box_file()))["box"]
+    for uri in (None, "a%20b.bin", "./a b.bin"):
+        (inner / "box.gltf").write_text(box_file().gltf(uri))
+        (inner / "a b.bin").write_bytes(box_file().bytes)
+        assert np.array_equal(world(ep.load_model(inner / "box.gltf"))["box"], wanted)
+    (tmp_path / "a b.bin").write_bytes(box_file().bytes)
+    for uri in ("../a b.bin", str(tmp_path / "a b.bin"), "file:///etc/passwd", "http://a.b/c.bin", "%2e%2e/a b.bin"):
+        (inner / "box.gltf").write_text(box_file().gltf(uri))
+        with pytest.raises(ep.FileError, match=r"buffers\[0\].uri: must be the name of a file in the folder of this one"):
+            ep.load_model(inner / "box.gltf")
+
+
+def changed(place: str, value) -> dict:
+    """The document of the box with another value at a place."""
+    document = json.loads(box_file().gltf())
+    *keys, last = [int(key) if key.isdigit() else key for key in place.split(".")]
+    at = document
+    for key in keys:
+        at = at[key]
+    at[last] = value
+    return document
+
+
+FAULTS = [
+    ("asset.version", "1.0", r"asset\.version: must be 2\.0, is '1\.0'"),
+    ("asset", 3, r"asset: must be an object, is 3"),
+    ("extensionsRequired", ["KHR_draco_mesh_compression"], "requires the extension KHR_draco_mesh_compression, which is not"),
+    ("extensionsRequired", ["EXT_meshopt_compression"], "requires the extension EXT_meshopt_compression, which is not"),
+    ("meshes.0.primitives.0.attributes.POSITION", 7, r"meshes\[0\]\.primitives\[0\]\.attributes\.POSITION: must be a whole n"),
+    ("meshes.0.primitives.0.attributes.POSITION", "x", "POSITION: must be a whole number from 0 to 1, is 'x'"),
+    ("meshes.0.primitives.0.attributes.POSITION", 1, r"accessors\[1\]\.type: must be VEC3 for meshes\[0\]"),
+    ("meshes.0.primitives.0.mode", 7, r"mode: must be a whole number from 0 to 6, is 7"),
+    ("meshes.0.primitives", [], r"meshes\[0\]\.primitives: must hold at least one primitive"),
+    ("meshes", {}, "meshes: must be a list, is {}"),
+    ("accessors.0.count", 9, r"accessors\[0\]: ends at byte 108 of bufferViews\[0\], which has 96 bytes"),
+    ("accessors.0.count", -1, r"accessors\[0\]\.count: must be a whole number from 1"),
+    ("accessors.0.byteOffset", 4, r"accessors\[0\]: ends at byte 100"),
+    ("accessors.0.componentType", 5130, r"componentType: must be one of 5120"),
+    ("accessors.1.count", 4, "has 4 corners, which make no whole triangles"),
+    ("bufferViews.0.byteLength", 10000, r"bufferViews\[0\]\.byteLength: ends at byte 10000 of a buffer of"),
+    ("bufferViews.0.buffer", 1, r"bufferViews\[0\]\.buffer: must be a whole number from 0 to 0, is 1"),
+    ("buffers.0.byteLength", 10**9, r"buffers\[0\]\.byteLength: is 1000000000, but there are"),
+    ("buffers.0.uri", "data:;base64,!!", r"buffers\[0\]\.uri: holds no base64"),
+    ("buffers.0.uri", "no.bin", r"buffers\[0\]\.uri: no\.bin is no file that is there"),
+    ("buffers.0", {"byteLength": 9}, r"buffers\[0\]: has no uri, and there is no binary chunk"),
+    ("nodes.0.children", [0], r"nodes\[0\]\.children\[0\]: nodes\[0\] has its place in the tree already"),
+    ("nodes.0.children", [1], r"nodes\[0\]\.children\[0\]: must be a whole number from 0 to 0, is 1"),
+    ("nodes.0.mesh", 1, r"nodes\[0\]\.mesh: must be a whole number"),
+    ("nodes.0.rotation", [0, 0, 0, 0], r"nodes\[0\]\.rotation: must be a unit quaternion"),
+    ("nodes.0.scale", [1, 2], r"nodes\[0\]\.scale: must be a list of 3 finite numbers"),
+    ("nodes.0.translation", [1, 2, 10**400], r"nodes\[0\]\.translation\[2\]: must be a finite number"),
+    ("nodes.0.matrix", [1] * 16, r"nodes\[0\]\.matrix: must end its columns with 0, 0, 0 and 1"),
+    ("nodes.0.skin", 0, r"nodes\[0\]\.skin: must be left out, as there is none"),
+    ("scenes.0.nodes", [5], r"scenes\[0\]\.nodes\[0\]: must be a whole number from 0 to 0, is 5"),
+    ("scene", "main", "scene: must be a whole number from 0 to 0, is 'main'"),
+    ("nodes.0.name", 5, r"nodes\[0\]\.name: must be text, is 5"),
+]
+
+
+@pytest.mark.parametrize("place,value,said", FAULTS)
+def test_each_fault_is_told_with_its_place(tmp_path, place, value, said):
+    path = tmp_path / "bad.gltf"
+    path.write_text(json.dumps(changed(place, value)))
+    if "corners" in said:
+        assert any(said in note for note in ep.load_model(path).notes)
+        return
+    with pytest.raises(ep.FileError, match=said) as caught:
+        ep.load_model(path)
+    assert str(caught.value).startswith(f"{path}: ")
+
+
+@pytest.mark.parametrize("content,said", [
+    (b"", "is no glTF: begins with b''"),
+    (b"<!DOCTYPE html>", "is no glTF: begins with b'<!DOCTYPE html>'"),
+    (b"version https://git-lfs.github.com/spec/v1\n", "is a pointer of Git LFS"),
+    (b"\xff\xfe{}", r"is no glTF: its JSON is not UTF-8 text \(byte 0\)"),
+    (b"[" * 100000, "has JSON that is nested too deeply"),
+    (b"[]", r"must be a JSON object, is \[\]"),
+    (b'{"asset": {"version": NaN}}', "NaN is no number of JSON"),
+    (b"glTF\1\0\0\0\0\0\0\0", "is a GLB of version 1"),
+    (b"glTF\2\0\0\0", "is cut off within its head"),
+    (b"glTF\2\0\0\0\xff\0\0\0", "is cut off: should have 255 bytes, has 12"),
+    (b'{"asset": {"version": "2.0"}}', "shows no triangles"),
+])
+def test_what_is_no_gltf_is_told_so(tmp_path, content, said):
+    (tmp_path / "bad.glb").write_bytes(content)
+    with pytest.raises(ep.FileError, match=said):
+        ep.load_model(tmp_path / "bad.glb")
+
+
+def test_files_cut_off_anywhere_are_refused(tmp_path):
+    content, path = box_file().glb(), tmp_path / "cut.glb"
+    for size in range(0, len(content), 37):
+        path.write_bytes(content[:size])
+        with pytest.raises(ep.FileError):
+            ep.load_model(path)
+
+
+def test_a_small_file_gets_no_giant_memory(tmp_path):
+    file = box_file()
+    file.json["accessors"][0] = {"componentType": 5126, "count": 2**31 - 1, "type": "VEC3"}
+    with pytest.raises(ep.FileError, match="needs more than 256 MiB of memory, too much for a file of"):
+        loaded(tmp_path, file)
+
+
+def test_deep_trees_are_refused_and_broad_ones_read(tmp_path):
+    file = box_file()
+    file.json["nodes"] = [{"children": [i + 1]} for i in range(3000)] + [{"mesh": 0}]
+    with pytest.raises(ep.FileError, match="lies deeper than 512 levels"):
+        loaded(tmp_path, file)
+    file.json["nodes"] = [{"name": "a", "mesh": 0} for _ in range(3000)]
+    file.json["scenes"] = [{"nodes": list(range(3000))}]
+    assert len(loaded(tmp_path, file).nodes) == 3000
+
+
+def test_arguments_are_checked_by_name(tmp_path):
+    path = tmp_path / "model.glb"
+    path.write_bytes(box_file().glb())
+    with pytest.raises(ValueError, match="animation: .* has no 'walk', it has none"):
+        ep.load_model(path, animation="walk")
+    with pytest.raises(ValueError, match="up: must be 'x', 'y' or 'z', got 'w'"):
+        ep.load_model(path, up="w")
+    with pytest.raises(ValueError, match="path: must be a file of the kinds .*glb"):
+        ep.load_model(tmp_path / "model.doc")
+    with pytest.raises(TypeError, match="materials: must be a mapping"):
+        ep.load_model(path, materials=["metal"])
+    with pytest.raises(ep.FileError, match="no such file"):
+        ep.load_model(tmp_path / "none.glb")

@@ -1,0 +1,331 @@
+"""Animations of glTF files against the formulas of the specification: nodes, skins, morph targets, loops."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.gltf_files import BOX, BOX_SIDES, GltfFile, box_file, rig_file, tube
+
+TO_SCENE = [2, 0, 1]
+SINGLE = 2e-6
+KEYS = np.array([0.5, 1.0, 2.0], np.float32)
+
+
+def loaded(tmp_path, file: GltfFile, **options):
+    path = tmp_path / "model.glb"
+    path.write_bytes(file.glb())
+    return ep.load_model(path, **options)
+
+
+def scene_of(model) -> ep.Scene:
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    return scene
+
+
+def vertices_at(scene, time: float) -> dict:
+    return {mesh.name.removeprefix("m/"): scene.world_vertices(mesh.id, time) for mesh in scene.meshes}
+
+
+def about_z(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def hermite(t, step, v0, b0, v1, a1):
+    """glTF 2.0, appendix C.5, word for word."""
+    return (2 * t**3 - 3 * t**2 + 1) * v0 + step * (t**3 - 2 * t**2 + t) * b0 + (-2 * t**3 + 3 * t**2) * v1 + \
+        step * (t**3 - t**2) * a1
+
+
+def slerp(t, q0, q1):
+    """Appendix C.4."""
+    d = np.dot(q0, q1)
+    a, s = np.arccos(abs(d)), np.sign(d)
+    return np.sin(a * (1 - t)) / np.sin(a) * q0 + s * np.sin(a * t) / np.sin(a) * q1
+
+
+def rotated(q, points):
+    x, y, z, w = q / np.linalg.norm(q)
+    u = np.array([x, y, z])
+    return points + 2 * w * np.cross(u, points) + 2 * np.cross(u, np.cross(u, points))
+
+
+# --- nodes ---
+
+PLACES = np.array([[0, 0, 0], [1, 2, 3], [-1, 0, 5]], np.float32)
+TANGENTS = np.array([[1, 0, 2], [0, 3, 0], [4, -1, 0], [2, 2, 2], [0, 0, 1], [1, 1, 1]], np.float32)
+
+
+@pytest.mark.parametrize("interpolation,at_a_quarter", [
+    ("STEP", PLACES[1]), ("LINEAR", 0.75 * PLACES[1] + 0.25 * PLACES[2]),
+    ("CUBICSPLINE", hermite(0.25, 1.0, PLACES[1], TANGENTS[3], PLACES[2], TANGENTS[4]))])
+def test_translations_follow_the_specification(tmp_path, interpolation, at_a_quarter):
+    values = PLACES
+    if interpolation == "CUBICSPLINE":
+        values = np.stack([TANGENTS[0::2], PLACES, TANGENTS[1::2]], axis=1).reshape(9, 3)
+    file = box_file(translation=[7, 7, 7])
+    file.animation((0, "translation", KEYS, values, interpolation))
+    scene = scene_of(loaded(tmp_path, file))
+    for time, wanted in ((-3.0, PLACES[0]), (0.5, PLACES[0]), (1.25, at_a_quarter), (2.0, PLACES[2]), (99.0, PLACES[2])):
+        assert np.abs(vertices_at(scene, time)["box"] - (BOX + wanted)[:, TO_SCENE]).max() < SINGLE
+
+
+QUARTERS = np.array([[0, 0, 0, 1], [0.5, 0.5, 0.5, 0.5], [0, -0.6, 0, -0.8]], np.float32)
+
+
+@pytest.mark.parametrize("interpolation", ["STEP", "LINEAR", "CUBICSPLINE"])
+def test_rotations_follow_the_specification(tmp_path, interpolation):
+    tangents = np.random.default_rng(2).normal(size=(6, 4)).astype(np.float32)
+    values = QUARTERS
+    if interpolation == "CUBICSPLINE":
+        values = np.stack([tangents[0::2], QUARTERS, tangents[1::2]], axis=1).reshape(9, 4)
+    wanted = {"STEP": QUARTERS[1], "LINEAR": slerp(0.25, QUARTERS[1].astype(float), QUARTERS[2].astype(float)),
+              "CUBICSPLINE": hermite(0.25, 1.0, QUARTERS[1], tangents[3], QUARTERS[2], tangents[4])}[interpolation]
+    file = box_file(translation=[1, 2, 3], rotation=[0, 0, 0.6, 0.8], scale=[1, 2, 0.5])
+    file.animation((0, "rotation", KEYS, values, interpolation))
+    scene = scene_of(loaded(tmp_path, file))
+    points = rotated(np.asarray(wanted, float), BOX * [1, 2, 0.5]) + [1, 2, 3]
+    assert np.abs(vertices_at(scene, 1.25)["box"] - points[:, TO_SCENE]).max() < 3 * SINGLE
+
+
+def test_rest_is_where_the_file_has_it_and_motion_is_relative_to_it(tmp_path):
+    file = box_file(translation=[1, 2, 3])
+    file.animation((0, "translation", KEYS, PLACES, "LINEAR"))
+    at_rest = loaded(tmp_path, file, animation="")
+    assert at_rest.nodes[0].motion is None and at_rest.animation is None and at_rest.animations == ("animation_0",)
+    scene = scene_of(loaded(tmp_path, file))
+    assert scene["m/box"].position == pytest.approx([3, 1, 2])
+    scene["m/box"].motion = None
+    assert np.array_equal(vertices_at(scene, 0.0)["box"], vertices_at(scene_of(at_rest), 0.0)["box"])
+
+
+def test_animations_go_by_name_with_loop_and_offset(tmp_path):
+    file = box_file()
+    file.animation((0, "translation", [0, 2], [[0, 0, 0], [4, 0, 0]], "LINEAR"), name="slide")
+    file.animation((0, "translation", [0, 1], [[0, 0, 0], [0, 0, 5]], "LINEAR"), name="rise")
+    middle = lambda time, **options: vertices_at(scene_of(loaded(tmp_path, file, **options)), time)["box"].mean(axis=0)
+    assert middle(1.0) == pytest.approx([0, 2, 0])
+    assert middle(0.5, animation="rise") == pytest.approx([2.5, 0, 0])
+    assert middle(7.0) == pytest.approx([0, 4, 0])
+    assert middle(7.0, loop=True) == pytest.approx([0, 2, 0])
+    assert middle(7.0, loop=True, offset=0.5) == pytest.approx([0, 3, 0])
+    assert middle(0.0, offset=1.5) == pytest.approx([0, 3, 0])
+    model = loaded(tmp_path, file, animation="rise")
+    assert (model.animations, model.animation, model.duration) == (("slide", "rise"), "rise", 1.0)
+    with pytest.raises(ValueError, match="animation: .* has no 'walk', it has 'slide', 'rise'"):
+        loaded(tmp_path, file, animation="walk")
+
+
+def test_a_scale_that_moves_scales_what_is_below_it(tmp_path):
+    file = box_file()
+    file.json["nodes"].append({"name": "carrier", "children": [0], "translation": [0, 1, 0]})
+    file.json["scenes"][0]["nodes"] = [1]
+    file.animation((1, "scale", [0, 1, 2], [[1, 1, 1], [2, 3, 4], [0, 0, 0]], "LINEAR"))
+    scene = scene_of(loaded(tmp_path, file))
+    assert [mesh.name for mesh in scene.meshes] == ["m/box"]
+    for time, scale in ((0.0, [1, 1, 1]), (0.5, [1.5, 2, 2.5]), (2.0, [0, 0, 0])):
+        assert np.abs(vertices_at(scene, time)["box"] - (BOX * scale + [0, 1, 0])[:, TO_SCENE]).max() < SINGLE
+
+
+def test_a_motion_that_scales_is_refused_on_nodes():
+    scale = ep.CurveMotion(scale=ep.Curve([0, 1], [[1, 1, 1], [2, 2, 2]]))
+    with pytest.raises(ValueError, match="motion: must keep lengths: scales move joints of a Skin alone; node"):
+        ep.Scene().add(ep.actors.plate(1, 1), name="plate", material="metal", motion=scale)
+
+
+# --- skins ---
+
+def bent(points, angle: float):
+    """The tube of rig_file where its upper bone is turned: the blend of both bones, in closed form."""
+    upper = np.clip(points[:, 1:2] - 0.5, 0.0, 1.0)
+    return (1 - upper) * points + upper * ((points - [0, 1, 0]) @ about_z(angle).T + [0, 1, 0])
+
+
+@pytest.mark.parametrize("quantised,tolerance", [("", 1e-6), ("u1", 4e-3), ("u2", 2e-5)])
+def test_a_skinned_tube_is_the_blend_of_its_bones(tmp_path, quantised, tolerance):
+    scene = scene_of(loaded(tmp_path, rig_file(quantised=quantised)))
+    points = tube()[0]
+    for time, angle in ((0.0, 0.0), (0.5, np.pi / 4), (1.0, np.pi / 2), (1.5, np.pi / 4), (9.0, 0.0)):
+        parts = vertices_at(scene, time)
+        assert sorted(parts) == ["tube/lower", "tube/upper"]  # regions by dominant joint, named by joint
+        found = np.concatenate(list(parts.values()))
+        wanted = bent(points, angle)[:, TO_SCENE]
+        distance = np.linalg.norm(found[:, None] - wanted[None], axis=2)
+        assert distance.min(axis=1).max() < tolerance and distance.min(axis=0).max() < tolerance
+
+
+@pytest.mark.parametrize("dtype,most", [("u1", 255), ("u2", 65535)])
+def test_quantised_weights_are_right_to_a_millionth(tmp_path, dtype, most):
+    skin = loaded(tmp_path, rig_file(quantised=dtype)).nodes[0].deformation
+    upper = np.round(np.clip(tube()[0][:, 1] - 0.5, 0, 1) * most)
+    lower = np.round((1 - np.clip(tube()[0][:, 1] - 0.5, 0, 1)) * most)
+    found = (skin.weights * (skin.joint_indices == 1)).sum(axis=1)
+    assert np.abs(found - upper / (upper + lower)).max() < 1e-12
+
+
+def test_a_skin_at_rest_is_meshes_by_joint_without_motion(tmp_path):
+    scene = scene_of(loaded(tmp_path, rig_file(), animation=""))
+    assert [mesh.name for mesh in scene.meshes] == ["m/tube/lower", "m/tube/upper"]
+    assert not any(scene.is_moving(mesh.id) for mesh in scene.meshes)
+    found = np.concatenate(list(vertices_at(scene, 0.0).values()))
+    assert np.abs(np.ptp(found, axis=0) - np.ptp(tube()[0], axis=0)[TO_SCENE]).max() < SINGLE
+
+
+def test_what_carries_a_skin_moves_it_through_its_joints_alone(tmp_path):
+    """The mesh's own place counts for nothing (glTF 2.0, 3.7.3.3), but that of the joints does."""
+    file = rig_file()
+    file.json["nodes"] += [{"name": "figure", "children": [0, 1], "translation": [0, 0, 3], "rotation": [0, 0.6, 0, 0.8]}]
+    file.json["scenes"] = [{"nodes": [3]}]
+    found = vertices_at(scene_of(loaded(tmp_path, file)), 1.0)
+    assert sorted(found) == ["figure/tube/lower", "figure/tube/upper"]
+    wanted = rotated(np.array([0, 0.6, 0, 0.8]), bent(tube()[0], np.pi / 2)) + [0, 0, 3]
+    distance = np.linalg.norm(np.concatenate(list(found.values()))[:, None] - wanted[:, TO_SCENE][None], axis=2)
+    assert distance.min(axis=1).max() < SINGLE
+
+
+def test_faults_of_skins_are_told_with_their_places(tmp_path):
+    def refused(said, **parts):
+        file = rig_file()
+        for name, value in parts.items():
+            file.json["skins"][0][name] = value
+        with pytest.raises(ep.FileError, match=said):
+            loaded(tmp_path, file)
+
+    refused(r"skins\[0\]\.joints\[1\]: must be a whole number from 0 to 2, is 9", joints=[1, 9])
+    refused(r"skins\[0\]\.joints\[1\]: nodes\[1\] is a joint twice", joints=[1, 1])
+    refused(r"must name joints 0 to 0 of skins\[0\], names 1", joints=[1])
+    refused(r"skins\[0\]\.joints: must hold at least one joint", joints=[])
+    refused(r"inverseBindMatrices: must be a whole number", inverseBindMatrices=99)
+    file = rig_file()
+    file.json["scenes"] = [{"nodes": [0]}]
+    with pytest.raises(ep.FileError, match=r"skins\[0\]\.joints\[0\]: nodes\[1\] is not in the scene"):
+        loaded(tmp_path, file)
+
+
+# --- morph targets ---
+
+def morph_file(**mesh) -> GltfFile:
+    file = box_file()
+    rise, widen = np.tile([0.0, 1.0, 0.0], (8, 1)), BOX * [1.0, 0.0, 0.0]
+    file.json["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": file.accessor(rise)}, {},
+                                                          {"POSITION": file.accessor(widen)}]
+    file.json["meshes"][0] |= mesh
+    return file
+
+
+def test_morph_targets_add_up_at_rest(tmp_path):
+    for file in (morph_file(weights=[0.5, 9, 2.0]), morph_file(weights=[1, 1, 1])):
+        file.json["nodes"][0] |= {} if file.json["meshes"][0]["weights"][0] == 0.5 else {"weights": [0.5, 9, 2.0]}
+        found = vertices_at(scene_of(loaded(tmp_path, file)), 0.0)["box"]
+        assert np.abs(found - (BOX * [3, 1, 1] + [0, 0.5, 0])[:, TO_SCENE]).max() < SINGLE
+
+
+@pytest.mark.parametrize("interpolation", ["STEP", "LINEAR", "CUBICSPLINE"])
+def test_morph_targets_follow_their_weights(tmp_path, interpolation):
+    shares = np.array([[0, 0, 0], [1, 5, 0.5]], float)
+    values = shares if interpolation != "CUBICSPLINE" else np.stack([0 * shares, shares, 0 * shares], axis=1)
+    file = morph_file()
+    file.animation((0, "weights", [0, 1], values.ravel(), interpolation))
+    scene = scene_of(loaded(tmp_path, file))
+    t = {"STEP": 0.0, "LINEAR": 0.25, "CUBICSPLINE": 3 * 0.25**2 - 2 * 0.25**3}[interpolation]
+    assert np.abs(vertices_at(scene, 0.25)["box"] - (BOX * [1 + 0.5 * t, 1, 1] + [0, t, 0])[:, TO_SCENE]).max() < SINGLE
+
+
+def test_a_skin_moves_what_morph_targets_shape(tmp_path):
+    file = rig_file()
+    points = tube()[0]
+    wider = points * [0.5, 0.0, 0.5]
+    file.json["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": file.accessor(wider)}]
+    sampler = {"input": file.accessor([0, 1]), "output": file.accessor([0, 1])}
+    animation = file.json["animations"][0]
+    animation["channels"].append({"sampler": len(animation["samplers"]), "target": {"node": 0, "path": "weights"}})
+    animation["samplers"].append(sampler)
+    found = np.concatenate(list(vertices_at(scene_of(loaded(tmp_path, file)), 0.5).values()))
+    wanted = bent(points + 0.5 * wider, np.pi / 4)[:, TO_SCENE]
+    distance = np.linalg.norm(found[:, None] - wanted[None], axis=2)
+    assert distance.min(axis=1).max() < SINGLE
+
+
+def test_faults_of_animations_are_told_with_their_places(tmp_path):
+    def refused(said, *channel, **sampler):
+        file = morph_file()
+        file.animation(channel)
+        file.json["animations"][0]["samplers"][0] |= sampler
+        with pytest.raises(ep.FileError, match=said):
+            loaded(tmp_path, file)
+
+    refused(r"samplers\[0\]\.input: must ascend, falls from 1 to 0\.5 s", 0, "translation", [0, 1, 0.5], PLACES, "LINEAR")
+    refused(r"samplers\[0\]\.output: must have 3 entries for 3 times, has 2", 0, "translation", KEYS, PLACES[:2], "LINEAR")
+    refused(r"samplers\[0\]\.interpolation: must be LINEAR, STEP or", 0, "translation", KEYS, PLACES, "BEZIER")
+    refused(r"targets: has 3 targets, of which the animation moves 2", 0, "weights", [0, 1], [0, 0, 1, 1], "LINEAR")
+    refused(r"target\.node: must be a whole number from 0 to 0, is 3", 3, "translation", KEYS, PLACES, "LINEAR")
+    refused(r"samplers\[0\]\.input: must be a whole", 0, "translation", KEYS, PLACES, "LINEAR", input=77)
+
+
+# --- through the simulation ---
+
+RADAR = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=150e6, num_samples=32, sampling_rate=5e6, num_chirps=64,
+                                  chirp_interval=1e-3), transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+
+
+def cube_of(motion, start_time: float = 0.0) -> np.ndarray:
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material="metal", position=(5, 0, 0), motion=motion, smooth=True)
+    return ep.synthesize(ep.trace(scene, RADAR, num_rays=4000, max_bounces=1, start_time=start_time), RADAR)[0, 0]
+
+
+def still_at(x: float):
+    return ep.CurveMotion(ep.Curve([0.0], [[x, 0, 0]]))
+
+
+@pytest.mark.parametrize("options", [{}, {"period": 0.05}, {"period": 0.05, "offset": 0.0123}])
+def test_a_step_within_a_frame_is_one_between_chirps(options):
+    """A ball that jumps by a millimetre: each chirp is that of a ball that stands where this one is."""
+    keys, places = np.array([0.0, 0.0204, 0.0417]), [0.0, 0.001, -0.0005]
+    motion = ep.CurveMotion(ep.Curve(keys, [[x, 0, 0] for x in places], "step"), **options)
+    cube = cube_of(motion, start_time=2.0)
+    stands = {x: cube_of(still_at(x)) for x in places}
+    for chirp, row in enumerate(cube):
+        time = 2.0 + RADAR.waveform.chirp_interval * chirp
+        x = motion.at(time)[0, 3]
+        error = np.abs(row - stands[round(x, 6)][chirp]).max() / np.abs(row).max()
+        window = RADAR.waveform.num_samples / RADAR.waveform.sampling_rate
+        if motion.at(time + window)[0, 3] == x:
+            assert error < 0.03  # of the speckle of facets: the rays of each trace meet other points
+
+
+def test_a_looped_rig_goes_on_in_the_second_frame(tmp_path):
+    scene = scene_of(loaded(tmp_path, rig_file(times=(0.0, 0.0625, 0.125)), loop=True))
+    again = [np.concatenate(list(vertices_at(scene, time).values())) for time in (0.03, 0.155, 10.03)]
+    assert np.abs(again[1] - again[0]).max() < 1e-12 and np.abs(again[2] - again[0]).max() < 1e-11
+    radar = RADAR.replace(position=(-3, 0, 1))
+    first, second = (ep.synthesize(ep.trace(scene, radar, num_rays=3000, max_bounces=1, start_time=start), radar)
+                     for start in (0.02, 0.145))
+    assert np.abs(first - second).max() < 1e-6 * np.abs(first).max()
+
+
+def test_frames_keep_curves_skins_and_morph_targets(tmp_path):
+    file = rig_file(interpolation="STEP")
+    file.animation((2, "scale", [0, 1], [[1, 1, 1], [1, 2, 1]], "LINEAR"))
+    scene = ep.Scene()
+    scene.add(loaded(tmp_path, file, animation="animation_1", loop=True, offset=0.25), name="rig")
+    morph = morph_file()
+    values = np.stack([np.zeros((2, 3)), [[0, 0, 0], [1, 0, 0.5]], np.ones((2, 3))], axis=1)
+    morph.animation((0, "weights", [0, 1], values.ravel(), "CUBICSPLINE"))
+    scene.add(loaded(tmp_path, morph), name="morph", position=(3, 0, 0))
+    shaped = ep.Skin(BOX, [ep.Joint("a")], np.ones((8, 1)), shape=scene["morph/box"].motion)
+    scene.add(ep.Mesh(BOX, BOX_SIDES), name="shaped", material="metal", motion=shaped, position=(9, 0, 0))
+    frame = ep.simulate(scene, RADAR.replace(position=(-5, 0, 0)), num_rays=300, max_bounces=1, guard=False)
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    again = ep.load_frame(tmp_path / "frame.h5").paths.scene
+    for mesh in scene.meshes:
+        assert again.meshes[mesh.id].name == mesh.name
+        for time in (0.0, 0.3, 1.7):
+            assert np.array_equal(again.world_vertices(mesh.id, time), scene.world_vertices(mesh.id, time))
+
+
+def test_keys_that_are_no_rotations_are_told(tmp_path):
+    file = box_file()
+    file.animation((0, "rotation", [0, 1], [[0, 0, 0, 0], [0, 0, 0, 1]], "LINEAR"), name="spin")
+    with pytest.raises(ep.FileError, match=r"nodes\[0\]: cannot be animated by 'spin': rotation: must hold unit quaternions"):
+        loaded(tmp_path, file)

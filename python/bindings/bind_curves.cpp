@@ -39,6 +39,7 @@ Curve curve(Arg<"times", VectorOf<double>> times, Arg<"values", Rows> values,
   check(*in_tangents, "in_tangents");
   check(*out_tangents, "out_tangents");
   if (is_hermite) made.in_tangents = numbers_of(**in_tangents), made.out_tangents = numbers_of(**out_tangents);
+  made.validate_times("times");
   made.validate("values", static_cast<size_t>(values->shape(1)));
   return made;
 }

@@ -14,10 +14,10 @@ answer_version_before_loading()
 from . import actors, plots
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
-    CosinePower, Curve, CurveMotion, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint, KeyframeMotion, LinearMotion,
-    Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth, RangeDoppler, ReceivedPower, Renewal, Selection,
-    SignalProbe, Skin, Stratum, TraceFrame, TraceStatistics, Validity, ValidityShares, VertexSequence, VirtualArray,
-    __version__, boltzmann, speed_of_light,
+    CosinePower, Curve, CurveMotion, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint,
+    KeyframeMotion, LinearMotion, Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth,
+    RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame, TraceStatistics, Validity,
+    ValidityShares, VertexSequence, VirtualArray, __version__, boltzmann, speed_of_light,
 )
 from .actors import Actor, Part
 from .angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array

@@ -22,7 +22,7 @@ class Scene(_core.Scene):
     Iteration gives the full names of all objects, parents first; `name in scene` and `len(scene)` go by them. KeyError names
     the nearest name.
     nodes: list of Node, parents first; meshes: list of SceneMesh by mesh ID (.id, .name, .triangles [F, 3], .material)
-    world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s
+    world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s, of one run of what is looped
     Mesh IDs count without gaps the meshes that take part now, so they change when objects are removed or hidden; names do
     not. Paths keep the scene that they were traced in, with its mesh IDs.
     scene: another Scene to copy, such as `paths.scene`; None: empty
@@ -51,7 +51,8 @@ class Scene(_core.Scene):
         name: without '/', '*', '?' and quotes, unique among its siblings
         material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given
             here replaces them)
-        motion: LinearMotion, KeyframeMotion, or for a mesh a VertexSequence or a Skin; None: at rest. A mesh with a Skin
+        motion: LinearMotion, KeyframeMotion, CurveMotion, or for a mesh a VertexSequence, MorphTargets or a Skin; None: at
+            rest. A mesh with a Skin
             becomes a node with a child for each joint that dominates any of its triangles, named after the joint
             (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities, translations
             and turns of a motion are in the axes of the parent (of the world, for an object without one) and about the

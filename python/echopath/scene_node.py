@@ -102,8 +102,8 @@ class SceneNode:
 
     @property
     def motion(self):
-        """A LinearMotion, KeyframeMotion, VertexSequence or Skin, in the axes of the parent about the object's own origin
-        (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as `Scene.add` makes them."""
+        """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
+        the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as `Scene.add` makes them."""
         node = self._node
         return node.deformation or node.motion
 
@@ -180,5 +180,5 @@ def split_motion(motion, mesh, name: str) -> tuple:
     if deformation is not None and mesh is None:
         raise ValueError(f"motion: a {type(motion).__name__} needs a mesh, and '{name}' has none of its own")
     if not (motion is None or deformation or isinstance(motion, _core.Motion)):
-        raise refused(TypeError, "motion", "a LinearMotion, KeyframeMotion, VertexSequence, Skin or None", motion)
+        raise refused(TypeError, "motion", "a Motion, a Deformation or None", motion)
     return (None if deformation else motion), deformation

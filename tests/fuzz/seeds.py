@@ -28,8 +28,12 @@ def _arm():
     """A tube of two triangles, bent by a joint that turns."""
     vertices = np.array([[4, 0, 0], [4, 1, 0], [4, 0, 1], [4, 1, 1.0]])
     spin = ep.KeyframeMotion(times=TIMES, translations=[[0, 0, 0], [0.1, 0, 0], [0.1, 0.2, 0], [0, 0, 0.0]])
-    joints = [ep.Joint("shoulder"), ep.Joint("elbow", "shoulder", motion=spin)]
-    skin = ep.Skin(vertices, joints, [[1, 0], [1, 0], [0, 1], [0, 1]])
+    rows = np.array([[0, 0, 0], [0.1, 0, 0.0]])
+    reach = ep.CurveMotion(ep.Curve([0, 1], rows, "hermite", in_tangents=rows, out_tangents=rows), None,
+                           ep.Curve([0, 1], 1 + rows), period=1.5, offset=0.5)
+    swell = ep.MorphTargets(vertices, [0.1 * vertices], ep.Curve([0, 1], [[0], [1.0]]))
+    joints = [ep.Joint("shoulder", motion=reach), ep.Joint("elbow", "shoulder", motion=spin)]
+    skin = ep.Skin(vertices, joints, [[1, 0], [1, 0], [0, 1], [0, 1]], shape=swell)
     return ep.Mesh(vertices, [[0, 1, 2], [1, 3, 2]]), skin
 
 

@@ -8,7 +8,8 @@ import pytest
 import echopath as ep
 from fuzz import targets, worker
 
-CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300, "gltf_bytes": 300, "gltf_json": 300}
+CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
+         "gltf_bytes": 300, "gltf_json": 300}
 
 
 def test_each_target_has_a_short_run():

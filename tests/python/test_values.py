@@ -73,13 +73,37 @@ def sequences(draw):
 
 
 @st.composite
+def curves(draw, columns: int = 3):
+    count, kind = draw(st.integers(1, 5)), draw(st.sampled_from(["step", "linear", "hermite"]))
+    rows = arrays(np.float64, (count, columns), elements=numbers)
+    tangents = {"in_tangents": draw(rows), "out_tangents": draw(rows)} if kind == "hermite" else {}
+    return ep.Curve(draw(times(count)), draw(rows), kind, **tangents)
+
+
+clocks = st.fixed_dictionaries({"period": st.none() | st.floats(1e-3, 10), "offset": st.floats(-10, 10)})
+
+
+@st.composite
+def curve_motions(draw):
+    turning = ep.Curve([0.0, 1.0], draw(quaternions(2)), "step")
+    return ep.CurveMotion(draw(curves()), draw(st.none() | st.just(turning)), draw(st.none() | curves()), **draw(clocks))
+
+
+@st.composite
+def morphs(draw, count: int = 0):
+    shape = draw(st.integers(1, 3)), count or draw(st.integers(1, 4)), 3
+    points = arrays(np.float64, shape, elements=numbers)
+    return ep.MorphTargets(draw(points)[0], draw(points), draw(curves(shape[0])), **draw(clocks))
+
+
+@st.composite
 def skins(draw):
     count, num_joints = draw(st.integers(1, 6)), draw(st.integers(1, 3))
     joints = [ep.Joint(f"joint {k}", f"joint {k - 1}" if k else None, position=draw(vectors),
-                       motion=draw(st.none() | linear_motions)) for k in range(num_joints)]
+                       motion=draw(st.none() | linear_motions | curve_motions())) for k in range(num_joints)]
     weights = draw(arrays(np.float64, (count, num_joints), elements=st.floats(0.1, 1.0)))
     return ep.Skin(draw(arrays(np.float64, (count, 3), elements=numbers)), joints,
-                   weights / weights.sum(axis=1)[:, None])
+                   weights / weights.sum(axis=1)[:, None], shape=draw(st.none() | morphs(count)))
 
 
 @st.composite
@@ -94,13 +118,15 @@ def meshes(draw):
 
 
 KINDS = {"ChirpSequence": waveforms(), "pattern": patterns, "Material": materials, "LinearMotion": linear_motions,
-         "KeyframeMotion": keyframes(), "VertexSequence": sequences(), "Skin": skins(), "Mesh": meshes(),
+         "KeyframeMotion": keyframes(), "VertexSequence": sequences(), "Skin": skins(),
+         "Curve": curves(), "CurveMotion": curve_motions(), "MorphTargets": morphs(), "Mesh": meshes(),
          "Joint": skins().map(lambda skin: skin.joints[-1])}
 # All that can be read of them.
 READ = """start_frequency bandwidth num_samples sampling_rate num_chirps chirp_interval real slope kind peak_gain exponent
     table_gain table_phase azimuth elevation efficiency conductor permittivity conductivity reflectivity roughness_height
     scattering cross_polarization mirror velocity angular_velocity times translations rotations vertices interpolation
-    breakpoints span num_vertices name parent transform motion inverse_bind joints weights joint_indices triangles
+    breakpoints span num_vertices name parent transform motion inverse_bind joints weights joint_indices shape targets values
+    in_tangents out_tangents translation rotation scale period offset triangles
     original_triangle original_vertex num_input_vertices num_removed_triangles num_duplicated_vertices is_closed area whole
     whole_triangle""".split()
 
@@ -157,6 +183,8 @@ def test_unequal_values_are_told_apart(kind):
     (ep.Material(permittivity=4 - 1j), {"roughness_height": 1e-3}),
     (ep.LinearMotion((1, 2, 3)), {"velocity": (1, 2, 4)}),
     (ep.KeyframeMotion([0, 1, 2], [[0, 0, 0], [1, 0, 0], [3, 0, 0]]), {"interpolation": "linear"}),
+    (ep.Curve([0, 1], [[0], [1]]), {"interpolation": "step"}),
+    (ep.CurveMotion(ep.Curve([0, 1], [[0, 0, 0], [1, 0, 0]])), {"period": 2.0}),
     (ep.Joint("a"), {"name": "b"}),
 ])
 def test_replace_changes_what_is_named_and_nothing_else(value, change):

@@ -52,6 +52,8 @@ CORNERS, TRIANGLES = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2], [
 MESH = ep.Mesh(CORNERS, TRIANGLES)
 KEYS = ep.KeyframeMotion([0, 1, 2], [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
 SEQUENCE = ep.VertexSequence([0, 1], [CORNERS, CORNERS])
+PLACES = ep.Curve([0, 1], [[0, 0, 0], [1, 0, 0]])
+SHARES = ep.Curve([0, 1], [[0], [1]])
 SKIN = ep.Skin(CORNERS, [ep.Joint("a"), ep.Joint("b", "a")], [[0.5, 0.5]] * 4)
 RADAR = ep.Radar(ep.ChirpSequence(num_samples=16, num_chirps=4), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
 PLATE = ep.Scene()
@@ -86,6 +88,13 @@ CALLS = {
     "KeyframeMotion": (ep.KeyframeMotion, {"times": [0, 1], "translations": [[0, 0, 0], [1, 0, 0]],
                                            "rotations": [[1, 0, 0, 0], [1, 0, 0, 0]], "interpolation": "cubic"}),
     "VertexSequence": (ep.VertexSequence, {"times": [0, 1], "vertices": [CORNERS, CORNERS], "interpolation": "linear"}),
+    "Curve": (ep.Curve, {"times": [0, 1], "values": [[0], [1]], "interpolation": "hermite", "in_tangents": [[0], [1]],
+                         "out_tangents": [[0], [1]]}),
+    "Curve at": (PLACES.at, {"time": 0.5}),
+    "CurveMotion": (ep.CurveMotion, {"translation": PLACES, "rotation": ep.Curve([0], [[1, 0, 0, 0]]), "scale": PLACES,
+                                     "period": 1.0, "offset": 0.5}),
+    "MorphTargets": (ep.MorphTargets, {"vertices": CORNERS, "targets": [CORNERS], "weights": SHARES, "period": 1.0,
+                                       "offset": 0.5}),
     "motion at": (KEYS.at, {"time": 0.5}),
     "motion turn_rate": (KEYS.turn_rate, {"begin": 0.0, "end": 1.0}),
     "deformation at": (SEQUENCE.at, {"time": 0.5}),
@@ -93,7 +102,7 @@ CALLS = {
     "Joint": (ep.Joint, {"name": "a", "parent": "b", "position": (1, 2, 3), "motion": None, "inverse_bind": np.eye(4)}),
     "Joint transform": (ep.Joint, {"name": "a", "transform": np.eye(4)}),
     "Skin": (ep.Skin, {"vertices": CORNERS, "joints": [ep.Joint("a")], "weights": np.ones((4, 1)),
-                       "joint_indices": np.zeros((4, 1), int)}),
+                       "joint_indices": np.zeros((4, 1), int), "shape": SEQUENCE}),
     "joint_transforms": (SKIN.joint_transforms, {"time": 0.5}),
     "parts": (SKIN.parts, {"mesh": MESH}),
     "Mesh": (ep.Mesh, {"vertices": CORNERS, "triangles": TRIANGLES, "original_triangle": [7, 8]}),
@@ -114,6 +123,9 @@ CALLS = {
 }
 # Where two arguments do not fit each other, the message may name the other one and say what of this one it lacks.
 FAULT_OF = {("Skin", "vertices"): "weights: must have a row for each vertex",
+            ("Curve", "times"): "values: must have ", ("Curve", "interpolation"): "in_tangents: must be given for 'hermite'",
+            ("MorphTargets", "vertices"): "targets: must have a displacement",
+            ("MorphTargets", "targets"): "weights: must have a row",
             ("select", "selection"): "path expression: expected",  # and a caret under the fault
             ("amplitudes", "times"): "time: must lie in", ("lengths", "times"): "time: must lie in"}
 ARGUMENTS = [(call, argument) for call, (_, right) in CALLS.items() for argument in right]
@@ -177,7 +189,7 @@ def test_calls_that_do_not_fit_say_why(call):
 @pytest.mark.parametrize("call, missing", [
     (ep.Mesh, "vertices"), (lambda: ep.Mesh(CORNERS), "triangles"), (ep.Skin, "vertices"), (ep.Joint, "name"),
     (ep.CosinePower, "exponent"), (ep.GainTable, "azimuth"), (ep.KeyframeMotion, "times"), (ep.VertexSequence, "times"),
-    (KEYS.at, "time"), (MESH.part, "triangles"),
+    (ep.Curve, "times"), (ep.MorphTargets, "vertices"), (KEYS.at, "time"), (MESH.part, "triangles"),
 ])
 def test_missing_arguments_are_named(call, missing):
     with pytest.raises(TypeError, match=f"argument '{missing}' is missing"):

@@ -52,13 +52,17 @@ std::vector<double> sample_times(const Curve& curve, const Playback& playback, c
 
 }  // namespace
 
-void Curve::validate(const char* argument, size_t num_columns) const {
+void Curve::validate_times(const char* argument) const {
   require(!times.empty(), argument, "must hold at least one time", 0);
   for (size_t i = 0; i < times.size(); ++i) {
     require(std::isfinite(times[i]) && std::abs(times[i]) <= kLongestTime, argument, "must have times of at most 1e9 s",
             times[i]);
     if (i > 0) require(times[i] > times[i - 1], argument, "must have strictly ascending times", times[i]);
   }
+}
+
+void Curve::validate(const char* argument, size_t num_columns) const {
+  validate_times(argument);
   const size_t count = times.size() * num_columns;
   check_numbers(values, count, argument, "values");
   const bool has_tangents = interpolation == CurveInterpolation::kHermite;

@@ -9,8 +9,8 @@
 
 namespace echopath {
 
-// How a curve goes from one key to the next (glTF 2.0, appendix C): it holds the earlier value and jumps at the later key, it
-// goes straight, or it follows a cubic Hermite spline with the tangents of the keys.
+// How a curve goes from one key to the next (glTF 2.0, appendix C): it holds the earlier value and jumps at the later key,
+// it goes straight, or it follows a cubic Hermite spline with the tangents of the keys.
 enum class CurveInterpolation { kStep, kLinear, kHermite };
 
 // Holds C numbers at each of T key times, T >= 1. Beyond its first and last key it holds their values. Immutable.
@@ -21,7 +21,9 @@ struct Curve {
   std::vector<double> in_tangents = {}, out_tangents = {};  // [T, C] per s, before and behind each key; kHermite alone
 
   size_t num_columns() const { return times.empty() ? 0 : values.size() / times.size(); }
-  // Raises invalid_argument naming `argument` unless the sizes fit `num_columns` and all numbers are finite.
+  // Raises invalid_argument naming `argument` unless the times ascend.
+  void validate_times(const char* argument) const;
+  // Raises the same, also unless the sizes fit `num_columns` and all numbers are finite.
   void validate(const char* argument, size_t num_columns) const;
 };
 
@@ -36,8 +38,8 @@ struct Playback {
   void validate() const;
   int64_t run_at(double time) const;                   // 0 where there is no period
   double time_of(double key_time, int64_t run) const;  // s, of the scene
-  // Appends the times of the scene within `during` at which these keys and the ends of runs lie. An unlimited `during` stands
-  // for run 0 alone. A single key never changes anything and has none.
+  // Appends the times of the scene within `during` at which these keys and the ends of runs lie. An unlimited `during`
+  // stands for run 0 alone. A single key never changes anything and has none.
   void append_times(const std::vector<double>& key_times, const TimeSpan& during, std::vector<double>& out) const;
 };
 

@@ -29,8 +29,8 @@ struct SkinWeights {
 
 // Computes v(t) = sum_j weight_j * skin_from_joint_j(t) * inverse_bind_j * v, exactly at every time (Magnenat-Thalmann,
 // Laperriere, Thalmann 1988, "Joint-dependent local deformations"). Where a vertex follows several joints, the surface
-// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Where it has a shape, v is
-// that of the shape at the same time. Immutable.
+// narrows where these turn, as is known of the method. It poses only the vertices it is asked for. Where it has a shape, v
+// is that of the shape at the same time. Immutable.
 class Skin : public Deformation {
  public:
   // vertices [V] in m as bound, in the frame of the skin. A vertex may follow any number of joints; rows whose sum is off 1

@@ -46,7 +46,8 @@ TEST(CurveMotion, GoesStraightBetweenLinearKeys) {
   expect_near(place(moving(CurveInterpolation::kLinear), 0.2), {1.0, 1.0 / 3.0, 3.0});
 }
 
-// glTF 2.0, appendix C.5: (2 t^3 - 3 t^2 + 1) v_k + t_d (t^3 - 2 t^2 + t) b_k + (-2 t^3 + 3 t^2) v_k+1 + t_d (t^3 - t^2) a_k+1
+// glTF 2.0, appendix C.5:
+// (2 t^3 - 3 t^2 + 1) v_k + t_d (t^3 - 2 t^2 + t) b_k + (-2 t^3 + 3 t^2) v_k+1 + t_d (t^3 - t^2) a_k+1
 TEST(CurveMotion, FollowsTheCubicSplineOfTheSpecification) {
   const double t = 0.25, step = 0.6, t2 = t * t, t3 = t2 * t;
   const Vec3 from(3, -1, 5), to(4, 0, 1), leaving(4, 1, 1), arriving(-1, 0, 2);

@@ -8,8 +8,8 @@
 namespace echopath {
 
 // Returns the times (s, ascending) between which all motions of scene and radar are analytic within `during`: breakpoints
-// and knots of splines. Across a knot, where a third derivative jumps, the error of a polynomial falls with the cube of its order;
-// between knots it falls geometrically.
+// and knots of splines. Across a knot, where a third derivative jumps, the error of a polynomial falls with the cube of its
+// order; between knots it falls geometrically.
 std::vector<double> motion_knots(const Scene& scene, const Radar& radar, const TimeSpan& during = {});
 
 // Returns the times where motions are not smooth: the breakpoints alone.

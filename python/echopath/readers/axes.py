@@ -30,6 +30,7 @@ class Axes:
         moved = np.array(matrices, np.float64)
         moved[..., :3, :3] = moved[..., self._order, :][..., self._order]
         moved[..., :3, 3] = self.points(np.asarray(matrices)[..., :3, 3])
+        moved[..., 3, :] = 0.0, 0.0, 0.0, 1.0  # to the last bit, which inverses of others miss
         return moved
 
     @property

@@ -30,7 +30,7 @@ _NAMES: dict[str, str] = {
     "*asphalt*": "asphalt", "*tarmac*": "asphalt", "*bitum*": "asphalt", "road*": "asphalt", "street*": "asphalt",
     "*parking*": "asphalt", "*concrete*": "concrete", "*cement*": "concrete", "*sidewalk*": "concrete", "*pavement*": "concrete",
     "*paving*": "concrete", "curb*": "concrete", "kerb*": "concrete", "bridge*": "concrete", "*stucco*": "concrete",
-    "*brick*": "brick", "tile*": "brick", "*tiles": "brick", "*ceramic*": "brick", "*clinker*": "brick", "roof*": "brick",
+    "*brick*": "brick", "tile": "brick", "*tiles": "brick", "*ceramic*": "brick", "*clinker*": "brick", "roof*": "brick",
     "*marble*": "marble", "*granite*": "marble", "stone*": "marble", "*sandstone*": "marble", "*limestone*": "marble",
     "rock*": "marble", "*cobble*": "marble", "*plaster*": "plasterboard", "*drywall*": "plasterboard", "*gypsum*": "plasterboard",
     "*building*": "concrete", "*facade*": "concrete", "wall*": "concrete",

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class Tree:
         """The Model; its notes are those of this tree."""
         counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
         notes = (*self._notes, *counted, *note_of_unknown(self._unknown))
-        return Model(tuple(self.nodes), notes=notes, **fields)
+        return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
     def _free(self, name: str, parent: int) -> str:
         free = name
@@ -70,3 +71,16 @@ class Tree:
         if note is not None:
             self._unknown.append(name)
         return material
+
+
+def _with_meshes(nodes: list[ModelNode]) -> list[ModelNode]:
+    """The nodes that have a mesh or carry one."""
+    needed = [node.mesh is not None for node in nodes]
+    for index in range(len(nodes) - 1, -1, -1):
+        if needed[index] and nodes[index].parent >= 0:
+            needed[nodes[index].parent] = True
+    if all(needed):
+        return nodes
+    number = np.cumsum(needed) - 1
+    return [replace(node, parent=int(number[node.parent]) if node.parent >= 0 else -1)
+            for node, keep in zip(nodes, needed) if keep]

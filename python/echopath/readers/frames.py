@@ -1,0 +1,180 @@
+"""Meshes that change from frame to frame: a folder of OBJ files of one topology, or vertices over time in a .npz file."""
+from __future__ import annotations
+
+import re
+import struct
+import tokenize
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from .. import _core
+from .axes import Axes
+from .model import Model
+from .options import ReadOptions
+from .sampled import Clock, chosen_animation
+from .tree import Tree
+
+FRAME_RATE = 30.0            # 1/s, of a folder that does not say it
+MOST_BYTES = 8 * 2**30       # of all arrays of a file
+NAME = "frames"              # of the one animation
+RATE_FILE = "frame_rate.txt"
+
+
+def read(path: Path, options: ReadOptions) -> Model:
+    """A Model whose meshes are VertexSequence, cubic between the frames; the first frame is at 0 s.
+
+    path: of a folder of .obj files, which are frames in the order of the numbers in their names, and may have a file
+    frame_rate.txt with a number in 1/s; or of a .npz file with vertices [T, V, 3], triangles [F, 3], and times [T] in s or
+    frame_rate in 1/s. The sequence ends with its last frame, unless it is repeated.
+    """
+    axes, tree = Axes(options), Tree(options)
+    if path.is_dir():
+        times, surfaces = _of_folder(path, axes, tree)
+    else:
+        times, surfaces = _of_file(path, axes, tree)
+    names = (NAME,) if len(times) > 1 else ()
+    animation = chosen_animation(options, names)
+    clock = Clock(options, float(times[0]), float(times[-1]))
+    for name, material, triangles, vertices in surfaces:
+        deformation = _sequence(path, times, vertices, clock, options) if animation else None
+        tree.add(name, mesh=_mesh(path, vertices[0], triangles), deformation=deformation, foreign_material=material, smooth=True)
+    return tree.model(format="OBJ frames" if path.is_dir() else "NPZ frames", unit=axes.unit, up=axes.up, animations=names,
+                      animation=animation, duration=float(times[-1] - times[0]) if animation else 0.0)
+
+
+def _mesh(path: Path, vertices, triangles) -> _core.Mesh:
+    try:
+        return _core.Mesh(vertices, triangles)
+    except (ValueError, TypeError) as error:
+        raise _core.FileError(f"{path}: {error}") from None
+
+
+def _sequence(path: Path, times, vertices, clock: Clock, options: ReadOptions) -> _core.VertexSequence:
+    try:
+        if options.loop:
+            times, vertices = clock.spread(times, vertices)
+        else:
+            times = times - options.offset
+        return _core.VertexSequence(times=times, vertices=vertices)
+    except (ValueError, TypeError) as error:
+        raise _core.FileError(f"{path}: {error}") from None
+
+
+# --- folders ---
+
+def _of_folder(path: Path, axes: Axes, tree: Tree):
+    """(times [T], [(name, material, triangles, vertices [T, V, 3] in m)]) of a folder."""
+    files = sorted((file for file in path.iterdir() if file.suffix.lower() == ".obj" and file.is_file()), key=_by_number)
+    if not files:
+        raise _core.FileError(f"{path}: is a folder without .obj files")
+    first = _core.load_surfaces(files[0], axes.unit)[0]
+    frames = [[axes.turned(mesh.vertices)] for _, _, mesh in first]
+    for file in files[1:]:
+        surfaces = _core.load_surfaces(file, axes.unit)[0]
+        if [one[:2] for one in surfaces] != [one[:2] for one in first] or not all(
+                np.array_equal(one[2].triangles, other[2].triangles) for one, other in zip(surfaces, first)):
+            raise _core.FileError(f"{file}: must have the groups, materials and triangles of the first frame, {files[0].name}")
+        for frame, (_, _, mesh) in zip(frames, surfaces):
+            frame.append(axes.turned(mesh.vertices))
+    times = np.arange(len(files)) / _frame_rate(path, len(files), tree)
+    return times, [(name, material, mesh.triangles, np.stack(frame)) for (name, material, mesh), frame in zip(first, frames)]
+
+
+def _by_number(file: Path) -> list:
+    """A name by its words and numbers: "walk2" comes before "walk10"."""
+    return [(0, int(word), "") if word.isdigit() and len(word) < 20 else (1, 0, word)
+            for word in re.split(r"([0-9]+)", file.name)]
+
+
+def _frame_rate(path: Path, count: int, tree: Tree) -> float:
+    file = path / RATE_FILE
+    if not file.is_file():
+        if count > 1:
+            tree.note(f"the folder has no {RATE_FILE}: {FRAME_RATE:g} frames a second are taken")
+        return FRAME_RATE
+    try:
+        rate = float(file.read_text(encoding="utf-8")[:100])
+    except ValueError:
+        rate = 0.0
+    return _checked_rate(file, rate)
+
+
+def _checked_rate(path: Path, rate: float) -> float:
+    if not 1e-3 <= rate <= 1e6:
+        raise _core.FileError(f"{path}: the frame rate must be from 0.001 to 1e6 per second, got {rate:g}")
+    return rate
+
+
+# --- arrays ---
+
+def _of_file(path: Path, axes: Axes, tree: Tree):
+    arrays = _arrays(path)
+    vertices = _array(path, arrays, ("vertices", "verts"), 3, "f")
+    triangles = _array(path, arrays, ("triangles", "faces"), 2, "iu")
+    if vertices.shape[2] != 3 or not len(vertices):
+        raise _core.FileError(f"{path}: vertices must be [T, V, 3], got {list(vertices.shape)}")
+    if triangles.shape[1] != 3:
+        raise _core.FileError(f"{path}: triangles must be [F, 3], got {list(triangles.shape)}")
+    if not np.isfinite(vertices).all():
+        raise _core.FileError(f"{path}: vertices must be finite")
+    return _times(path, arrays, len(vertices), tree), [(path.stem, "", triangles, axes.points(vertices))]
+
+
+def _times(path: Path, arrays: dict, count: int, tree: Tree) -> np.ndarray:
+    if "times" in arrays:
+        times = _array(path, arrays, ("times",), 1, "fiu").astype(float)
+        if len(times) != count or not np.isfinite(times).all() or not (np.diff(times) > 0.0).all():
+            raise _core.FileError(f"{path}: times must be {count} ascending numbers, one for each frame")
+        return times
+    if "frame_rate" not in arrays:
+        if count > 1:
+            tree.note(f"the file has neither times nor frame_rate: {FRAME_RATE:g} frames a second are taken")
+        return np.arange(count) / FRAME_RATE
+    rate = arrays["frame_rate"]
+    if rate.size != 1 or rate.dtype.kind not in "fiu":
+        raise _core.FileError(f"{path}: frame_rate must be one number in 1/s, got an array {list(rate.shape)} of {rate.dtype}")
+    return np.arange(count) / _checked_rate(path, float(rate.ravel()[0]))
+
+
+def _array(path: Path, arrays: dict, names: tuple, dimensions: int, kinds: str) -> np.ndarray:
+    """The array of the first of some names. Raises FileError where there is none, or one of another kind."""
+    found = next((arrays[name] for name in names if name in arrays), None)
+    if found is None:
+        raise _core.FileError(f"{path}: has no array '{names[0]}'; it has {', '.join(arrays) or 'none'}")
+    if found.ndim != dimensions or found.dtype.kind not in kinds:
+        raise _core.FileError(f"{path}: {names[0]} must have {dimensions} dimensions, got {list(found.shape)} of {found.dtype}")
+    return found
+
+
+def _arrays(path: Path) -> dict[str, np.ndarray]:
+    """The arrays of a .npz file by their names. Raises FileError for anything but plain numbers."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
+            if sum(member.file_size for member in members) > MOST_BYTES:
+                raise _core.FileError(f"{path}: has arrays of more than {MOST_BYTES} bytes")
+            return {member.filename.removesuffix(".npy")[:60]: _member(path, archive, member) for member in members}
+    except (OSError, EOFError, ValueError, KeyError, IndexError, TypeError, RuntimeError, NotImplementedError, SyntaxError,
+            MemoryError, zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError) as error:
+        if isinstance(error, _core.FileError):
+            raise
+        raise _core.FileError(f"{path}: is no .npz file of plain arrays ({str(error)[:120] or type(error).__name__})") from None
+
+
+def _member(path: Path, archive: zipfile.ZipFile, member) -> np.ndarray:
+    with archive.open(member) as stream:
+        version = np.lib.format.read_magic(stream)
+        if version not in ((1, 0), (2, 0)):
+            raise ValueError(f"version {version} of the format")
+        read_head = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, by_column, kind = read_head(stream)
+        if kind.kind not in "fiub" or any(size < 0 for size in shape):
+            raise ValueError(f"'{member.filename[:60]}' holds no numbers")
+        size = int(np.prod([int(one) for one in shape], dtype=object)) * kind.itemsize
+        content = stream.read(size + 1) if size <= member.file_size else b""
+    if len(content) != size:
+        raise _core.FileError(f"{path}: the array '{member.filename[:60]}' ends too early")
+    return np.frombuffer(content, kind).reshape(shape, order="F" if by_column else "C")

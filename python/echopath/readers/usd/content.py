@@ -1,0 +1,192 @@
+"""Puts the prims of a USD stage into a tree."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ... import _core
+from ..axes import Axes
+from ..sampled import Clock, deformed, moved_rigidly
+from ..tree import Tree
+from .skeletons import Skeletons
+from .stage import Timeline, is_left_out
+from .surfaces import SOLIDS, BadMesh, Surface, surface_of
+from .transforms import sampled_transforms
+
+MAX_NODES = 2_000_000
+MAX_DEPTH = 200         # of instances within instances
+MAX_VALUES = 500_000_000  # coordinates of one mesh over all its samples
+
+
+class Content:
+    """The prims of a stage; meshes of instances are made once."""
+
+    def __init__(self, path: Path, stage, tree: Tree, axes: Axes, timeline: Timeline, pxr):
+        self._path, self._stage, self._tree, self._axes = path, stage, tree, axes
+        self._timeline, self._pxr = timeline, pxr
+        self._time = timeline.start
+        self._clock: Clock | None = None
+        self._skeletons = Skeletons(stage, pxr)
+        self._surfaces: dict = {}
+        self._index_of: dict = {}    # path -> node
+        self._skinned: list = []     # meshes that hang on skeletons, added when these are there
+        self._waiting: list = []     # (prim, node of its parent, instances around it)
+
+    def time_codes(self) -> list[float]:
+        """Of all samples of transforms, points and joints, ascending."""
+        codes = set(self._skeletons.time_codes())
+        for prim in self._pxr.Usd.PrimRange(self._stage.GetPseudoRoot(), self._pxr.Usd.TraverseInstanceProxies()):
+            if prim.IsA(self._pxr.UsdGeom.Xformable):
+                codes |= set(self._pxr.UsdGeom.Xformable(prim).GetTimeSamples()[:100_000])
+            if prim.IsA(self._pxr.UsdGeom.Mesh):
+                codes |= set(self._pxr.UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples()[:100_000])
+        return sorted(code for code in codes if np.isfinite(code))
+
+    def add_all(self, clock: Clock | None) -> None:
+        """Adds everything; clock None: at rest."""
+        self._clock = clock
+        self._waiting = [(prim, -1, 0) for prim in reversed(self._children(self._stage.GetPseudoRoot()))]
+        while self._waiting:
+            prim, parent, depth = self._waiting.pop()
+            self._add(prim, parent, depth)
+        for prim, surface, parent in self._skinned:
+            self._add_skinned(prim, surface, parent)
+
+    def _children(self, prim) -> list:
+        return list(prim.GetFilteredChildren(self._pxr.Usd.TraverseInstanceProxies()))
+
+    def _add(self, prim, parent: int, depth: int) -> None:
+        reason = is_left_out(prim, self._time, self._pxr.UsdGeom)
+        if reason:
+            self._tree.count(reason)
+            return
+        if len(self._tree.nodes) > MAX_NODES or depth > MAX_DEPTH:
+            raise _core.FileError(f"{self._path}: has more than {MAX_NODES} prims, or {MAX_DEPTH} instances in each other")
+        if prim.IsA(self._pxr.UsdGeom.Xformable):
+            placed = self._placed(prim)
+            if placed is None:
+                return
+            if self._pxr.UsdGeom.Xformable(prim).GetResetXformStack():
+                parent = -1
+            placement, motion = placed
+            parent = self._add_prim(prim, parent, placement, motion)
+            self._index_of[prim.GetPath()] = parent
+        if prim.IsA(self._pxr.UsdGeom.PointInstancer):
+            self._add_instances(prim, parent, depth)
+        else:
+            self._waiting += [(child, parent, depth) for child in reversed(self._children(prim))]
+
+    def _placed(self, prim):
+        """(placement, motion or None) of a prim; None, counted, where it flattens space."""
+        codes, matrices = sampled_transforms(self._pxr.UsdGeom.Xformable(prim), self._time)
+        matrices = self._axes.matrices(matrices)
+        if not np.isfinite(matrices).all() or np.abs(matrices).max() > 1e60 or (np.linalg.det(matrices[:, :3, :3]) == 0.0).any():
+            self._tree.count("a prim whose transform flattens it, or is not finite, is left out")
+            return None
+        return self._moved(codes, matrices)
+
+    def _moved(self, codes, matrices):
+        if self._clock is None:
+            return matrices[0], None
+        placement, motion, is_rigid = moved_rigidly(self._timeline.seconds(codes), matrices, self._clock)
+        if not is_rigid:
+            self._tree.count("the changing scale of a prim is left out")
+        return placement, motion
+
+    def _add_prim(self, prim, parent: int, placement, motion) -> int:
+        """The node of a prim, with its meshes; returns its index."""
+        surface = self._surface(prim)
+        name = prim.GetName()
+        if surface is None or self._skeletons.skeleton_of(prim) is not None:
+            if surface is not None:
+                self._skinned.append((prim, surface, parent))
+            return self._tree.add(name, parent, placement=placement, motion=motion)
+        deformation = self._deformation(prim, surface)
+        if len(surface.parts) == 1 and deformation is None:
+            _, material, mesh = surface.parts[0]
+            return self._tree.add(name, parent, placement=placement, motion=motion, mesh=mesh, foreign_material=material,
+                                  smooth=surface.smooth)
+        index = self._tree.add(name, parent, placement=placement, motion=motion)
+        self._add_parts(surface, index, deformation, surface.smooth)
+        return index
+
+    def _add_parts(self, surface: Surface, parent: int, deformation, smooth: bool, name: str = "surface") -> None:
+        for own, material, mesh in surface.parts:
+            self._tree.add(own or (name if len(surface.parts) == 1 else "rest"), parent, mesh=mesh, deformation=deformation,
+                           foreign_material=material, smooth=smooth)
+
+    def _surface(self, prim) -> Surface | None:
+        """The surface of a prim, None for one without; instances of one prototype share theirs."""
+        if not (prim.IsA(self._pxr.UsdGeom.Mesh) or prim.GetTypeName() in SOLIDS):
+            if prim.IsA(self._pxr.UsdGeom.Gprim):
+                self._tree.count(f"a prim of the type {prim.GetTypeName()} is left out")
+            return None
+        own = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
+        if own.GetPath() not in self._surfaces:
+            try:
+                self._surfaces[own.GetPath()] = surface_of(prim, self._time, self._axes, self._pxr)
+            except BadMesh as error:
+                self._tree.note(f"the mesh {prim.GetPath()} is left out: it {error}")
+                self._surfaces[own.GetPath()] = None
+        return self._surfaces[own.GetPath()]
+
+    def _deformation(self, prim, surface: Surface):
+        """A VertexSequence of points that change over time, None for others."""
+        attribute = self._pxr.UsdGeom.Mesh(prim).GetPointsAttr() if prim.IsA(self._pxr.UsdGeom.Mesh) else None
+        codes = attribute.GetTimeSamples() if attribute and self._clock is not None else []
+        codes = [code for code in codes if np.isfinite(code)]
+        if len(codes) < 2:
+            return None
+        if len(codes) * surface.points.size > MAX_VALUES:
+            raise _core.FileError(f"{self._path}: the points of {prim.GetPath()} have more than {MAX_VALUES} values over time")
+        frames = [np.array(attribute.Get(code), float) for code in codes]
+        if any(frame.shape != surface.points.shape or not np.isfinite(frame).all() for frame in frames):
+            self._tree.count("a mesh whose number of points changes over time stays as it is at first")
+            return None
+        return deformed(self._timeline.seconds(codes), self._axes.points(np.stack(frames)), self._clock)
+
+    def _add_skinned(self, prim, surface: Surface, parent: int) -> None:
+        """A mesh below its skeleton, whose frame its points are in once they are bound."""
+        skeleton = self._skeletons.skeleton_of(prim)
+        try:
+            skin = self._skeletons.skin_of(prim, surface.points, self._axes, self._timeline, self._clock, self._tree)
+        except ValueError as error:
+            self._tree.note(f"the mesh {prim.GetPath()} does not move with its skeleton: {error}")
+            self._add_parts(surface, self._index_of.get(prim.GetPath(), parent), None, surface.smooth, prim.GetName())
+            return
+        self._add_parts(surface, self._index_of.get(skeleton.GetPath(), parent), skin, True, prim.GetName())
+
+    def _add_instances(self, prim, parent: int, depth: int) -> None:
+        """The instances of a point instancer, each a node with its prototype below it."""
+        instancer = self._pxr.UsdGeom.PointInstancer(prim)
+        prototypes = [self._stage.GetPrimAtPath(path) for path in instancer.GetPrototypesRel().GetForwardedTargets()]
+        which = np.array(instancer.GetProtoIndicesAttr().Get(self._time) or [], np.int64)
+        codes, transforms = self._instance_transforms(instancer, len(which))
+        if transforms is None:
+            self._tree.note(f"the point instancer {prim.GetPath()} is left out: its arrays do not fit together")
+            return
+        mask = instancer.ComputeMaskAtTime(self._time) or [True] * len(which)
+        for number, index in enumerate(which):
+            kept = mask[number] and 0 <= index < len(prototypes) and prototypes[index]
+            if not kept or (np.linalg.det(transforms[:, number, :3, :3]) == 0.0).any():
+                self._tree.count("a point that is masked, or without a prototype or extent, is left out")
+                continue
+            placement, motion = self._moved(codes, transforms[:, number])
+            node = self._tree.add(f"{prototypes[index].GetName()}_{number}", parent, placement=placement, motion=motion)
+            self._waiting.append((prototypes[index], node, depth + 1))
+
+    def _instance_transforms(self, instancer, count: int):
+        """(time codes [T], transforms [T, N, 4, 4] without those of the prototypes, None where something is wrong)."""
+        attributes = (instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
+        codes = sorted({code for attribute in attributes for code in attribute.GetTimeSamples() if np.isfinite(code)})
+        codes = codes[:5000] if len(codes) > 1 and self._clock is not None else [self._time]
+        found = []
+        for code in codes:
+            values = instancer.ComputeInstanceTransformsAtTime(code, code, self._pxr.UsdGeom.PointInstancer.ExcludeProtoXform,
+                                                               self._pxr.UsdGeom.PointInstancer.IgnoreMask)
+            array = np.array(values if values is not None else [], float)
+            if array.shape != (count, 4, 4) or not np.isfinite(array).all():
+                return codes, None
+            found.append(self._axes.matrices(array.transpose(0, 2, 1)))
+        return codes, np.stack(found)

@@ -1,0 +1,88 @@
+"""Opens a USD stage, with what it warns of collected instead of printed."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+
+LEFT_OUT = ("guide", "proxy")  # purposes that are not part of the scene
+
+
+def pxr_module(name: str):
+    """A module of usd-core. Raises ModuleNotFoundError that says what to install."""
+    try:
+        return import_module(f"pxr.{name}")
+    except ModuleNotFoundError as error:
+        if error.name != "pxr":
+            raise
+        text = "reading USD files needs usd-core, which is not installed: pip install 'echopath[usd]'"
+        raise ModuleNotFoundError(text, name="usd-core") from None
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[tuple[Any, list[str]]]:
+    """(Usd.Stage, list of sentences that it warned of, filled as it is read). Raises FileError naming the file."""
+    usd, tf, utils = (pxr_module(name) for name in ("Usd", "Tf", "UsdUtils"))
+    delegate = utils.CoalescingDiagnosticDelegate()
+    said: list[str] = []
+    try:
+        stage = usd.Stage.Open(str(path))
+        if not stage:
+            raise _core.FileError(f"{path}: is no USD stage")
+        _check_rates(path, stage)
+        yield stage, said
+        said += dict.fromkeys(_first_line(one.commentary) for one in delegate.TakeUncoalescedDiagnostics())
+    except tf.ErrorException as error:
+        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(str(error))})") from None
+    finally:
+        delegate.TakeUncoalescedDiagnostics()
+
+
+def _check_rates(path: Path, stage) -> None:
+    """Raises FileError for a layer whose time stands still, on which USD itself computes without end."""
+    for layer in stage.GetUsedLayers():
+        for name in ("timeCodesPerSecond", "framesPerSecond"):
+            rate = getattr(layer, name)
+            if not (np.isfinite(rate) and rate != 0.0):
+                raise _core.FileError(f"{path}: the layer '{layer.GetDisplayName()}' must have {name} other than 0, got {rate}")
+
+
+def _first_line(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return (lines[-1] if lines else "no reason given")[:200]
+
+
+class Timeline:
+    """Times of a stage: codes of its samples, and seconds from its first frame."""
+
+    def __init__(self, stage):
+        rate = stage.GetTimeCodesPerSecond()
+        self._rate = rate if np.isfinite(rate) and rate > 0.0 else 24.0
+        start = stage.GetStartTimeCode() if stage.HasAuthoredTimeCodeRange() else 0.0
+        self.start = start if np.isfinite(start) else 0.0
+        self.end = stage.GetEndTimeCode() if stage.HasAuthoredTimeCodeRange() else self.start
+
+    def seconds(self, codes) -> np.ndarray:
+        return (np.asarray(codes, float) - self.start) / self._rate
+
+
+def matrix(value) -> np.ndarray:
+    """A Gf.Matrix4d, which takes rows, as [4, 4] that takes columns."""
+    return np.array(value, float).T
+
+
+def is_left_out(prim, time, usd_geom) -> str | None:
+    """Why a prim with all below it takes no part, None where it does."""
+    imageable = usd_geom.Imageable(prim)
+    if not imageable:
+        return None
+    if imageable.GetVisibilityAttr().Get(time) == "invisible":
+        return "an invisible prim is left out"
+    purpose = imageable.GetPurposeAttr().Get()
+    return f"a prim of the purpose '{purpose}' is left out" if purpose in LEFT_OUT else None

@@ -1,0 +1,126 @@
+"""Meshes and simple solids of a USD stage, split by the materials of their faces."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ... import _core
+from .. import forms
+from ..axes import Axes
+
+SOLIDS = ("Cube", "Sphere", "Cylinder", "Cone", "Capsule", "Plane")
+CURVED = ("Sphere", "Cylinder", "Cone", "Capsule")
+NON_VISUAL = "omni:simready:nonvisual:base"  # what Isaac Sim says of a material for its radars and lidars
+
+
+@dataclass
+class Surface:
+    """points [V, 3] in units of the file; parts: (name, name of the material, Mesh in m); smooth as of ModelNode."""
+
+    points: np.ndarray
+    parts: list = field(default_factory=list)
+    smooth: bool = False
+
+
+class BadMesh(ValueError):
+    """A mesh whose arrays do not fit together; the text says how."""
+
+
+def surface_of(prim, time, axes: Axes, pxr) -> Surface:
+    """The Surface of a mesh or solid. Raises BadMesh."""
+    if prim.GetTypeName() in SOLIDS:
+        points, triangles = _solid(prim, time)
+        surface = Surface(points, smooth=prim.GetTypeName() in CURVED)
+        return _with_parts(surface, axes, np.asarray(triangles), np.arange(len(triangles)), [("", prim, None)], pxr)
+    mesh = pxr.UsdGeom.Mesh(prim)
+    points, corners, counts = (_array(attribute.Get(time), shape) for attribute, shape in (
+        (mesh.GetPointsAttr(), (-1, 3)), (mesh.GetFaceVertexIndicesAttr(), (-1,)), (mesh.GetFaceVertexCountsAttr(), (-1,))))
+    corners, counts, face = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), _holes(mesh, time))
+    triangles, polygon = _core.triangles_of_polygons(points, corners, counts)
+    scheme = mesh.GetSubdivisionSchemeAttr()
+    surface = Surface(points, smooth=scheme.HasAuthoredValue() and scheme.Get() != "none")
+    return _with_parts(surface, axes, triangles, face[polygon], _subsets(prim, time, pxr), pxr)
+
+
+def _array(value, shape) -> np.ndarray:
+    try:
+        array = np.array(value if value is not None else [], float).reshape(shape)
+    except (TypeError, ValueError):
+        raise BadMesh("has points or corners of another type than the schema of USD") from None
+    if not np.isfinite(array).all() or (array.size and np.abs(array).max() > 1e60):
+        raise BadMesh("has a point that is not finite")
+    return array
+
+
+def _holes(mesh, time) -> np.ndarray:
+    return np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+
+
+def _polygons(points, corners, counts, holes):
+    """(corners [N], counts [F], face of the file [F]) of the faces with three corners or more, without holes."""
+    if (counts < 0).any() or counts.sum() != len(corners):
+        raise BadMesh(f"has {len(corners)} corners, where its faces ask for {counts.sum()}")
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(points)):
+        raise BadMesh(f"has corners that are no points, of which it has {len(points)}")
+    kept = counts >= 3
+    kept[holes[(holes >= 0) & (holes < len(counts))]] = False
+    if not kept.any():
+        raise BadMesh("has no faces")
+    return corners[np.repeat(kept, counts)], counts[kept], np.flatnonzero(kept)
+
+
+def _subsets(prim, time, pxr) -> list:
+    """(name, prim that material is bound to, faces) of the subsets by material; faces None: all others."""
+    if not prim.IsA(pxr.UsdGeom.Mesh):
+        return [("", prim, None)]
+    subsets = pxr.UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
+    found = [(subset.GetPrim().GetName(), subset.GetPrim(), np.array(subset.GetIndicesAttr().Get(time) or [], np.int64))
+             for subset in subsets]
+    return [*found, ("", prim, None)]
+
+
+def _with_parts(surface: Surface, axes: Axes, triangles, face, subsets, pxr) -> Surface:
+    """The surface with a mesh for each subset that has an area; each mesh is made of all points, as deformations ask."""
+    vertices, left = axes.points(surface.points), np.ones(len(triangles), bool)
+    for name, prim, faces in subsets:
+        chosen = left if faces is None else left & np.isin(face, faces)
+        left = left & ~chosen
+        try:
+            mesh = _core.Mesh(vertices, np.asarray(triangles)[chosen], original_triangle=np.asarray(face)[chosen])
+        except ValueError:
+            continue  # no triangle with an area
+        surface.parts.append((name, material_name(prim, pxr), mesh))
+    if not surface.parts:
+        raise BadMesh("has no face with an area")
+    return surface
+
+
+def material_name(prim, pxr) -> str:
+    """The name of the material bound to a prim, or what it says of itself for other sensors than cameras; "" for none."""
+    material, _ = pxr.UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+    if not material:
+        return ""
+    base = material.GetPrim().GetAttribute(NON_VISUAL)
+    word = base.Get() if base and base.HasAuthoredValue() else None
+    return str(word) if word else material.GetPrim().GetName()
+
+
+def _solid(prim, time):
+    def number(name: str) -> float:
+        value = float(prim.GetAttribute(name).Get(time))
+        if not 0.0 < value < 1e60:
+            raise BadMesh(f"has {name} {value:g}, which must be finite and above 0")
+        return value
+
+    kind = prim.GetTypeName()
+    if kind == "Cube":
+        return forms.box([number("size")] * 3)
+    if kind == "Sphere":
+        return forms.sphere(number("radius"))
+    if kind == "Plane":
+        points, triangles = forms.rectangle(number("width"), number("length"))
+    else:
+        points, triangles = getattr(forms, kind.lower())(number("radius"), number("height"))
+    turn = {"X": [2, 0, 1], "Y": [1, 2, 0], "Z": [0, 1, 2]}[str(prim.GetAttribute("axis").Get(time))]
+    return points[:, turn], triangles

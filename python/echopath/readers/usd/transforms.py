@@ -1,0 +1,38 @@
+"""Transforms of prims over time, sampled so densely that straight lines between the samples follow them."""
+from __future__ import annotations
+
+import numpy as np
+
+from .stage import matrix
+
+STEP_DEG = 5.0       # that a prim may turn between two samples
+MOST_SAMPLES = 5000  # of one prim
+
+
+def sampled_transforms(xformable, time) -> tuple[list[float], np.ndarray]:
+    """(time codes [T], transforms [T, 4, 4] relative to the parent) of a prim; one at `time` for a prim at rest."""
+    codes = [code for code in xformable.GetTimeSamples() if np.isfinite(code)]
+    if len(codes) < 2:
+        at = codes[0] if codes else time
+        return [0.0], matrix(xformable.GetLocalTransformation(at))[None]
+    codes = _refined(xformable, codes[:MOST_SAMPLES])
+    return codes, np.stack([matrix(xformable.GetLocalTransformation(code)) for code in codes])
+
+
+def _refined(xformable, codes: list[float]) -> list[float]:
+    """Codes with others in between, where angles of rotations change by more than STEP_DEG."""
+    turning = [op for op in xformable.GetOrderedXformOps() if "rotate" in op.GetOpName() and op.MightBeTimeVarying()]
+    if not turning:
+        return codes
+    angles = np.array([np.concatenate([_angles(op, code) for op in turning]) for code in codes])
+    change = np.abs(np.diff(angles, axis=0)).sum(axis=1)
+    refined = [codes[0]]
+    for before, after, turned in zip(codes, codes[1:], change):
+        steps = int(np.clip(np.ceil(turned / STEP_DEG), 1, max(1, MOST_SAMPLES // len(codes))))
+        refined += [before + (after - before) * step / steps for step in range(1, steps + 1)]
+    return refined
+
+
+def _angles(op, code) -> np.ndarray:
+    value = op.Get(code)
+    return np.nan_to_num(np.atleast_1d(np.array(value if value is not None else 0.0, float)))

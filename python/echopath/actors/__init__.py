@@ -2,6 +2,7 @@
 from .actor import Actor, Part
 from .animals.dog import dog
 from .drone import drone
+from .human.captured import captured_pedestrian
 from .human.pedestrian import pedestrian
 from .human.persons import child, runner, standing_person
 from .shapes import box, capsule, dihedral, ellipsoid, ground, plate, sphere, trihedral, wall
@@ -15,6 +16,6 @@ from .vehicles.parked import parked_row
 from .vehicles.trucks import truck
 from .vehicles.vans import van
 
-__all__ = ["Actor", "Part", "bicycle", "box", "capsule", "car", "child", "cyclist", "dihedral", "dog", "drone", "ellipsoid",
-           "ground", "guard_rail", "motorcycle", "parked_row", "pedestrian", "plate", "pole", "runner", "sphere",
-           "standing_person", "traffic_sign", "tree", "trihedral", "truck", "van", "wall"]
+__all__ = ["Actor", "Part", "bicycle", "box", "capsule", "captured_pedestrian", "car", "child", "cyclist", "dihedral", "dog",
+           "drone", "ellipsoid", "ground", "guard_rail", "motorcycle", "parked_row", "pedestrian", "plate", "pole",
+           "runner", "sphere", "standing_person", "traffic_sign", "tree", "trihedral", "truck", "van", "wall"]

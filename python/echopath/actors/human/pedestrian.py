@@ -18,14 +18,14 @@ MIN_KEYFRAME_RATE = 60.0      # 1/s: fewer do not follow the landing of a foot
 SKIN_PARTS = ("head", "neck", "hand")
 
 
-def _material(argument: str, value):
+def material_rule(argument: str, value):
     """A Material or the name of one, which `Scene.add` looks up."""
     return an(_core.Material, str, called="a Material or the name of one")(argument, value)
 
 
 @checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
-         clothing=_material, skin=_material)
+         clothing=material_rule, skin=material_rule)
 def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
                phase: float = 0.0, edge: float = 0.018, keyframe_rate: float = 120.0,
                clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin") -> Actor:

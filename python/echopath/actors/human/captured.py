@@ -1,0 +1,210 @@
+"""The walking person, moved by a motion capture."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from ... import _core
+from ...checks import checked, choice, optional, positive, real
+from ...meshes import UNIT
+from ..actor import Actor, PartArrays
+from ..surfaces import edge_length
+from .anthropometry import ANKLE_HEIGHT, HIP_HEIGHT, Proportions
+from .body import surface
+from .captured_joints import find_joints, missing_joints
+from .gait import Frames
+from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
+from .rotations import about_z, quaternions
+
+UNITS = (1.0, 0.01, 0.0254, 0.3048, 0.001, 0.0254 / 0.45)  # m: metre, cm, inch, foot, mm, that of the CMU conversions
+TYPICAL_HEIGHT = 1.75   # m
+JUMP = 0.15             # m between the first two frames, and JUMPS times as far as any later step: a pose of its own
+JUMPS = 4.0
+ON_FLOOR = 0.10         # share of the frames in which the lower foot may be below the floor
+TRAVEL = 0.5            # m from which on the way of the body is its direction
+
+
+@checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(UNIT), up=choice("x", "y", "z"), offset=real(unit="s"),
+         edge=positive("m"), clothing=material_rule, skin=material_rule)
+def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = None, unit: float | None = None, up: str = "y",
+                        offset: float = 0.0, edge: float = 0.018, clothing: str | _core.Material = "clothing",
+                        skin: str | _core.Material = "skin") -> Actor:
+    """A person who moves as a motion capture says, with the parts, names and materials of `pedestrian`.
+
+    Each part sits at its captured joint and points along its captured segment, whose length it takes, so joints move exactly
+    as captured (smoothly between the frames, by C2 cubics). Joints are known by their usual names (CMU, Mixamo, Poser and
+    others). The lower sole is on the floor z = 0 in all but a tenth of the frames, where it is below.
+
+    Frame: x forward (the way from first to last frame, or where a person looks who stays), y left, z up; at time 0 the
+    pelvis is above the origin.
+
+    path: of a BVH file
+    height: of the body in m, which scales the capture; None: as captured
+    unit: m per unit of the file; None: that of cm, m, inches, feet, mm and the conversions of the CMU library which makes
+        the body nearest to 1.75 m
+    up: vertical axis of the file
+    offset: s, time of the capture at time 0. It lasts as long as the capture; a scene can be posed at no other time
+    edge, clothing, skin: as of `pedestrian`
+    Returns an Actor. Raises ep.FileError naming the file and what is wrong with it, ValueError or TypeError naming the
+    argument.
+    """
+    body = captured_body(Path(path), unit=unit, up=up, height=height)
+    return Actor([part.build() for part in body.parts(offset, edge, clothing, skin)])
+
+
+def captured_body(path: Path, *, unit: float | None, up: str, height: float | None) -> CapturedBody:
+    """The body of a BVH file."""
+    from ...readers.motion_capture import read_capture
+    from ...readers.options import AXES
+
+    capture = read_capture(path)
+    found = find_joints([joint.name for joint in capture.joints])
+    if missing_joints(found):
+        names = ", ".join(joint.name for joint in capture.joints)
+        raise _core.FileError(f"{path}: has no joint for {', '.join(missing_joints(found))}; its joints are {names[:400]}")
+    order = list(AXES[up])
+    positions = capture.positions[:, list(found.values())][..., order]
+    rotations = capture.rotations[:, list(found.values())][..., order, :][..., order]
+    return CapturedBody(path, capture.times, dict(zip(found, positions.swapaxes(0, 1))),
+                        dict(zip(found, rotations.swapaxes(0, 1))), unit, height)
+
+
+class CapturedBody:
+    """Joints over time in the axes of a scene. unit: m per unit of the file; notes: what was guessed or left out."""
+
+    def __init__(self, path: Path, times, joints: dict, rotations: dict, unit: float | None, height: float | None):
+        self._path, self.notes = path, []
+        self.times, self._joints, self._rotations = _without_first_pose(times, joints, rotations, self.notes)
+        tall = self._length("hip", "knee", "ankle") / (HIP_HEIGHT - ANKLE_HEIGHT)
+        if not 1e-9 < tall < 1e9:
+            raise _core.FileError(f"{path}: its legs have no length")
+        self.unit = unit or min(UNITS, key=lambda one: abs(np.log(one * tall / TYPICAL_HEIGHT)))
+        if unit is None:
+            self.notes.append(f"its unit is taken to be {self.unit:g} m, which makes the person {self.unit * tall:.2f} m tall")
+        scale = self.unit if height is None else height / tall
+        self._joints = {name: scale * place for name, place in self._joints.items()}
+        if not HEIGHTS[0] <= scale * tall <= HEIGHTS[1]:
+            raise _core.FileError(f"{path}: a person of {scale * tall:.3g} m must be from {HEIGHTS[0]} to {HEIGHTS[1]} m tall: "
+                                  f"with unit={TYPICAL_HEIGHT / tall:.3g} it is {TYPICAL_HEIGHT} m")
+        self.body = Proportions(scale * tall)
+
+    def parts(self, offset: float, edge: float, clothing, skin) -> list[PartArrays]:
+        """PartArrays of the actor; arguments as of captured_pedestrian."""
+        edge = edge_length(edge, 3.0 * self.body.height)
+        frames, stretch = self._frames()
+        surfaces = {name: surface(name, self.body, edge) for name in frames}
+        self._place(frames, surfaces, offset)
+        return [PartArrays(name, surfaces[name][0] * [1.0, 1.0, stretch.get(name, 1.0)], surfaces[name][1],
+                           skin if name.rsplit("/")[-1] in SKIN_PARTS else clothing, self.times - offset, frame.origin,
+                           quaternions(frame.rotation), smooth=True) for name, frame in frames.items()]
+
+    def _length(self, *names: str) -> float:
+        """Mean length of a chain of joints, over both sides and time."""
+        return float(np.mean([sum(np.linalg.norm(self._joints[f"{side}_{a}"] - self._joints[f"{side}_{b}"], axis=-1)
+                                  for a, b in zip(names, names[1:])).mean() for side in ("left", "right")]))
+
+    def _frames(self) -> tuple[dict[str, Frames], dict[str, float]]:
+        """Frames of every part, by name, and by how much parts are longer than those of a body of that height."""
+        joints, body = self._joints, self.body
+        hips, shoulders = (0.5 * (joints[f"left_{name}"] + joints[f"right_{name}"]) for name in ("hip", "shoulder"))
+        up = shoulders - hips
+        pelvis = Frames(hips, _axes(up, joints["left_hip"] - joints["right_hip"]))
+        across = joints["left_shoulder"] - joints["right_shoulder"]
+        torso = Frames(hips + pelvis.rotation @ [0.0, 0.0, body.spine_base], _axes(up, across))
+        taller = float((np.linalg.norm(up, axis=-1).mean() - body.spine_base) / body.shoulder_above_spine_base)
+        base = torso.origin + torso.rotation @ [0.0, 0.0, taller * body.neck_above_spine_base]
+        neck = Frames(base, _axes(joints["head"] - base, across))
+        frames = {"pelvis": pelvis, "torso": torso, "neck": neck, "head": self._head(torso)}
+        stretch = {"torso": taller, "neck": float(np.linalg.norm(joints["head"] - base, axis=-1).mean() / body.neck)}
+        for side in ("left", "right"):
+            for limb, names, lengths in (("leg", ("thigh", "shank"), (body.thigh, body.shank)),
+                                         ("arm", ("upper", "forearm"), (body.upper_arm, body.forearm))):
+                chain = ("hip", "knee", "ankle") if limb == "leg" else ("shoulder", "elbow", "wrist")
+                left = pelvis.rotation[..., 1] if limb == "leg" else torso.rotation[..., 1]
+                for name, begin, end, length in zip(names, chain, chain[1:], lengths):
+                    key = f"{limb}_{side}/{name}"
+                    frames[key] = self._limb(f"{side}_{begin}", f"{side}_{end}", left)
+                    segment = joints[f"{side}_{begin}"] - joints[f"{side}_{end}"]
+                    stretch[key] = float(np.linalg.norm(segment, axis=-1).mean()) / length
+            frames[f"leg_{side}/foot"] = self._foot(side, frames[f"leg_{side}/shank"])
+            frames[f"arm_{side}/hand"] = self._hand(side, frames[f"arm_{side}/forearm"])
+        return frames, stretch
+
+    def _limb(self, begin: str, end: str, left) -> Frames:
+        """Axes that turn with the joint: z up the segment, y to the left where the segment is most across it."""
+        up = self._joints[begin] - self._joints[end]
+        slant = np.abs(np.einsum("ti,ti->t", up, left)) / np.linalg.norm(up, axis=-1)
+        return self._turning(begin, int(slant.argmin()), _axes(up, left))
+
+    def _turning(self, joint: str, reference: int, axes) -> Frames:
+        """Axes [T, 3, 3] fixed to a joint, which are those given in the frame `reference`."""
+        turn = self._rotations[joint]
+        return Frames(self._joints[joint], turn @ (turn[reference].T @ axes[reference]))
+
+    def _head(self, torso: Frames) -> Frames:
+        upright = int(torso.rotation[:, 2, 2].argmax())
+        return self._turning("head", upright, _axes(np.broadcast_to([0.0, 0.0, 1.0], torso.origin.shape), torso.rotation[..., 1]))
+
+    def _hand(self, side: str, forearm: Frames) -> Frames:
+        aligned = int(np.einsum("tij,tij->t", forearm.rotation, forearm.rotation).argmax())
+        return self._turning(f"{side}_wrist", aligned, forearm.rotation)
+
+    def _foot(self, side: str, shank: Frames) -> Frames:
+        """Flat, and ahead to the toes, where it is lowest and slowest."""
+        ankle = self._joints[f"{side}_ankle"]
+        ahead = self._joints[f"{side}_toe"] - ankle if f"{side}_toe" in self._joints else shank.rotation[..., 0]
+        speed = np.linalg.norm(np.gradient(ankle, self.times, axis=0), axis=-1)
+        height = ankle[:, 2] - ankle[:, 2].min()
+        flat = int((speed / max(float(speed.max()), 1e-9) + height / max(float(height.max()), 1e-9)).argmin())
+        up = np.broadcast_to([0.0, 0.0, 1.0], ankle.shape)
+        return self._turning(f"{side}_ankle", flat, _axes(up, np.cross(up, ahead)))
+
+    def _place(self, frames: dict[str, Frames], surfaces: dict, offset: float) -> None:
+        """Turns and moves all frames: ahead along x, at time 0 above the origin, soles on the floor."""
+        begin = self.times[0] - 1e-9
+        if not begin <= offset <= self.times[-1] + 1e-9:
+            raise ValueError(f"offset: must be a time of the capture, 0 to {self.times[-1]:g} s, got {offset:g}")
+        pelvis = frames["pelvis"]
+        way = (pelvis.origin[-1] - pelvis.origin[0])[:2]
+        ahead = way if np.linalg.norm(way) > TRAVEL else pelvis.rotation[0, :2, 0]
+        turn = about_z(-np.arctan2(ahead[1], ahead[0]))
+        start = turn @ np.array([np.interp(offset, self.times, pelvis.origin[:, axis]) for axis in range(3)])
+        start[2] = self._floor(frames, surfaces)
+        for name, frame in frames.items():
+            frames[name] = Frames(frame.origin @ turn.T - start, turn @ frame.rotation)
+
+    def _floor(self, frames: dict[str, Frames], surfaces: dict) -> float:
+        """Height of the floor: that which the lower sole is below in ON_FLOOR of the frames."""
+        lowest = [(frames[name].rotation[:, 2] @ surfaces[name][0].T).min(axis=1) + frames[name].origin[:, 2]
+                  for name in ("leg_left/foot", "leg_right/foot")]
+        return float(np.quantile(np.minimum(*lowest), ON_FLOOR))
+
+
+def _axes(up, left) -> np.ndarray:
+    """[T, 3, 3]: z along `up` [T, 3], y as near to `left` [T, 3] as may be."""
+    z = _unit(up)
+    y = left - np.einsum("ti,ti->t", left, z)[:, None] * z
+    other = np.cross(z, np.roll(z, 1, axis=-1) + [0.0, 0.0, 1e-3])  # any direction across it, where `left` is along it
+    y = _unit(np.where(np.linalg.norm(y, axis=-1)[:, None] > 1e-9, y, other))
+    return np.stack([np.cross(y, z), y, z], axis=-1)
+
+
+def _unit(vectors) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=-1)[:, None]
+    return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), np.array([0.0, 0.0, 1.0]))
+
+
+def _without_first_pose(times, joints: dict, rotations: dict, notes: list):
+    """Leaves out a first frame that is a pose of its own, as libraries put it before the motion."""
+    if len(times) < 4:
+        return times, joints, rotations
+    relative = np.stack([place - joints["left_hip"] for place in joints.values()])
+    steps = np.linalg.norm(np.diff(relative, axis=1), axis=-1).max(axis=0)
+    tall = np.linalg.norm(joints["left_hip"][0] - joints["left_ankle"][0])
+    if steps[0] < JUMP * tall or steps[0] < JUMPS * steps[1:].max():
+        return times, joints, rotations
+    notes.append("the first frame, a pose of its own, is left out")
+    return (times[1:] - times[1], {name: place[1:] for name, place in joints.items()},
+            {name: turn[1:] for name, turn in rotations.items()})

@@ -76,11 +76,18 @@ def Xform "World"
             rel material:binding = </World/Looks/Glass>
         }
     }
-    def Sphere "ball" { double radius = 0.5
+    def Sphere "ball"
+    {
+        double radius = 0.5
         token visibility = "inherited"
     }
-    def Cube "box" { double size = 2 }
-    def Cylinder "post" { double height = 2
+    def Cube "box"
+    {
+        double size = 2
+    }
+    def Cylinder "post"
+    {
+        double height = 2
         uniform token axis = "X"
     }
     def PointInstancer "trees"
@@ -89,10 +96,22 @@ def Xform "World"
         quath[] orientations = [(1, 0, 0, 0), (1, 0, 0, 0)]
         int[] protoIndices = [0, 0]
         rel prototypes = </World/trees/tree>
-        def Xform "tree" { def Sphere "crown" { double radius = 1 } }
+        def Xform "tree"
+        {
+            def Sphere "crown"
+            {
+                double radius = 1
+            }
+        }
     }
-    def Scope "Looks" { def Material "Concrete" { }
-        def Material "Glass" { }
+    def Scope "Looks"
+    {
+        def Material "Concrete"
+        {
+        }
+        def Material "Glass"
+        {
+        }
     }
 }
 ''', '''#usda 1.0
@@ -120,8 +139,14 @@ def SkelRoot "person"
         int[] faceVertexCounts = [3, 3]
         int[] faceVertexIndices = [0, 1, 2, 1, 3, 2]
         point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 0, 1), (1, 0, 1)]
-        int[] primvars:skel:jointIndices = [0, 1, 0, 1, 0, 1, 0, 1] ( elementSize = 2 interpolation = "vertex" )
-        float[] primvars:skel:jointWeights = [1, 0, 0.5, 0.5, 0, 1, 0, 1] ( elementSize = 2 interpolation = "vertex" )
+        int[] primvars:skel:jointIndices = [0, 1, 0, 1, 0, 1, 0, 1] (
+            elementSize = 2
+            interpolation = "vertex"
+        )
+        float[] primvars:skel:jointWeights = [1, 0, 0.5, 0.5, 0, 1, 0, 1] (
+            elementSize = 2
+            interpolation = "vertex"
+        )
         matrix4d primvars:skel:geomBindTransform = ((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))
         rel skel:skeleton = </person/bones>
     }

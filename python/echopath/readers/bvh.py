@@ -15,8 +15,8 @@ EDGE = 0.018       # m, of the triangles
 
 
 def read(path: Path, options: ReadOptions) -> Model:
-    """A Model of the person of `actors.captured_pedestrian`; y is up in the file, and the capture is not repeated."""
-    body = captured_body(path, unit=options.unit, up=options.up or "y", height=None)
+    """A Model of the person of `actors.captured_pedestrian`; the capture is not repeated."""
+    body = captured_body(path, unit=options.unit, up=options.up, height=None)
     animation = chosen_animation(options, (NAME,))
     tree = Tree(options)
     for note in body.notes:
@@ -30,7 +30,7 @@ def read(path: Path, options: ReadOptions) -> Model:
             groups[group] = tree.add(group)
         tree.add(name, groups.get(group, -1), mesh=_core.Mesh(arrays.vertices, arrays.triangles), smooth=True,
                  foreign_material=arrays.material, **_moved(arrays, animation))
-    return tree.model(format="BVH", unit=body.unit, up=options.up or "y", animations=(NAME,), animation=animation,
+    return tree.model(format="BVH", unit=body.unit, up=body.up, animations=(NAME,), animation=animation,
                       duration=float(body.times[-1] - body.times[0]) if animation else 0.0)
 
 

@@ -70,17 +70,23 @@ def _of_folder(path: Path, axes: Axes, tree: Tree):
     files = sorted((file for file in path.iterdir() if file.suffix.lower() == ".obj" and file.is_file()), key=_by_number)
     if not files:
         raise _core.FileError(f"{path}: is a folder without .obj files")
-    first = _core.load_surfaces(files[0], axes.unit)[0]
+    first = _surfaces(files[0], axes)
     frames = [[axes.turned(mesh.vertices)] for _, _, mesh in first]
     for file in files[1:]:
-        surfaces = _core.load_surfaces(file, axes.unit)[0]
+        surfaces = _surfaces(file, axes)
         if [one[:2] for one in surfaces] != [one[:2] for one in first] or not all(
                 np.array_equal(one[2].triangles, other[2].triangles) for one, other in zip(surfaces, first)):
             raise _core.FileError(f"{file}: must have the groups, materials and triangles of the first frame, {files[0].name}")
         for frame, (_, _, mesh) in zip(frames, surfaces):
             frame.append(axes.turned(mesh.vertices))
     times = np.arange(len(files)) / _frame_rate(path, len(files), tree)
-    return times, [(name, material, mesh.triangles, np.stack(frame)) for (name, material, mesh), frame in zip(first, frames)]
+    return times, [(name or path.name, material, mesh.triangles, np.stack(frame))
+                   for (name, material, mesh), frame in zip(first, frames)]
+
+
+def _surfaces(file: Path, axes: Axes) -> list:
+    """(name of the group, "" for one that is called after the file, material, Mesh) of one frame."""
+    return [("" if name == file.stem else name, *more) for name, *more in _core.load_surfaces(file, axes.unit)[0]]
 
 
 def _by_number(file: Path) -> list:

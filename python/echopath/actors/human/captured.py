@@ -26,11 +26,11 @@ ON_FLOOR = 0.10         # share of the frames in which the lower foot may be bel
 TRAVEL = 0.5            # m from which on the way of the body is its direction
 
 
-@checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(UNIT), up=choice("x", "y", "z"), offset=real(unit="s"),
-         edge=positive("m"), clothing=material_rule, skin=material_rule)
-def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = None, unit: float | None = None, up: str = "y",
-                        offset: float = 0.0, edge: float = 0.018, clothing: str | _core.Material = "clothing",
-                        skin: str | _core.Material = "skin") -> Actor:
+@checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(UNIT), up=optional(choice("x", "y", "z")),
+         offset=real(unit="s"), edge=positive("m"), clothing=material_rule, skin=material_rule)
+def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = None, unit: float | None = None,
+                        up: str | None = None, offset: float = 0.0, edge: float = 0.018,
+                        clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin") -> Actor:
     """A person who moves as a motion capture says, with the parts, names and materials of `pedestrian`.
 
     Each part sits at its captured joint and points along its captured segment, whose length it takes, so joints move exactly
@@ -44,7 +44,7 @@ def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = 
     height: of the body in m, which scales the capture; None: as captured
     unit: m per unit of the file; None: that of cm, m, inches, feet, mm and the conversions of the CMU library which makes
         the body nearest to 1.75 m
-    up: vertical axis of the file
+    up: vertical axis of the file, "x", "y" or "z"; None: y, unless the body is along another one most of the time
     offset: s, time of the capture at time 0. It lasts as long as the capture; a scene can be posed at no other time
     edge, clothing, skin: as of `pedestrian`
     Returns an Actor. Raises ep.FileError naming the file and what is wrong with it, ValueError or TypeError naming the
@@ -54,7 +54,7 @@ def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = 
     return Actor([part.build() for part in body.parts(offset, edge, clothing, skin)])
 
 
-def captured_body(path: Path, *, unit: float | None, up: str, height: float | None) -> CapturedBody:
+def captured_body(path: Path, *, unit: float | None, up: str | None, height: float | None) -> CapturedBody:
     """The body of a BVH file."""
     from ...readers.motion_capture import read_capture
     from ...readers.options import AXES
@@ -64,18 +64,21 @@ def captured_body(path: Path, *, unit: float | None, up: str, height: float | No
     if missing_joints(found):
         names = ", ".join(joint.name for joint in capture.joints)
         raise _core.FileError(f"{path}: has no joint for {', '.join(missing_joints(found))}; its joints are {names[:400]}")
-    order = list(AXES[up])
+    vertical = up or _vertical_axis(capture.positions, found)
+    order = list(AXES[vertical])
     positions = capture.positions[:, list(found.values())][..., order]
     rotations = capture.rotations[:, list(found.values())][..., order, :][..., order]
-    return CapturedBody(path, capture.times, dict(zip(found, positions.swapaxes(0, 1))),
+    notes = [] if up or vertical == "y" else [f"its vertical axis is taken to be {vertical}, along which the body is"]
+    return CapturedBody(path, vertical, notes, capture.times, dict(zip(found, positions.swapaxes(0, 1))),
                         dict(zip(found, rotations.swapaxes(0, 1))), unit, height)
 
 
 class CapturedBody:
     """Joints over time in the axes of a scene. unit: m per unit of the file; notes: what was guessed or left out."""
 
-    def __init__(self, path: Path, times, joints: dict, rotations: dict, unit: float | None, height: float | None):
-        self._path, self.notes = path, []
+    def __init__(self, path: Path, up: str, notes: list, times, joints: dict, rotations: dict, unit: float | None,
+                 height: float | None):
+        self._path, self.up, self.notes = path, up, notes
         self.times, self._joints, self._rotations = _without_first_pose(times, joints, rotations, self.notes)
         tall = self._length("hip", "knee", "ankle") / (HIP_HEIGHT - ANKLE_HEIGHT)
         if not 1e-9 < tall < 1e9:
@@ -194,6 +197,14 @@ def _axes(up, left) -> np.ndarray:
 def _unit(vectors) -> np.ndarray:
     length = np.linalg.norm(vectors, axis=-1)[:, None]
     return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), np.array([0.0, 0.0, 1.0]))
+
+
+def _vertical_axis(positions, found: dict[str, int]) -> str:
+    """The axis from the feet to the head, on the mean over time, where it is clearly another one than y."""
+    feet = 0.5 * (positions[:, found["left_ankle"]] + positions[:, found["right_ankle"]])
+    tall = np.abs((positions[:, found["head"]] - feet).mean(axis=0))
+    axis = int(tall.argmax())
+    return "xyz"[axis] if tall[1] < 0.5 * tall[axis] else "y"
 
 
 def _without_first_pose(times, joints: dict, rotations: dict, notes: list):

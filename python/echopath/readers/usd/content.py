@@ -167,6 +167,7 @@ class Content:
             self._tree.note(f"the point instancer {prim.GetPath()} is left out: its arrays do not fit together")
             return
         mask = instancer.ComputeMaskAtTime(self._time) or [True] * len(which)
+        instances = []
         for number, index in enumerate(which):
             kept = mask[number] and 0 <= index < len(prototypes) and prototypes[index]
             if not kept or (np.linalg.det(transforms[:, number, :3, :3]) == 0.0).any():
@@ -174,7 +175,8 @@ class Content:
                 continue
             placement, motion = self._moved(codes, transforms[:, number])
             node = self._tree.add(f"{prototypes[index].GetName()}_{number}", parent, placement=placement, motion=motion)
-            self._waiting.append((prototypes[index], node, depth + 1))
+            instances.append((prototypes[index], node, depth + 1))
+        self._waiting += reversed(instances)
 
     def _instance_transforms(self, instancer, count: int):
         """(time codes [T], transforms [T, N, 4, 4] without those of the prototypes, None where something is wrong)."""

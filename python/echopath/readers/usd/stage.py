@@ -19,7 +19,7 @@ def pxr_module(name: str):
     try:
         return import_module(f"pxr.{name}")
     except ModuleNotFoundError as error:
-        if error.name != "pxr":
+        if (error.name or "").partition(".")[0] != "pxr":
             raise
         text = "reading USD files needs usd-core, which is not installed: pip install 'echopath[usd]'"
         raise ModuleNotFoundError(text, name="usd-core") from None
@@ -39,7 +39,8 @@ def opened(path: Path) -> Iterator[tuple[Any, list[str]]]:
         yield stage, said
         said += dict.fromkeys(_first_line(one.commentary) for one in delegate.TakeUncoalescedDiagnostics())
     except tf.ErrorException as error:
-        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(str(error))})") from None
+        first = getattr(error.args[0], "commentary", "") if error.args else ""
+        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(first or str(error))})") from None
     finally:
         delegate.TakeUncoalescedDiagnostics()
 
@@ -55,7 +56,7 @@ def _check_rates(path: Path, stage) -> None:
 
 def _first_line(text: str) -> str:
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return (lines[-1] if lines else "no reason given")[:200]
+    return (lines[0] if lines else "no reason given")[:300]
 
 
 class Timeline:

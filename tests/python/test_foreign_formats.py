@@ -1,0 +1,263 @@
+"""Foreign files as models: the same mesh through every format gives the same hits; motions and materials of USD and frames."""
+from __future__ import annotations
+
+import struct
+import sys
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from fuzz.foreign import USD, archive
+
+SPHERE = ep.actors.sphere(0.5, subdivisions=4)
+VERTICES = SPHERE.vertices.astype(np.float32).astype(float)  # what every format can hold
+ROUNDING = 1e-12
+SINGLE = 1e-6  # m, of coordinates of a few metres that USD keeps in float
+
+
+def obj(vertices, faces) -> bytes:
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    return "\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]).encode()
+
+
+def ply(vertices, faces) -> bytes:
+    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\n"
+            f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+    return head.encode() + vertices.astype("<f4").tobytes() + b"".join(struct.pack("<B3i", 3, *face) for face in faces.tolist())
+
+
+def stl(vertices, faces) -> bytes:
+    facets = (struct.pack("<12fH", 0, 0, 0, *vertices[face].ravel(), 0) for face in faces)
+    return b" " * 80 + struct.pack("<I", len(faces)) + b"".join(facets)
+
+
+def stl_text(vertices, faces) -> bytes:
+    corner = "vertex {!r} {!r} {!r}\n"
+    facets = ("facet normal 0 0 0\nouter loop\n" + "".join(corner.format(*point) for point in vertices[face].tolist()) +
+              "endloop\nendfacet\n" for face in faces)
+    return f"solid\n{''.join(facets)}endsolid\n".encode()
+
+
+def off(vertices, faces) -> bytes:
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"] + [f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    return "\n".join(lines + [f"3 {a} {b} {c}" for a, b, c in faces.tolist()]).encode()
+
+
+def usda(vertices, faces) -> bytes:
+    points = ", ".join(f"({x!r}, {y!r}, {z!r})" for x, y, z in vertices.tolist())
+    return f"""#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+def Mesh "ball"
+{{
+    int[] faceVertexCounts = [{', '.join(['3'] * len(faces))}]
+    int[] faceVertexIndices = [{', '.join(map(str, faces.ravel().tolist()))}]
+    point3f[] points = [{points}]
+}}
+""".encode()
+
+
+def npz(vertices, faces) -> bytes:
+    return archive(vertices=vertices[None], triangles=faces)
+
+
+WRITERS = {".obj": obj, ".ply": ply, ".stl": stl, "_text.stl": stl_text, ".off": off, ".usda": usda, ".npz": npz}
+
+
+def hits_of(model, radar) -> tuple:
+    scene = ep.Scene()
+    scene.add(model, name="ball", position=(4, 0.3, 0.2))
+    paths = ep.trace(scene, radar, num_rays=400)
+    return paths.hits.tobytes(), paths.offsets.tobytes(), scene.num_triangles
+
+
+@pytest.fixture(scope="module")
+def radar():
+    waveform = ep.ChirpSequence(start_frequency=10e9, bandwidth=1e9, num_samples=64, sampling_rate=5e6, num_chirps=4,
+                                chirp_interval=1e-4)
+    return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+
+
+def test_one_mesh_gives_the_same_hits_through_every_format(tmp_path, radar):
+    """A sharp-edged ball, whose coordinates floats hold, against the Mesh of its own arrays."""
+    faces = SPHERE.triangles.astype(np.int64)
+    (tmp_path / "mesh.ply").write_bytes(ply(VERTICES, faces))
+    (tmp_path / "scene.xml").write_text('<scene version="3.0.0"><shape type="ply"><string name="filename" value="mesh.ply"/>'
+                                        "</shape></scene>")
+    wanted = ep.Model((ep.ModelNode("ball", mesh=ep.Mesh(VERTICES, faces), material="metal"),))
+    models = {"scene.xml": ep.load_model(tmp_path / "scene.xml", materials={"*": "metal"})}
+    for suffix, write in WRITERS.items():
+        (tmp_path / f"ball{suffix}").write_bytes(write(VERTICES, faces))
+        models[suffix] = ep.load_model(tmp_path / f"ball{suffix}", materials={"*": "metal"})
+    models = {name: ep.Model(tuple(ep.ModelNode(node.name, mesh=node.mesh, material=node.material) for node in model.nodes))
+              for name, model in models.items()}  # all without smoothing, which some formats ask for
+    first = hits_of(wanted, radar)
+    assert len(first[0]) > 0
+    for name, model in models.items():
+        assert hits_of(model, radar) == first, name
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".off", ".npz", ".usda"])
+def test_units_and_vertical_axes_turn_every_format_alike(tmp_path, suffix):
+    vertices, faces = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0.0]]), np.array([[0, 1, 2]])
+    (tmp_path / f"a{suffix}").write_bytes(WRITERS[suffix](vertices, faces))
+    model = ep.load_model(tmp_path / f"a{suffix}", unit=0.01, up="y")
+    # y of the file is up, its x to the left, its z ahead
+    assert np.allclose(sorted(model.nodes[0].mesh.vertices.tolist()), sorted([[0, 0, 0], [0, 0.01, 0], [0, 0, 0.02]]), atol=1e-15)
+    assert (model.unit, model.up) == (0.01, "y")
+
+
+def test_groups_of_an_obj_are_taken_apart_by_material(tmp_path):
+    (tmp_path / "house.mtl").write_text("newmtl brick wall\nKd 1 0 0\n")
+    (tmp_path / "house.obj").write_text("mtllib house.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng wall\n"
+                                        "usemtl brick wall\nf 1 2 3\nusemtl window\nf 1 3 4\ng door\nusemtl oak\nf 1 2 4\n")
+    model = ep.load_model(tmp_path / "house.obj")
+    scene = ep.Scene()
+    scene.add(model, name="house")
+    assert [(mesh.name, mesh.material_name) for mesh in scene.meshes] == [
+        ("house/wall/brick wall", "brick"), ("house/wall/window", "glass"), ("house/door", "wood")]
+    assert any("gone.mtl" in note for note in model.notes)
+    assert [name for name, _ in ep.load_meshes(tmp_path / "house.obj")] == ["wall", "door"]
+
+
+def usd_scene(tmp_path, text: str, **options) -> tuple:
+    (tmp_path / "stage.usda").write_text(text)
+    model = ep.load_model(tmp_path / "stage.usda", **options)
+    scene = ep.Scene()
+    scene.add(model, name="stage")
+    return model, scene
+
+
+def test_a_usd_stage_gives_its_solids_subsets_instances_and_materials(tmp_path):
+    model, scene = usd_scene(tmp_path, USD[0])
+    materials = {mesh.name.removeprefix("stage/World/"): mesh.material_name for mesh in scene.meshes}
+    assert materials["wall/pane"] == "glass" and materials["wall/rest"] == "concrete"
+    assert [name for name in materials if name.startswith("trees")] == ["trees/tree_0/tree/crown", "trees/tree_1/tree/crown"]
+    crowns = [mesh.mesh for mesh in scene.meshes if mesh.name.endswith("crown")]
+    assert crowns[0] is crowns[1] or crowns[0] == crowns[1]
+    assert (model.unit, model.up, model.animation, model.duration) == (0.01, "y", "timeline", 1.0)
+    box = next(mesh for mesh in scene.meshes if mesh.name.endswith("box"))
+    vertices = scene.world_vertices(box.id, 0.0)
+    # at (0, 1, 2) cm with y up: 2 cm ahead and 1 cm high, sides of 2 cm
+    assert np.allclose(vertices.min(axis=0), [0.01, -0.01, 0.0]) and np.allclose(vertices.max(axis=0), [0.03, 0.01, 0.02])
+
+
+def test_a_usd_rotation_goes_round_between_its_samples_and_is_held_beyond(tmp_path):
+    turning = """#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+    timeCodesPerSecond = 10
+    startTimeCode = 0
+    endTimeCode = 10
+)
+def Xform "rotor"
+{
+    float xformOp:rotateZ.timeSamples = { 0: 0, 10: 720, }
+    uniform token[] xformOpOrder = ["xformOp:rotateZ"]
+    def Mesh "blade"
+    {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(1, 0, 0), (2, 0, 0), (1, 0, 1)]
+    }
+}
+"""
+    _, scene = usd_scene(tmp_path, turning)
+    for time in (0.0, 0.11, 0.5, 0.77):
+        angle = 2 * np.pi * 2 * time
+        assert np.allclose(scene.world_vertices(0, time)[1], [2 * np.cos(angle), 2 * np.sin(angle), 0], atol=2e-3)
+    assert np.allclose(scene.world_vertices(0, 5.0)[1], [2, 0, 0], atol=1e-9)
+    _, looped = usd_scene(tmp_path, turning, loop=True, offset=0.25)
+    for time in (0.0, 0.9, 7.3, 55.5):
+        angle = 4 * np.pi * (time + 0.25)
+        assert np.allclose(looped.world_vertices(0, time)[1], [2 * np.cos(angle), 2 * np.sin(angle), 0], atol=2e-3)
+    _, resting = usd_scene(tmp_path, turning, animation="")
+    assert np.allclose(resting.world_vertices(0, 0.3)[1], [2, 0, 0])
+    with pytest.raises(ValueError, match="animation: must be 'timeline', got 'walk'"):
+        usd_scene(tmp_path, turning, animation="walk")
+
+
+def test_a_usd_skin_moves_as_the_library_of_usd_says(tmp_path):
+    from pxr import Usd, UsdGeom, UsdSkel
+
+    model, scene = usd_scene(tmp_path, USD[1])
+    assert [type(node.deformation).__name__ for node in model.nodes if node.mesh] == ["Skin"]
+    stage = Usd.Stage.Open(str(tmp_path / "stage.usda"))
+    root, cache = UsdSkel.Root(stage.GetPrimAtPath("/person")), UsdSkel.Cache()
+    cache.Populate(root, Usd.PrimDefaultPredicate)
+    binding = cache.ComputeSkelBindings(root, Usd.PrimDefaultPredicate)[0]
+    query, target = cache.GetSkelQuery(binding.GetSkeleton()), binding.GetSkinningTargets()[0]
+    for code in (0.0, 2.5, 10.0):
+        points = UsdGeom.Mesh(target.GetPrim()).GetPointsAttr().Get()
+        assert target.ComputeSkinnedPoints(query.ComputeSkinningTransforms(code), points, code)
+        ours = np.concatenate([scene.world_vertices(mesh.id, code / 24) for mesh in scene.meshes])
+        wanted = 0.01 * np.array(points)
+        assert np.allclose(sorted(set(map(tuple, np.round(ours, 7)))), sorted(map(tuple, wanted.astype(float))), atol=SINGLE)
+
+
+@pytest.mark.parametrize("text, message", [
+    ("#usda 1.0\n(\n    timeCodesPerSecond = 0\n)\n", "must have timeCodesPerSecond other than 0"),
+    ("#usda 1.0\ndef Mesh", "is no USD stage that can be read .*stage.usda:2:"),
+])
+def test_stages_that_cannot_be_read_are_refused_by_name(tmp_path, text, message):
+    with pytest.raises(ep.FileError, match=f"stage.usda: .*{message}"):
+        usd_scene(tmp_path, text)
+
+
+def test_usd_says_what_to_install_without_its_library(tmp_path, monkeypatch):
+    (tmp_path / "stage.usda").write_text(USD[0])
+    for name in [name for name in sys.modules if name.partition(".")[0] == "pxr"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "pxr", None)
+    with pytest.raises(ModuleNotFoundError, match=r"pip install 'echopath\[usd\]'"):
+        ep.load_model(tmp_path / "stage.usda")
+
+
+def test_frames_of_a_folder_and_of_an_archive_move_alike(tmp_path):
+    times = np.arange(5) / 20.0
+    base = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    frames = np.stack([base + [0, 0, time**2] for time in times])  # falls up with 2 m/s^2
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    for number, vertices in enumerate(frames):
+        (folder / f"frame{number + 8}.obj").write_bytes(obj(vertices, faces))  # 8, 9, 10: by number, not by letters
+    (folder / "frame_rate.txt").write_text("20\n")
+    (tmp_path / "frames.npz").write_bytes(archive(vertices=frames, triangles=faces, frame_rate=20.0))
+    for path in (folder, tmp_path / "frames.npz"):
+        scene = ep.Scene()
+        scene.add(ep.load_model(path), name="sheet")
+        for time in (0.0, 0.05, 0.125, 0.2):
+            assert np.allclose(scene.world_vertices(0, time)[:, 2], time**2, atol=2e-4)
+        assert ep.load_model(path).duration == pytest.approx(0.2)
+
+
+def test_frames_that_do_not_fit_together_are_refused_by_name(tmp_path):
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    with pytest.raises(ep.FileError, match="is a folder without .obj files"):
+        ep.load_model(folder)
+    (folder / "a1.obj").write_bytes(obj(VERTICES[:3], np.array([[0, 1, 2]])))
+    (folder / "a2.obj").write_bytes(obj(VERTICES[:4], np.array([[0, 1, 2], [0, 2, 3]])))
+    with pytest.raises(ep.FileError, match="a2.obj: must have the groups, materials and triangles of the first frame, a1.obj"):
+        ep.load_model(folder)
+
+
+@pytest.mark.parametrize("arrays, message", [
+    ({}, "has no array 'vertices'; it has none"),
+    ({"vertices": np.zeros((2, 3))}, "vertices must have 3 dimensions"),
+    ({"vertices": np.zeros((2, 3, 3)), "triangles": [[0.0, 1, 2]]}, "triangles must have 2 dimensions, got .* of float64"),
+    ({"vertices": np.full((2, 3, 3), np.nan), "triangles": [[0, 1, 2]]}, "vertices must be finite"),
+    ({"vertices": np.eye(3)[None].repeat(2, 0), "triangles": [[0, 1, 3]]}, "triangles"),
+    ({"vertices": np.eye(3)[None].repeat(2, 0), "triangles": [[0, 1, 2]], "times": [0.0, 0.0]}, "must be 2 ascending numbers"),
+    ({"vertices": np.eye(3)[None].repeat(2, 0), "triangles": [[0, 1, 2]], "frame_rate": 0.0}, "the frame rate must be"),
+    ({"vertices": np.array([None])}, "is no .npz file of plain arrays"),
+])
+def test_archives_that_do_not_fit_together_are_refused_by_name(tmp_path, arrays, message):
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(ep.FileError, match=f"a.npz: .*{message}"):
+        ep.load_model(tmp_path / "a.npz")

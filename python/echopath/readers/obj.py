@@ -7,6 +7,7 @@ from .. import _core
 from .axes import Axes
 from .model import Model
 from .options import ReadOptions
+from .sampled import chosen_animation
 from .tree import Tree
 
 NAMES = {".obj": "OBJ", ".ply": "PLY", ".stl": "STL", ".off": "OFF"}
@@ -14,6 +15,7 @@ NAMES = {".obj": "OBJ", ".ply": "PLY", ".stl": "STL", ".off": "OFF"}
 
 def read(path: Path, options: ReadOptions) -> Model:
     """A Model of a mesh file. Its axes are those of a scene and its unit is 1 m, unless the options say otherwise."""
+    chosen_animation(options, ())
     axes = Axes(options)
     surfaces, libraries = _core.load_surfaces(path, axes.unit)
     tree = Tree(options)

@@ -19,13 +19,13 @@ OPTIONAL = ("left_toe", "right_toe")
 
 def plain(name: str) -> str:
     """A name without what comes before it in some programs: "mixamorig:LeftUpLeg" -> "leftupleg"."""
-    name = re.sub(r"^.*[:|]", "", name).lower()
-    name = re.sub(r"^(mixamorig\d*_?|bip0*1?[ _]?|character\d*_|def[-_.]|b_)", "", name)
-    side = re.search(r"(^|[ _.\-])([lr])([ _.\-]|$)|^([lr])(?=[a-z])(?!eft|ight|ow|ad|ib)", name)
-    if side and not name.startswith(("left", "right")):
-        word = "left" if "l" in (side[2], side[4]) else "right"
-        name = word + name[:side.start()] + name[side.end():]
-    return re.sub(r"[^a-z0-9]", "", name)
+    name = re.sub(r"^.*[:|]", "", name)
+    name = re.sub(r"^(mixamorig\d*_?|bip0*1?[ _]?|character\d*_|def[-_.]|b_)", "", name, flags=re.IGNORECASE)
+    side = re.search(r"(?:^|[ _.\-])([lLrR])(?:[ _.\-]|$)|^([lr])(?=[A-Z])|^([LR])(?=[A-Z][a-z])", name)
+    if side:
+        letter = next(filter(None, side.groups())).lower()
+        name = {"l": "left", "r": "right"}[letter] + name[:side.start()] + name[side.end():]
+    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def find_joints(names: list[str]) -> dict[str, int]:

@@ -8,6 +8,7 @@ import numpy as np
 from ..axes import Axes
 from ..model import Model
 from ..options import ReadOptions
+from ..sampled import chosen_animation
 from ..tree import Tree
 from .elements import Element, read_elements
 from .materials import bsdf_of, foreign_name, radio_material
@@ -23,6 +24,7 @@ def read(path: Path, options: ReadOptions) -> Model:
     Mitsuba has no vertical axis of its own: it is z, or y where a camera of the file has it upwards. Cameras, lights,
     textures and media are left out without a word, other shapes with one.
     """
+    chosen_animation(options, ())
     scene = read_elements(path)
     up, note = _up_of(scene)
     axes = Axes(options, up=up)
@@ -56,7 +58,7 @@ class _Content:
 
     def _remember(self, element: Element) -> None:
         for child in element.children:
-            if child.get("id"):
+            if child.get("id") and child.tag != "ref":
                 self._known.setdefault(child.get("id"), child)
             self._remember(child)
 

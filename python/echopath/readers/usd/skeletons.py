@@ -91,8 +91,8 @@ def _joints(query, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tr
         if parent >= index:
             raise ValueError("its joints must stand behind their parents")
         moved = axes.matrices(local[:, index])
-        if (np.abs(np.linalg.det(moved[:, :3, :3])) < 1e-60).any():
-            raise ValueError(f"its joint '{name}' flattens space")
+        if not np.isfinite(moved).all() or (np.abs(np.linalg.det(moved[:, :3, :3])) < 1e-60).any():
+            raise ValueError(f"its joint '{name}' flattens space, or is not finite")
         placement, motion, is_rigid = moved_rigidly(timeline.seconds(codes), moved, clock) if clock else (moved[0], None, True)
         if not is_rigid:
             tree.count("the changing scale of a joint is left out")

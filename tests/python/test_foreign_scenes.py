@@ -1,0 +1,285 @@
+"""Foreign scenes: names of materials, Mitsuba files, scene files that name models, what the command line says of them."""
+from __future__ import annotations
+
+import os
+import re
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.cli import main
+from echopath.readers.material_names import material_of, note_of_unknown
+from echopath.readers.sizes import unit_doubt
+from fuzz.foreign import SQUARE
+
+ROUNDING = 1e-12
+
+
+# --- materials ---
+
+@pytest.mark.parametrize("name, ours", [
+    ("itu_concrete", "concrete"), ("mat-itu_metal", "metal"), ("itu_ceiling_board", "ceiling_board"),
+    ("itu_very_dry_ground", "dry_soil"), ("itu_wet_ground", "wet_soil"), ("itu_plasterboard", "plasterboard"),
+    ("itu_floorboard", "floorboard"), ("itu_chipboard", "chipboard"), ("itu_plywood", "plywood"), ("itu_marble", "marble"),
+    ("M_RoadLine.001", "asphalt"), ("MI_Asphalt_02", "asphalt"), ("CarPaint_Red", "metal"), ("Window_Glass", "glass"),
+    ("fiberglass_panel", "plastic"), ("tire", "rubber"), ("Broadleaf_Leaves", "wood"), ("T-Shirt_cloth", "clothing"),
+    ("skin_face", "skin"), ("asphalt", "asphalt"), ("WoodenFloor", "wood"), ("Aluminium", "metal"),
+])
+def test_usual_names_are_known(name, ours):
+    assert material_of(name, {}) == (ours, None)
+
+
+def test_unknown_names_are_concrete_and_counted():
+    assert material_of("Material.001", {})[0] == "concrete"
+    notes = note_of_unknown(["lambert1", "lambert1", "", "phong2"])
+    assert "2 materials without an entry" in notes[0] and "lambert1, phong2" in notes[0]
+    assert "1 mesh without a material is taken for concrete" in notes[1]
+
+
+def test_users_extend_the_table_and_go_first(monkeypatch):
+    monkeypatch.setattr(ep.foreign_materials, "_entries", dict(ep.foreign_materials._entries))
+    assert material_of("Brick_Red", {})[0] == "brick"
+    ep.foreign_materials["BRICK*"] = "marble"
+    assert material_of("Brick_Red", {})[0] == "marble" and next(iter(ep.foreign_materials)) == "BRICK*"
+    own = ep.Material(permittivity=4.0)
+    assert material_of("Brick_Red", {"*red*": own})[0] is own
+    del ep.foreign_materials["BRICK*"]
+    assert material_of("Brick_Red", {})[0] == "brick"
+    assert all(name in ep.materials for name in ep.foreign_materials.values())
+
+
+@pytest.mark.parametrize("pattern, material, error", [
+    ("a", "steal", "material: unknown material 'steal', the nearest known ones are"),
+    ("a", 3, "material: must be a Material or a name of one, got 3"),
+    (3, "metal", "pattern: must be patterns of names as text, got 3"),
+])
+def test_wrong_entries_are_refused_on_assignment(pattern, material, error):
+    with pytest.raises((ValueError, TypeError), match=error):
+        ep.foreign_materials[pattern] = material
+
+
+def test_materials_of_the_recommendation_have_its_values_at_77_ghz():
+    """eps' = a f^b, sigma = c f^d with f in GHz (ITU-R P.2040-3, table 3), eps'' = 17.98 sigma / f."""
+    table = {"brick": (3.91, 0, 0.0238, 0.16), "plasterboard": (2.73, 0, 0.0085, 0.9395), "marble": (7.074, 0, 0.0055, 0.9262),
+             "ceiling_board": (1.48, 0, 0.0011, 1.0750), "chipboard": (2.58, 0, 0.0217, 0.78), "plywood": (2.71, 0, 0.33, 0),
+             "floorboard": (3.66, 0, 0.0044, 1.3515)}
+    for name, (a, b, c, d) in table.items():
+        permittivity = ep.materials[name].permittivity
+        assert permittivity.real == pytest.approx(a * 77**b, rel=1e-3), name
+        assert -permittivity.imag == pytest.approx(17.98 * c * 77**d / 77, abs=6e-4), name
+
+
+# --- Mitsuba ---
+
+def mitsuba(tmp_path, body: str, name: str = "scene.xml", **options):
+    (tmp_path / name).write_text(f'<scene version="3.0.0">\n{body}\n</scene>')
+    return ep.load_model(tmp_path / name, **options)
+
+
+def corners(model, index: int = 0) -> np.ndarray:
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    return scene.world_vertices(index, 0.0)
+
+
+def rectangle(transform: str, more: str = "") -> str:
+    return f'<shape type="rectangle" id="mesh-plate"><transform name="to_world">{transform}</transform>{more}</shape>'
+
+
+def test_steps_of_a_transform_are_applied_one_after_the_other(tmp_path):
+    steps = '<scale x="2"/><rotate z="1" angle="90"/><translate value="10, 0, 1"/>'
+    # (+-1, +-1, 0) -> (+-2, +-1) -> turned left (-+1, +-2) -> moved
+    vertices = corners(mitsuba(tmp_path, rectangle(steps)))
+    assert np.allclose(vertices, [[11, -2, 1], [11, 2, 1], [9, 2, 1], [9, -2, 1]], atol=ROUNDING)
+
+
+def test_a_matrix_and_looking_at_a_point(tmp_path):
+    matrix = rectangle('<matrix value="0 0 1 5  1 0 0 6  0 1 0 7  0 0 0 1"/>')
+    assert np.allclose(corners(mitsuba(tmp_path, matrix))[0], [5, 5, 6])
+    look = rectangle('<lookat origin="1, 2, 3" target="1, 5, 3" up="0, 0, 1"/>')  # ahead +y, left -x, up +z
+    assert np.allclose(corners(mitsuba(tmp_path, look)), [[2, 2, 2], [0, 2, 2], [0, 2, 4], [2, 2, 4]])
+
+
+def test_groups_are_placed_by_their_instances_and_share_meshes(tmp_path):
+    model = mitsuba(tmp_path, '<shape type="shapegroup" id="car"><shape type="cube" id="body"/></shape>' + "".join(
+        f'<shape type="instance" id="i{x}"><ref id="car"/><transform name="to_world"><translate x="{x}"/></transform></shape>'
+        for x in (3, 8)))
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    assert [mesh.name for mesh in scene.meshes] == ["m/i3/body", "m/i8/body"]
+    assert np.allclose([scene.world_vertices(i, 0.0)[:, 0].mean() for i in (0, 1)], [3, 8])
+    assert scene.meshes[0].mesh == scene.meshes[1].mesh
+
+
+def test_solids_have_their_sizes(tmp_path):
+    body = ('<shape type="sphere"><float name="radius" value="0.5"/><point name="center" x="2" y="0" z="1"/></shape>'
+            '<shape type="cylinder"><point name="p0" value="1 1 1"/><point name="p1" value="1 1 4"/><float name="radius" '
+            'value="2"/></shape><shape type="disk"/><shape type="cube"/>')
+    meshes = [node.mesh for node in mitsuba(tmp_path, body).nodes]
+    ball, tube, disk, cube = meshes
+    assert np.allclose(np.linalg.norm(ball.vertices - [2, 0, 1], axis=1), 0.5) and ball.is_closed
+    assert ball.area == pytest.approx(np.pi, rel=0.02) and tube.area == pytest.approx(2 * np.pi * 2 * 3, rel=0.01)
+    assert disk.area == pytest.approx(np.pi, rel=0.01) and cube.area == pytest.approx(24) and cube.is_closed
+    assert tube.vertices[:, 2].min() == pytest.approx(1.0) and tube.vertices[:, 2].max() == pytest.approx(4.0)
+
+
+def test_materials_by_id_by_type_and_by_value(tmp_path):
+    body = ('<bsdf type="twosided" id="mat-itu_brick"><bsdf type="diffuse"/></bsdf>'
+            '<bsdf type="itu-radio-material" id="box-mat"><string name="type" value="glass"/></bsdf>'
+            '<bsdf type="radio-material" id="own"><float name="relative_permittivity" value="4"/>'
+            '<float name="conductivity" value="0.5"/><float name="scattering_coefficient" value="0.2"/></bsdf>')
+    shapes = "".join(f'<shape type="cube"><ref id="{name}" name="bsdf"/></shape>' for name in ("mat-itu_brick", "box-mat", "own"))
+    nodes = mitsuba(tmp_path, body + shapes + '<shape type="cube"><bsdf type="roughconductor"/></shape>').nodes
+    assert [node.material for node in nodes[:2]] == ["brick", "glass"] and nodes[3].material == "metal"
+    assert nodes[2].material == ep.Material(permittivity=4.0, conductivity=0.5, scattering=0.2)
+
+
+def test_parameters_and_included_files_are_filled_in(tmp_path):
+    moved = rectangle('<translate x="$far"/>')
+    (tmp_path / "more.xml").write_text(f'<scene version="3.0.0">{moved}</scene>')
+    model = mitsuba(tmp_path, '<default name="far" value="7"/><include filename="more.xml"/>')
+    assert corners(model)[:, 0].mean() == pytest.approx(7)
+
+
+def test_a_camera_with_y_upwards_says_the_vertical_axis(tmp_path):
+    camera = ('<sensor type="perspective"><transform name="to_world"><lookat origin="0 0 5" target="0 0 0" up="0 1 0"/>'
+              "</transform></sensor>")
+    model = mitsuba(tmp_path, camera + rectangle(""))
+    assert model.up == "y" and any("y upwards" in note for note in model.notes)
+    assert mitsuba(tmp_path, camera + rectangle(""), up="z").up == "z"
+
+
+@pytest.mark.parametrize("body, message", [
+    ('<shape type="ply"><string name="filename" value="gone.ply"/></shape>', "line 2: <shape>: the file 'gone.ply' is not there"),
+    ('<shape type="ply"/>', "names no file"),
+    ('<shape type="cube"><ref id="nobody"/></shape>', "line 2: <ref>: there is no element with the id 'nobody'"),
+    ('<shape type="instance"/>', "must refer to a shape group"),
+    (rectangle('<translate x="$where"/>'), "the parameter '[$]where' has no default"),
+    (rectangle('<translate x="far"/>'), "<translate>: x must be numbers, got 'far'"),
+    (rectangle('<matrix value="1 2 3"/>'), "value must be 9 or 16 finite numbers"),
+    (rectangle('<turn/>'), "unknown transform; known are translate, scale"),
+    ('<include filename="scene.xml"/>', "includes itself"),
+    ("<shape", "is no XML"),
+    ("<a>" * 70 + "</a>" * 70, "more than 64 elements within each other"),
+])
+def test_faults_of_a_file_are_told_by_its_line(tmp_path, body, message):
+    with pytest.raises(ep.FileError, match=f"scene.xml.*{message}"):
+        mitsuba(tmp_path, body)
+
+
+def test_entities_that_grow_without_end_are_refused(tmp_path):
+    (tmp_path / "bomb.xml").write_text('<!DOCTYPE a [<!ENTITY b "bbbb"><!ENTITY c "&b;&b;&b;">]><scene>&c;</scene>')
+    with pytest.raises(ep.FileError, match="bomb.xml, line 1: a document type, which may expand without end, is refused"):
+        ep.load_model(tmp_path / "bomb.xml")
+
+
+def test_what_is_left_out_is_counted(tmp_path):
+    model = mitsuba(tmp_path, '<shape type="hair"/><shape type="hair"/>' + rectangle('<scale x="0"/>') + rectangle(""))
+    assert "a shape of the type 'hair' is left out (2 times)" in model.notes
+    assert "a shape whose transform flattens it is left out" in model.notes and len(model.nodes) == 1
+
+
+# --- scenes, scene files and the command line ---
+
+@pytest.fixture
+def town(tmp_path):
+    """A street of two rows of houses on a ground, in a Mitsuba file."""
+    houses = "".join(f'<shape type="cube" id="house{x}{side}"><transform name="to_world"><scale value="8 8 6"/>'
+                     f'<translate x="{x}" y="{side * 20}" z="6"/></transform><ref id="mat-itu_brick"/></shape>'
+                     for x in (-40, -20, 0, 20, 40) for side in (-1, 1))
+    ground = ('<shape type="rectangle" id="ground"><transform name="to_world"><scale value="60 40 1"/></transform>'
+              '<ref id="mat-itu_concrete"/></shape>')
+    bsdfs = '<bsdf type="diffuse" id="mat-itu_brick"/><bsdf type="diffuse" id="mat-itu_concrete"/>'
+    (tmp_path / "town.xml").write_text(f'<scene version="3.0.0">{bsdfs}{houses}{ground}</scene>')
+    return tmp_path / "town.xml"
+
+
+def test_load_scene_takes_a_foreign_file_by_its_suffix(town):
+    found = ep.load_scene(town)
+    assert found.radar is None and found.title == "town" and len(found.scene.meshes) == 11
+    assert "town/house0-1" in found.scene
+
+
+def test_a_scene_file_names_a_model_with_its_settings(tmp_path):
+    (tmp_path / "wall.obj").write_text(SQUARE + "usemtl pane\nf 1 2 3 4\n")
+    text = """[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 64
+sampling_rate = 1e7
+num_chirps = 8
+chirp_interval = 6e-5
+[[radar.transmitters]]
+position = [0, 0, 0]
+[[radar.receivers]]
+position = [0, 0, 0]
+[[objects]]
+name = "wall"
+model = "wall.obj"
+unit = 2.0
+up = "y"
+materials = {"pane*" = {base = "glass", mirror = true}}
+position = [5, 0, 0]
+"""
+    (tmp_path / "scene.toml").write_text(text.replace("[0, 0, 0]", "[0.0, 0.0, 0.0]").replace("[5, 0, 0]", "[5.0, 0.0, 0.0]"))
+    scene = ep.load_scene(tmp_path / "scene.toml").scene
+    assert scene.meshes[0].material == ep.materials["glass"].replace(mirror=True)
+    assert np.allclose(scene.world_vertices(0, 0.0).max(axis=0), [5, 2, 2])
+    good = (tmp_path / "scene.toml").read_text()
+    for wrong in ('model = "gone.obj"', 'mesh = "wall.obj"', 'model = "wall.obj"\nanimation = "walk"'):
+        (tmp_path / "bad.toml").write_text(good.replace('model = "wall.obj"', wrong))
+        with pytest.raises((ValueError, ep.FileError)):
+            ep.load_scene(tmp_path / "bad.toml")
+
+
+def test_info_tells_content_size_axes_unit_and_materials(town, capsys):
+    assert main(["info", str(town)]) == 0
+    said = capsys.readouterr().out
+    for words in ("Mitsuba 3.0.0", "11, 11", "120 x 80 x 12 m", "z is up", "itu_brick", "brick, 10 meshes", "house-40-1"):
+        assert words in said, words
+
+
+@pytest.mark.parametrize("extent, unit, names, words", [
+    (180.0, 1.0, ["walking_man"], "a person of 180 m is hardly right; with unit=0.01 [(]cm[)]"),
+    (0.004, 0.001, ["Car.obj"], "a vehicle of 4 mm is hardly right; with unit=1 [(]m[)]"),
+    (0.004, 1.0, ["thing"], "a scene of 4 mm is hardly right"),
+    (1.8, 1.0, ["man"], None), (180.0, 1.0, ["town"], None), (4.5, 1.0, ["car"], None),
+])
+def test_sizes_that_cannot_be_say_which_unit_would_be_right(extent, unit, names, words):
+    doubt = unit_doubt(extent, unit, names)
+    assert doubt is None if words is None else re.match(words, doubt)
+
+
+def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_path, capsys):
+    out = tmp_path / "run" / "town.toml"
+    assert main(["scene", str(town), "--out", str(out)]) == 0
+    found = ep.load_scene(out)
+    x, y, z = found.radar.position
+    assert abs(y) < 12 and abs(x) < 60 and z == pytest.approx(1.5)  # between the rows, which begin at |y| = 12
+    paths = ep.trace(found.scene, found.radar, num_rays=2000)
+    assert paths.num_paths > 0
+    assert main(["run", str(town), "--out", str(tmp_path / "x")]) == 2
+    assert "has no radar; 'echopath scene" in capsys.readouterr().err
+    assert main(["scene", str(town), "--out", str(tmp_path / "town.txt")]) == 2
+
+
+def test_other_kinds_of_files_and_arguments_are_refused_by_name(tmp_path):
+    with pytest.raises(ValueError, match="path: must be a file of the kinds .obj, .ply"):
+        ep.load_model(tmp_path / "a.doc")
+    with pytest.raises(ep.FileError, match="a.usd: cannot be opened"):
+        ep.load_model(tmp_path / "a.usd")
+    with pytest.raises(ValueError, match="up: must be 'x', 'y' or 'z', got 'w'"):
+        ep.load_model(tmp_path / "a.obj", up="w")
+    with pytest.raises(ValueError, match="materials.'a'.: unknown material 'steal'"):
+        ep.load_model(tmp_path / "a.obj", materials={"a": "steal"})
+    with pytest.raises(ep.FileError, match="is no regular file"):
+        ep.load_model(_device(tmp_path))
+
+
+def _device(tmp_path):
+    """A pipe with the name of a mesh file, which has no end."""
+
+
+    os.mkfifo(tmp_path / "pipe.obj")
+    return tmp_path / "pipe.obj"

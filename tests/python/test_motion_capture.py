@@ -1,0 +1,165 @@
+"""Motion capture onto the walking person: joints of the file, where they are captured and as fast as they are captured."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.actors.human.captured_joints import find_joints, missing_joints, plain
+from echopath.readers.motion_capture import read_capture
+from fuzz.foreign import bvh_text, walk_frames
+
+CM = 0.01
+KEY_ROUNDING = 1e-9  # m, of a spline at its own keys
+
+
+@pytest.fixture
+def walk(tmp_path):
+    """One second of a walk at 1.3 m/s along +z of the file, y up, in cm."""
+    (tmp_path / "walk.bvh").write_text(bvh_text(walk_frames(31)))
+    return tmp_path / "walk.bvh"
+
+
+def parts_of(scene) -> dict:
+    return {node.name.removeprefix("person/"): node for node in scene.nodes}
+
+
+def origin(node, time: float) -> np.ndarray:
+    """Where the origin of a part is: at its proximal joint."""
+    return (node.motion.at(time) @ [0, 0, 0, 1])[:3]
+
+
+def test_joints_follow_their_channels_as_written_by_hand(tmp_path):
+    """Z then X rotation: v' = Rz Rx v, by hand for one joint; position channels replace the offset."""
+    (tmp_path / "a.bvh").write_text("""HIERARCHY
+ROOT a
+{
+ OFFSET 9 9 9
+ CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+ JOINT b
+ {
+  OFFSET 0 0 2
+  CHANNELS 3 Zrotation Xrotation Yrotation
+  End Site
+  { OFFSET 0 1 0 }
+ }
+}
+MOTION
+Frames: 2
+Frame Time: 0.5
+1 2 3 0 0 0 0 0 0
+1 2 3 90 90 0 0 0 90
+""")
+    capture = read_capture(tmp_path / "a.bvh")
+    assert [joint.name for joint in capture.joints] == ["a", "b", "b_end"] and capture.times.tolist() == [0, 0.5]
+    assert np.allclose(capture.positions[0], [[1, 2, 3], [1, 2, 5], [1, 3, 5]])
+    # Rx(90) takes z to -y, Rz(90) takes -y to +x: b is 2 ahead along x; the end, (0, 1, 0), is its own after Ry(90),
+    # becomes z by Rx(90) and stays it by Rz(90)
+    assert np.allclose(capture.positions[1], [[1, 2, 3], [3, 2, 3], [3, 2, 4]])
+
+
+@pytest.mark.parametrize("name, wanted", [
+    ("mixamorig:LeftUpLeg", "leftupleg"), ("Character1|RightHand", "righthand"), ("Bip01 L Thigh", "leftthigh"),
+    ("upper_arm.L", "leftupperarm"), ("lShldr", "leftshldr"), ("R_Foot", "rightfoot"), ("Head", "head"),
+    ("LowerBack", "lowerback"), ("LHipJoint", "lefthipjoint"), ("l_knee", "leftknee"), ("LeftForeArm", "leftforearm"), ("lowerback", "lowerback"), ("Root", "root"),
+])
+def test_names_are_read_past_what_programs_put_around_them(name, wanted):
+    assert plain(name) == wanted
+
+
+@pytest.mark.parametrize("names", [
+    ["Hips", "LHipJoint", "LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToeBase", "RHipJoint", "RightUpLeg", "RightLeg", "RightFoot",
+     "Neck", "Head", "LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand", "RightShoulder", "RightArm", "RightForeArm",
+     "RightHand"],
+    ["hip", "LeftHip", "LeftKnee", "LeftAnkle", "RightHip", "RightKnee", "RightAnkle", "Head", "LeftShoulder", "LeftElbow",
+     "LeftWrist", "RightShoulder", "RightElbow", "RightWrist"],
+    ["hip", "lThigh", "lShin", "lFoot", "rThigh", "rShin", "rFoot", "head", "lShldr", "lForeArm", "lHand", "rShldr", "rForeArm",
+     "rHand"],
+])
+def test_skeletons_of_usual_programs_have_all_joints(names):
+    found = find_joints(names)
+    assert missing_joints(found) == [] and len(set(found.values())) == len(found)
+    assert names[found["left_hip"]] in ("LeftUpLeg", "LeftHip", "lThigh")
+    assert names[found["left_shoulder"]] in ("LeftArm", "LeftShoulder", "lShldr") and "Arm" in names[
+        found["left_elbow"]] or names[found["left_elbow"]] == "LeftElbow"
+
+
+def test_parts_sit_at_the_captured_joints_and_move_as_fast(walk):
+    capture = read_capture(walk)
+    index = {joint.name: number for number, joint in enumerate(capture.joints)}
+    scene = ep.Scene()
+    scene.add(ep.load_model(walk), name="person")
+    parts = parts_of(scene)
+    names = {"leg_left/thigh": "LeftUpLeg", "leg_left/shank": "LeftLeg", "leg_right/foot": "RightFoot",
+             "arm_left/upper": "LeftArm", "arm_right/forearm": "RightForeArm", "arm_right/hand": "RightHand", "head": "Head"}
+    hips = CM * 0.5 * (capture.positions[0, index["LeftUpLeg"]] + capture.positions[0, index["RightUpLeg"]])
+    for part, joint in names.items():
+        way = CM * capture.positions[:, index[joint]] - hips * [1, 0, 1]   # x ahead is z of the file, y left is its x
+        wanted = way[:, [2, 0, 1]]
+        ours = np.array([origin(parts[part], time) for time in capture.times])
+        floor = ours[:, 2] - wanted[:, 2]
+        assert np.ptp(floor) < KEY_ROUNDING
+        assert np.allclose(ours[:, :2], wanted[:, :2], atol=KEY_ROUNDING), part
+        middle, step = capture.times[15], 1e-4
+        speed = (origin(parts[part], middle + step) - origin(parts[part], middle - step)) / (2 * step)
+        captured = (wanted[16] - wanted[14]) / (capture.times[16] - capture.times[14])
+        assert np.allclose(speed, captured, atol=0.02), part  # m/s, of a central difference over 1/15 s
+
+
+def test_segments_have_the_captured_lengths_and_the_feet_stand_on_the_floor(walk):
+    scene = ep.Scene()
+    scene.add(ep.load_model(walk), name="person")
+    parts = parts_of(scene)
+    for time in (0.0, 0.4, 0.99):
+        thigh = np.linalg.norm(origin(parts["leg_left/thigh"], time) - origin(parts["leg_left/shank"], time))
+        assert thigh == pytest.approx(0.42, abs=1e-6)
+    lowest = [min(scene.world_vertices(mesh.id, time)[:, 2].min() for mesh in scene.meshes if mesh.name.endswith("foot"))
+              for time in np.linspace(0, 0.99, 21)]
+    assert abs(np.quantile(lowest, 0.1)) < 0.005
+
+
+def test_units_are_guessed_by_the_size_of_a_person(tmp_path):
+    for unit, scale in ((1.0, 0.01), (0.01, 1.0), (0.0254, 1 / 2.54)):
+        frames = walk_frames(5)
+        frames[:, :3] *= scale
+        text = bvh_text(frames)
+        head, motion, rest = text.partition("MOTION")
+        lines = [" ".join(["OFFSET", *(f"{scale * float(word):.9g}" for word in line.split()[1:])]) if "OFFSET" in line else line
+                 for line in head.split("\n")]
+        (tmp_path / "a.bvh").write_text("\n".join(lines) + motion + rest)
+        assert ep.load_model(tmp_path / "a.bvh").unit == pytest.approx(unit)
+
+
+def test_a_captured_pedestrian_is_an_actor_of_any_height(walk):
+    low, high = (ep.actors.captured_pedestrian(walk, height=height, offset=0.5) for height in (1.5, 2.0))
+    assert {part.name for part in low.parts} == {part.name for part in ep.actors.pedestrian().parts}
+    head = [next(part for part in actor.parts if part.name == "head").motion.at(0.0)[2, 3] for actor in (low, high)]
+    assert head[1] / head[0] == pytest.approx(2.0 / 1.5, rel=0.01)
+    assert np.allclose(low.parts[0].motion.at(0.0)[:2, 3], 0.0, atol=1e-6)  # the pelvis at time 0
+
+
+def test_a_first_pose_of_its_own_is_left_out(tmp_path):
+    frames = walk_frames(20)
+    frames[0, 6 + 18:] = 60.0  # arms and legs flung aside
+    (tmp_path / "a.bvh").write_text(bvh_text(frames))
+    model = ep.load_model(tmp_path / "a.bvh")
+    assert any("first frame" in note for note in model.notes) and model.duration == pytest.approx(18 / 30)
+
+
+@pytest.mark.parametrize("change, message", [
+    (("HIERARCHY", "HIERARCHIE"), "must have 'HIERARCHY' where it has 'HIERARCHIE'"),
+    (("OFFSET 0 -42 0", "OFFSET 0 nan 0"), "must have a number where it has 'nan'"),
+    (("Frames: 31", "Frames: 4000000000"), "must have a whole number from 2 to"),
+    (("Frames: 31", "Frames: 32"), "the file ends too early"),
+    (("Frame Time: 0.0333333333", "Frame Time: 0"), "the frame time must be from 1e-6 to 100 s"),
+    (("LeftForeArm", "Left"), "has no joint for left_elbow; its joints are Hips"),
+    (("CHANNELS 3 Zrotation", "CHANNELS 3 Wrotation"), "must have a channel such as Xrotation where it has 'Wrotation'"),
+])
+def test_faults_are_told_by_name(walk, change, message):
+    text = walk.read_text()
+    assert change[0] in text
+    walk.write_text(text.replace(*change))
+    with pytest.raises(ep.FileError, match=f"walk.bvh: .*{message}"):
+        ep.load_model(walk)
+    with pytest.raises(ep.FileError):
+        ep.actors.captured_pedestrian(walk)

@@ -97,10 +97,12 @@ class CapturedBody:
         """PartArrays of the actor; arguments as of captured_pedestrian."""
         edge = edge_length(edge, 3.0 * self.body.height)
         frames, stretch = self._frames()
-        surfaces = {name: surface(name, self.body, edge) for name in frames}
+        kinds = {name: name.rsplit("/")[-1] for name in frames}
+        of_kind = {kind: surface(kind, self.body, edge) for kind in dict.fromkeys(kinds.values())}
+        surfaces = {name: of_kind[kind] for name, kind in kinds.items()}
         self._place(frames, surfaces, offset)
         return [PartArrays(name, surfaces[name][0] * [1.0, 1.0, stretch.get(name, 1.0)], surfaces[name][1],
-                           skin if name.rsplit("/")[-1] in SKIN_PARTS else clothing, self.times - offset, frame.origin,
+                           skin if kinds[name] in SKIN_PARTS else clothing, self.times - offset, frame.origin,
                            quaternions(frame.rotation), smooth=True) for name, frame in frames.items()]
 
     def _length(self, *names: str) -> float:

@@ -41,7 +41,7 @@ class Content:
                 codes |= set(self._pxr.UsdGeom.Xformable(prim).GetTimeSamples()[:100_000])
             if prim.IsA(self._pxr.UsdGeom.Mesh):
                 codes |= set(self._pxr.UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples()[:100_000])
-        return sorted(code for code in codes if np.isfinite(code))
+        return self._timeline.usable(codes)
 
     def add_all(self, clock: Clock | None) -> None:
         """Adds everything; clock None: at rest."""
@@ -79,7 +79,7 @@ class Content:
 
     def _placed(self, prim):
         """(placement, motion or None) of a prim; None, counted, where it flattens space."""
-        codes, matrices = sampled_transforms(self._pxr.UsdGeom.Xformable(prim), self._time)
+        codes, matrices = sampled_transforms(self._pxr.UsdGeom.Xformable(prim), self._time, self._timeline)
         matrices = self._axes.matrices(matrices)
         if not np.isfinite(matrices).all() or np.abs(matrices).max() > 1e60 or (np.linalg.det(matrices[:, :3, :3]) == 0.0).any():
             self._tree.count("a prim whose transform flattens it, or is not finite, is left out")
@@ -135,7 +135,7 @@ class Content:
         """A VertexSequence of points that change over time, None for others."""
         attribute = self._pxr.UsdGeom.Mesh(prim).GetPointsAttr() if prim.IsA(self._pxr.UsdGeom.Mesh) else None
         codes = attribute.GetTimeSamples() if attribute and self._clock is not None else []
-        codes = [code for code in codes if np.isfinite(code)]
+        codes = self._timeline.usable(codes)
         if len(codes) < 2:
             return None
         if len(codes) * surface.points.size > MAX_VALUES:
@@ -181,7 +181,7 @@ class Content:
     def _instance_transforms(self, instancer, count: int):
         """(time codes [T], transforms [T, N, 4, 4] without those of the prototypes, None where something is wrong)."""
         attributes = (instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
-        codes = sorted({code for attribute in attributes for code in attribute.GetTimeSamples() if np.isfinite(code)})
+        codes = self._timeline.usable(code for attribute in attributes for code in attribute.GetTimeSamples())
         codes = codes[:5000] if len(codes) > 1 and self._clock is not None else [self._time]
         found = []
         for code in codes:

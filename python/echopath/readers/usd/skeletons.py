@@ -84,7 +84,7 @@ def _influences(skinning, num_points: int, order: list) -> tuple[np.ndarray, np.
 
 def _joints(query, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tree):
     """ep.Joint of each joint, parents first, moving where there is an animation."""
-    codes, local = _local_transforms(query, clock is not None)
+    codes, local = _local_transforms(query, clock is not None, timeline)
     topology, names = query.GetTopology(), _names(query.GetJointOrder())
     for index, name in enumerate(names):
         parent = topology.GetParent(index)
@@ -99,11 +99,11 @@ def _joints(query, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tr
         yield _core.Joint(name, names[parent] if parent >= 0 else None, transform=placement, motion=motion)
 
 
-def _local_transforms(query, animated: bool) -> tuple[list, np.ndarray]:
+def _local_transforms(query, animated: bool, timeline: Timeline) -> tuple[list, np.ndarray]:
     """(time codes [T], transforms [T, J, 4, 4] relative to the parents)."""
     animation = query.GetAnimQuery() if animated else None
     codes = list(animation.GetJointTransformTimeSamples()) if animation else []
-    codes = [code for code in codes if np.isfinite(code)] or [0.0]
+    codes = timeline.usable(codes) or [0.0]
     local = [query.ComputeJointLocalTransforms(code, atRest=not animation) for code in codes]
     if any(one is None or not len(one) for one in local):
         raise ValueError("its skeleton has no pose")

@@ -12,6 +12,7 @@ import numpy as np
 from ... import _core
 
 LEFT_OUT = ("guide", "proxy")  # purposes that are not part of the scene
+LONGEST, SHORTEST = 1e6, 1e-5  # s, from the first frame and between two samples
 
 
 def pxr_module(name: str):
@@ -38,11 +39,19 @@ def opened(path: Path) -> Iterator[tuple[Any, list[str]]]:
         _check_rates(path, stage)
         yield stage, said
         said += dict.fromkeys(_first_line(one.commentary) for one in delegate.TakeUncoalescedDiagnostics())
+    except UnicodeError:  # of names and messages that USD passes on as they are
+        raise _core.FileError(f"{path}: is no USD stage that can be read (it holds text that is not UTF-8)") from None
     except tf.ErrorException as error:
-        first = getattr(error.args[0], "commentary", "") if error.args else ""
-        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(first or str(error))})") from None
+        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(_reason(error))})") from None
     finally:
         delegate.TakeUncoalescedDiagnostics()
+
+
+def _reason(error) -> str:
+    try:
+        return getattr(error.args[0], "commentary", "") if error.args else str(error)
+    except UnicodeError:
+        return "it holds text that is not UTF-8"
 
 
 def _check_rates(path: Path, stage) -> None:
@@ -64,10 +73,18 @@ class Timeline:
 
     def __init__(self, stage):
         rate = stage.GetTimeCodesPerSecond()
-        self._rate = rate if np.isfinite(rate) and rate > 0.0 else 24.0
-        start = stage.GetStartTimeCode() if stage.HasAuthoredTimeCodeRange() else 0.0
-        self.start = start if np.isfinite(start) else 0.0
-        self.end = stage.GetEndTimeCode() if stage.HasAuthoredTimeCodeRange() else self.start
+        self._rate = rate if 1e-3 < rate < 1e9 else 24.0
+        bounds = (stage.GetStartTimeCode(), stage.GetEndTimeCode()) if stage.HasAuthoredTimeCodeRange() else (0.0, 0.0)
+        usable = all(abs(bound) < LONGEST * self._rate for bound in bounds)
+        self.start, self.end = bounds if usable else (0.0, 0.0)
+
+    def usable(self, codes) -> list[float]:
+        """Time codes in their order, without those that are no times or no later than the one before."""
+        usable: list[float] = []
+        for code in sorted(code for code in codes if abs(code) < LONGEST * self._rate):
+            if not usable or code - usable[-1] > SHORTEST * self._rate:
+                usable.append(code)
+        return usable
 
     def seconds(self, codes) -> np.ndarray:
         return (np.asarray(codes, float) - self.start) / self._rate

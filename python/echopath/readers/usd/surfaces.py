@@ -106,9 +106,15 @@ def material_name(prim, pxr) -> str:
     return str(word) if word else material.GetPrim().GetName()
 
 
+_TURNS = {"X": [2, 0, 1], "Y": [1, 2, 0], "Z": [0, 1, 2]}  # of axes, so that z points along the axis of a solid
+
+
 def _solid(prim, time):
     def number(name: str) -> float:
-        value = float(prim.GetAttribute(name).Get(time))
+        try:
+            value = float(prim.GetAttribute(name).Get(time))
+        except (TypeError, ValueError):
+            raise BadMesh(f"has no number as its {name}") from None
         if not 0.0 < value < 1e60:
             raise BadMesh(f"has {name} {value:g}, which must be finite and above 0")
         return value
@@ -122,5 +128,5 @@ def _solid(prim, time):
         points, triangles = forms.rectangle(number("width"), number("length"))
     else:
         points, triangles = getattr(forms, kind.lower())(number("radius"), number("height"))
-    turn = {"X": [2, 0, 1], "Y": [1, 2, 0], "Z": [0, 1, 2]}[str(prim.GetAttribute("axis").Get(time))]
+    turn = _TURNS.get(str(prim.GetAttribute("axis").Get(time)), _TURNS["Z"])
     return points[:, turn], triangles

@@ -3,15 +3,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .stage import matrix
+from .stage import Timeline, matrix
 
 STEP_DEG = 5.0       # that a prim may turn between two samples
 MOST_SAMPLES = 5000  # of one prim
 
 
-def sampled_transforms(xformable, time) -> tuple[list[float], np.ndarray]:
+def sampled_transforms(xformable, time, timeline: Timeline) -> tuple[list[float], np.ndarray]:
     """(time codes [T], transforms [T, 4, 4] relative to the parent) of a prim; one at `time` for a prim at rest."""
-    codes = [code for code in xformable.GetTimeSamples() if np.isfinite(code)]
+    codes = timeline.usable(xformable.GetTimeSamples())
     if len(codes) < 2:
         at = codes[0] if codes else time
         return [0.0], matrix(xformable.GetLocalTransformation(at))[None]
